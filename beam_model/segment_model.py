@@ -10,7 +10,7 @@ from functools import partial
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
 from beam_model.telescoping import travels
-from dynamics.gap_builder import GapBuilder, ObservedReading
+from dynamics.gap_builder import GapBuilder, OutputOperator
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.axial import pin_moments
@@ -60,7 +60,7 @@ def system_without_drives(
         sum((push for _, push in pin_moments(boom.segments, boom.joints, members)), modes.load),
         boom.stations,
         {
-            place.name: ObservedReading(_row(place, modes), place.kind.unit, place.kind.derivative)
+            place.name: OutputOperator(_row(place, modes), place.kind.unit, place.kind.derivative)
             for place in boom.all_observations(ends)
         },
         [(load.push(members[load.segment]), load.history) for load in boom.loads],

@@ -29,11 +29,14 @@ _LEAST, _LOG_DEPTHS = 1.0e-300, np.linspace(-300.0, 300.0, 6001)
 class ContactLaw(ABC):
     """Contact force between two bodies by their relative displacement y = u − w.
 
-    A user-defined law is a frozen dataclass that derives from this class and defines 1. ``terms``,
-    whose sum is the elastic force: never attractive, and zero at y = 0, where contact begins unless
-    the law is :meth:`behind` a clearance; 2. ``damping``, d in s/m of Hunt and Crossley (1975): the
-    force is F (1 + d ṗ) at the rate ṗ of the penetration, and never adhesive; 3. ``str(law)``, a
-    short description for tables.
+    A user-defined law is a frozen dataclass that derives from this class. It defines
+
+    - ``terms``; their sum is the elastic force F, which is never attractive and is zero at y = 0;
+    - ``damping``, d in s/m of Hunt and Crossley (1975): the force is F (1 + d ṗ) at the rate ṗ of
+      the penetration, but never adhesive;
+    - ``str(law)``, a short description for tables.
+
+    Contact begins at y = 0 unless :meth:`behind` adds a clearance.
     """
 
     __slots__ = ()
@@ -57,7 +60,7 @@ class ContactLaw(ABC):
         return replace(part, weight=weight * part.weight)
 
     def behind(self, above: float, below: float | None = None) -> Gap:
-        """Return the law with a clearance in m for y > 0, and the same or another for y < 0."""
+        """Return the law with a clearance in m for y > 0, and this or another one for y < 0."""
         return Gap(self, above, above if below is None else below)
 
     def scaled(self, factor: float) -> ContactLaw:
@@ -107,7 +110,7 @@ class ContactLaw(ABC):
 
 @dataclass(frozen=True, slots=True)
 class Gap(ContactLaw):
-    """Contact law with clearances, a factor, and contact on both sides or on one.
+    """Contact law with clearances and a factor, on one side or on both.
 
     >>> law = pt.PowerContact(1e6, exponent=1.0).behind(0.004, 0.010)
     >>> law.force(np.array([0.005, -0.005]))

@@ -114,7 +114,7 @@ def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: floa
         return np.asarray(stiffness @ x - load + rows.T @ sum_terms(force_of, x) / unit)
 
     def slope(length: float, x: Array, step: Array) -> float:
-        """Return the derivative of the energy along a step."""
+        """Return the derivative of the energy at ``x`` + ``length`` · ``step`` along the step."""
         return float(unbalanced(x + length * step) @ step)
 
     x = np.zeros(load.size)

@@ -205,7 +205,7 @@ class Spline:
 
     @property
     def fastest(self) -> float:
-        """The reciprocal of the shortest interval between points, in rad/s."""
+        """The reciprocal of the shortest interval between points in 1/s, as a bound in rad/s."""
         return 1.0 / float(np.diff(self.times).min())
 
     def __call__(self, time: Array) -> Array:
@@ -331,7 +331,7 @@ class Stroke:
         return np.asarray(np.sign(self.travel) * self.speed * (ramps[0] - ramps[1]))
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the first or second derivative, before a jump its earlier value.
+        """Return the first or second derivative; at a jump, the value before it.
 
         The second derivative needs a ramp.
         """
@@ -345,7 +345,7 @@ class Stroke:
         return np.asarray(np.sign(self.travel) * self.speed * (rise[0] - rise[1]))
 
     def _integrate_ramp(self, after: Array) -> Array:
-        """Return ∫ v dt in s of a ramp v from 0 to 1, which then stays constant."""
+        """Return ∫ v dt in s of a ramp v that rises from 0 to 1 and then stays constant."""
         if self.ramp == 0.0:
             return np.maximum(after, 0.0)
         part = np.clip(after / self.ramp, 0.0, 1.0)

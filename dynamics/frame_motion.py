@@ -62,7 +62,7 @@ class FrameMotion:
         return self.radius + along * np.cos(luffed), along * np.sin(luffed)
 
     def drive_moments(self, time: Array, x: float, mass: float, extension: MotionLaw) -> Array:
-        """Return the moments (2, ...) in N·m of slewing and luffing that move a mass.
+        """Return the slewing and the luffing moment (2, ...) in N·m that move a mass.
 
         They are m ρ a_y about the slewing axis, and m σ (a_z + g cos α) about the foot. The
         arguments are as in :meth:`accelerations`, and the mass in kg.

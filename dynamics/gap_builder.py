@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Construction of gap systems from contacts, friction and observations, for beams and shells.
 
-A displacement operator of a model gives a displacement from all degrees of freedom; its row gives
-the displacement from the modes. The operators of beams are rows. A shell is reduced for its
-operators, and their rows follow in the reduced modes. Contact and friction have the same rules for
-both.
+A displacement operator gives a displacement from all degrees of freedom of a model; a row gives it
+from the modes. The operators of beams are rows. The reduction of a shell turns its operators into
+rows. Contact and friction have the same rules for both.
 """
 
 from __future__ import annotations
@@ -28,13 +27,13 @@ L = TypeVar("L")
 class LawRow(NamedTuple, Generic[R, L]):
     """Contact or friction row: displacement operator, law, and index of its station."""
 
-    reading: R
+    operator: R
     law: L
     station: int
 
     def row(self, read: Callable[[R], Array]) -> Array:
         """Return the row (num_modes,) in 1/√kg."""
-        return read(self.reading)
+        return read(self.operator)
 
 
 class Dashpot(NamedTuple, Generic[R]):
@@ -46,14 +45,14 @@ class Dashpot(NamedTuple, Generic[R]):
 
     def row(self, read: Callable[[R], Array]) -> Array:
         """Return the row (num_modes,) in 1/√s."""
-        total = sum(part * read(reading) for part, reading in self.parts)
+        total = sum(part * read(operator) for part, operator in self.parts)
         return np.asarray(np.sqrt(self.coefficient) * total)
 
 
-class ObservedReading(NamedTuple, Generic[R]):
-    """Output as in :class:`dynamics.gap_system.Observer`, with a displacement operator."""
+class OutputOperator(NamedTuple, Generic[R]):
+    """Displacement operator of an output; arguments as in :class:`dynamics.gap_system.Observer`."""
 
-    reading: R
+    operator: R
     unit: str = "m"
     derivative: Literal[0, 1, 2] = 0
 
@@ -96,12 +95,12 @@ class GapBuilder(Generic[R]):
             The indices of the rows.
         """
         first = len(self.contacts)
-        for side, weight, reading in points:
+        for side, weight, operator in points:
             there = law if side == 0 else law.one_sided(side)
             if there is not None:
                 part = there.shared(weight) if side else there
                 part = part.behind(-shim) if shim else part
-                self.contacts.append(LawRow(reading, part, station))
+                self.contacts.append(LawRow(operator, part, station))
         return tuple(range(first, len(self.contacts)))
 
     def add_stop(
@@ -140,7 +139,7 @@ class GapBuilder(Generic[R]):
         if coefficient > 0.0:
             dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, station, []))
             # The weights on each of both sides sum to one.
-            parts = ((0.5 * part if side else part, reading) for side, part, reading in points)
+            parts = ((0.5 * part if side else part, operator) for side, part, operator in points)
             dashpot.parts.extend(parts)
 
     @property
@@ -161,7 +160,7 @@ class GapBuilder(Generic[R]):
     def evaluate_rows(
         self, moving: Sequence[tuple[RowKind, int]], read: Callable[[R], Array]
     ) -> Array:
-        """Return the rows (num_selected, num_modes) with the given kinds and indices."""
+        """Return the rows (num_moving, num_modes) with the kinds and indices in ``moving``."""
         rows = self.rows
         return np.array([rows[kind][position].row(read) for kind, position in moving])
 
@@ -171,7 +170,7 @@ class GapBuilder(Generic[R]):
         omega2: Array,
         load: Array,
         places: Sequence[tuple[float, str]],
-        observed: Mapping[str, ObservedReading[R]],
+        observed: Mapping[str, OutputOperator[R]],
         loads: Sequence[tuple[Array, History | ReleasedLoad | InitialImpulse]],
         lines: Sequence[tuple[str, Array, float, float]] = (),
         damping: Array | None = None,
@@ -198,7 +197,7 @@ class GapBuilder(Generic[R]):
             return sum(pushes, np.zeros(omega2.size))
 
         seen = {
-            name: Observer(read(one.reading), one.unit, one.derivative)
+            name: Observer(read(one.operator), one.unit, one.derivative)
             for name, one in observed.items()
         }
         pressed = {name: Observer(-k * row, "N") for name, row, k, _ in lines if name}

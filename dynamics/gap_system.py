@@ -4,7 +4,7 @@
     ä_i + Σ_k C_ik ȧ_k + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ṡ_l)
     y_j = Σ_i B_ji a_i,    s_l = Σ_i D_li a_i,    C = diag(c) + Gᵀ G
 
-in mass-normalised modal coordinates a of all segments, which only contacts couple. A contact row
+in mass-normalised modal coordinates a of all segments. Only contacts couple them. A contact row
 B_j gives the relative displacement u − w of two segments at one position, a friction row D_l their
 sliding displacement, and a dashpot row G_d the displacement whose rate the dashpot resists.
 If a boom telescopes, its travels change the rows over time. At a fixed extension, the stiffness
@@ -209,7 +209,7 @@ class GapSystem:
         return sum(changing, self.load.copy())
 
     def gather_loads(self) -> GapSystem:
-        """Return the system with all constant loads in ``load``."""
+        """Return the system with all constant loads added to ``load``."""
         changing = [x for x in self.excitations if not is_constant(x.history)]
         held = [
             x.load * x.history(np.zeros(())) for x in self.excitations if is_constant(x.history)

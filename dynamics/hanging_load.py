@@ -252,5 +252,5 @@ class HangingLoad:
         return Trajectory(data, motion.states)
 
     def _coordinates(self, outputs: Container[str]) -> int:
-        """Return the number of coordinates of the load, from the outputs of the boom."""
+        """Return the number of coordinates of the load, by the names of the boom's outputs."""
         return 1 if self.pendulum is None else 2 + ("tip_lateral" in outputs)

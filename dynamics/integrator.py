@@ -230,7 +230,7 @@ class _WindowError:
         return cls(rows, period, rows * np.cos(omega * times)[:, None], rows * sines[:, None])
 
     def __call__(self, fine: Output, coarse: Output, state: State, other: State) -> float:
-        """Return the largest difference in m within the window and after it."""
+        """Return the largest difference in m within the window, and in free motion after it."""
         within = np.abs(self._read(fine.states - coarse.states))
         places = (self.places * (state.a - other.a)).sum(axis=2)
         after = np.abs(places + (self.speeds * (state.v - other.v)).sum(axis=2))

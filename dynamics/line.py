@@ -30,7 +30,7 @@ Quantity = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Rows that read quantities along one segment.
+    """Rows of quantities along one segment.
 
     Args:
         x: positions (num_places,) in m, ascending; a position with a possible jump occurs twice.
@@ -44,7 +44,7 @@ class Line:
 
     @property
     def deflections(self) -> Iterator[tuple[Literal["y", "z"], tuple[Array, Array]]]:
-        """Directions with ascending x (num_places,) in m and rows (num_places, num_modes)."""
+        """Each direction, with ascending x (num_places,) in m and rows (num_places, num_modes)."""
         x, index = np.unique(self.x, return_index=True)
         names: dict[Quantity, Literal["y", "z"]] = {"deflection": "z", "lateral": "y"}
         for name, direction in names.items():

@@ -47,7 +47,7 @@ def independent_columns(block: Array) -> Array:
 
 
 def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem:
-    """Return the system with further coordinates that only contacts, friction and dashpots excite.
+    """Return the system with more coordinates, excited by contacts, friction and dashpots only.
 
     Args:
         system: gap system without travels.

@@ -65,7 +65,7 @@ class Integration:
 
     @classmethod
     def begin(cls, motion: Motion) -> Integration:
-        """Return the integration at t = 0, with all constant loads in ``load``."""
+        """Return the integration at t = 0, with all constant loads added to ``load``."""
         motion = replace(motion, system=motion.system.gather_loads())
         system, laws = motion.system, motion.system.laws
         n, m, f = system.num_modes, len(laws), len(system.frictions)
@@ -149,7 +149,7 @@ class Integration:
         return output
 
     def part(self, first: int, last: int) -> Output:
-        """Return a view of the output after index ``first`` up to ``last``."""
+        """Return a view of the outputs from index ``first`` + 1 to ``last``."""
         return Output(*(array[1 + first : 1 + last] for array in self.output))
 
     def trajectory(
@@ -229,8 +229,8 @@ def step_schedule(system: GapSystem, times: Array) -> Schedule:
 def line_within(history: History, times: Array) -> tuple[Array, Array]:
     """Return mean and change (num_steps,) of the straight line that replaces a history in steps.
 
-    The line has the integral and the first moment of the history. So steps need not end at kinks:
-    the error of the response of a mode is at most (ωh)⁴/720 of the effect of a kink.
+    The line has the same integral and first moment as the history. So steps need not end at kinks:
+    the error of a mode's response is at most (ωh)⁴/720 of the effect of a kink.
 
     Args:
         history: history of a load.

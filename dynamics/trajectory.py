@@ -199,7 +199,7 @@ class Trajectory:
     def from_states(
         cls, system: GapSystem, time: Array, states: Array, velocities: Array
     ) -> Trajectory:
-        """Return the trajectory from the states of a user-defined integrator, without losses.
+        """Return the trajectory with the states of a user-defined integrator, without losses.
 
         Forces are instantaneous at output times; the first contact is accurate to an output step.
 
@@ -272,7 +272,7 @@ class Trajectory:
     def compare(
         self, other: Trajectory, name: str = "tip", until: float = np.inf
     ) -> PointwiseDifferences:
-        """Return the pointwise difference from another motion.
+        """Return the pointwise differences from another motion.
 
         >>> fine, coarse = (pt.BeamElements(boom, element_length=l) for l in (0.5, 1.0))
         >>> print(f"{100.0 * fine.simulate(0.1).compare(coarse.simulate(0.1)).largest:.1f} %")

@@ -118,7 +118,7 @@ class MovingForce:
 
 
 def joint_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
-    """Return the axial force in N that a joint carries; 0 if its inner segment has another lock."""
+    """Return the axial force in N that a joint carries; 0 if another joint has the lock."""
     inner = joints[number].inner
     is_lock = _lock(joints, inner) is joints[number]
     return segments[inner].compression.transferred if is_lock else 0.0
@@ -173,7 +173,7 @@ def moving_force(
 def moving_force_places(
     segments: Sequence[Segment], joints: Sequence[Joint], segment: int
 ) -> set[float]:
-    """Return the x in m on a segment at both ends of the paths of moving axial forces."""
+    """Return the x in m on a segment of the first and last points of each moving axial force."""
     return {
         moving.x + moving.direction * extension
         for number, joint in enumerate(joints)
@@ -232,7 +232,7 @@ class AxialChange:
 
 
 def largest_change(changes: Sequence[AxialChange]) -> Array:
-    """Return the factor (num_changes,) of each history when it compresses the foot most."""
+    """Return the factors (num_changes,) of the histories at the largest compression of the foot."""
     times = np.unique(np.concatenate([np.zeros(1), *(change.times for change in changes)]))
     factors = np.array([change.history(times) for change in changes])
     pressed = [one.compressions[0].transferred if one.compressions else 0.0 for one in changes]
@@ -240,7 +240,7 @@ def largest_change(changes: Sequence[AxialChange]) -> Array:
 
 
 def _at_gauss_points(function: Any, places: set[float]) -> tuple[Array, Array]:
-    """Return values (num_points, num_modes), and x in m and weights in m (2, num_points)."""
+    """Return values (num_points, num_modes) at Gauss points, with x and weights (2, ...) in m."""
     ends = np.array(sorted(places))
     half = 0.5 * np.diff(ends)[:, None]
     x = ends[:-1, None] + half * (1.0 + _GAUSS[0])
@@ -287,7 +287,7 @@ def axial_force(
 
 
 def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
-    """Return (x in m, weight in N) of the point weights of a segment."""
+    """Return (x in m, weight in N) of each point mass of a segment."""
     weights = [(point.x, point.mass * gravity) for point in segment.masses]
     if segment.section is not None:
         plate = segment.material.density * gravity
@@ -299,7 +299,7 @@ def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
 
 
 def _distributed_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
-    """Return (start in m, end in m, weight in N/m) of the distributed weights of a segment."""
+    """Return (start in m, end in m, weight in N/m) of each distributed mass of a segment."""
     weights = list(_plain_weights(segment, gravity))
     if segment.section is not None:
         doubler = segment.material.density * gravity
@@ -311,7 +311,7 @@ def _distributed_weights(segment: Segment, gravity: float) -> list[tuple[float, 
 
 
 def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, float, float]]:
-    """Yield the weight without stiffeners, in uniform steps for a tapered segment."""
+    """Yield the weight without stiffeners; a tapered segment is divided into uniform steps."""
     if segment.head_section is None:
         yield segment.start, segment.end, segment.mass_per_length * gravity
         return
@@ -323,7 +323,7 @@ def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, fl
 def _lock(joints: Sequence[Joint], number: int) -> Joint | None:
     """Return the joint that carries a segment's axial force.
 
-    It is the joint with ``locked_at``; without this key, the last joint of the segment."""
+    It is the joint with ``locked_at``; if no joint has this key, it is the last of the segment."""
     around = [joint for joint in joints if joint.inner == number]
     return max(around, key=lambda joint: (joint.locked_at is not None, joint.outer), default=None)
 

@@ -162,7 +162,7 @@ class Boom:
         ]
 
     def moving_intervals(self, segment: int) -> tuple[float, ...]:
-        """Return ascending x in m of the ends of paths of stations and axial forces."""
+        """Return the ascending x in m between which stations and axial forces move on a segment."""
         places = {
             place[joint.inner == segment]
             for joint in self.joints
@@ -201,11 +201,10 @@ class Boom:
 
     @property
     def observed(self) -> dict[str, tuple[int, float]]:
-        """The (segment, x in m) of the points whose deflection all models report, by name.
+        """The (segment, x in m) of the points with a deflection in all results, by name.
 
-        ``tip`` is the end of the last segment. Of each joint, ``head`` is the end of the outer
-        segment and ``tail`` the start of the inner one; a suffix such as ``-2`` numbers further
-        joints.
+        ``tip`` is the end of the last segment, ``head`` the end of a joint's outer segment,
+        ``tail`` the start of its inner segment. A suffix such as ``-2`` numbers further joints.
         """
         places = {"tip": (len(self.segments) - 1, self.tip)}
         for number, joint in enumerate(self.joints, start=1):
@@ -215,9 +214,9 @@ class Boom:
         return places
 
     def all_observations(self, of_ends: Sequence[Quantity]) -> list[Observation]:
-        """Return the observations of segment ends, then the boom's other observations.
+        """Return the observations of segment ends, then those of the case.
 
-        Names of the former are, for example, ``tip`` for a deflection and ``tip_rotation``.
+        Examples of names at ends: ``tip`` for a deflection, ``tip_rotation`` for a rotation.
         """
         return [*self.end_observations(of_ends), *self.observations]
 
@@ -230,7 +229,7 @@ class Boom:
 
 
 def resolve_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
-    """Return a part whose segments are indices, not names, and whose positions are x in m.
+    """Replace the names of segments in a part by indices, and its distances from ends by x in m.
 
     Args:
         part: joint, load, stop, observation or cylinder.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Types of the fields of a boom's parts: numbers with limits and units, names, positions along x.
 
-Parts are pydantic dataclasses for Python and for case files, where field names are keys. The
-attribute docstring of a field is its description in the JSON Schema and in messages.
+Parts are pydantic dataclasses for Python and for case files. Field names are the keys in case
+files. The attribute docstring of a field is its description in the JSON Schema and in messages.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ End = Literal["tail", "head"]
 
 
 def _place(value: Any) -> Any:
-    """Validate a number or a distance. A union type would have unreadable messages."""
+    """Validate a number or a distance. Errors of a union type would be unreadable."""
     if isinstance(value, Distance):
         return value
     if is_number(value):
@@ -169,7 +169,7 @@ def at(place: float | Distance, tail: float, head: float) -> float:
 
 
 def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
-    """Return a part whose distances from the ends ``tail`` and ``head`` are replaced by x in m."""
+    """Replace distances from the ends ``tail`` and ``head`` in a part by x in m."""
     # Hints cannot restrict a type variable to dataclasses, which all parts are.
     resolved: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type] # see above

@@ -68,7 +68,7 @@ def graded_mesh(
 def _along(
     breaks: Mapping[str, float], size: float, zones: Sequence[RefinementZone]
 ) -> dict[float, float]:
-    """Return the lengths in m of rectangles, by the x in m from which they apply."""
+    """Return the lengths of rectangles in m; a key is the x in m from which its length applies."""
     start, end = min(breaks.values()), max(breaks.values())
     fine, middle, coarse = (part * size for part in _ALONG)
     ends = {x for zone in zones for length in (middle, coarse) for x in zone.reach(length)}

@@ -80,7 +80,7 @@ class PadSize:
         return None if self.thickness is None else self.modulus * self.area / self.thickness
 
     def span(self, x: float, overlap: tuple[float, float]) -> tuple[float, float]:
-        """Return the x in m of both ends: centred at x, as far as the pad fits in the overlap."""
+        """Return the x in m of both ends: centred at x, but shifted to fit in the overlap."""
         first, last = overlap
         start = min(max(x - 0.5 * self.length, first), last - self.length)
         return start, start + self.length
@@ -156,7 +156,7 @@ class Drive:
 
 
 def sample_times(history: Any) -> Array:
-    """Return times (num_times,) in s from t = 0 on that sample a history, with its kinks."""
+    """Return sampling times (num_times,) of a history in s from t = 0 on, with its kinks."""
     kinks = np.array([0.0, *history.kinks])
     times = np.union1d(kinks, np.linspace(kinks.min(), kinks.max(), _TIMES))
     return np.asarray(times[times >= 0.0])
@@ -236,9 +236,9 @@ class Joint(BareJoint):
     drive: SkipValidation[Drive | None] = field(default=None, kw_only=True)
 
     def clearances(self, direction: Direction) -> tuple[float, float]:
-        """Return the clearances in m above and below, along y right and left.
+        """Return the clearances in m: above and below along z, right and left along y.
 
-        They are negative with interference.
+        An interference is negative.
         """
         if direction == "z":
             play, first, pressed = self.play, self.play_above, self.interference
@@ -270,7 +270,7 @@ class Joint(BareJoint):
     def pads_of(
         self, direction: Direction, side: Side
     ) -> list[tuple[PadSize | None, float, float]]:
-        """Return (size, share of the side's force, shim in m) of each pad on a side; 0: on both."""
+        """Return (size, fraction of the side's force, shim in m) of each pad on a side; 0: both."""
         if not self.pads:
             return [(self.pad, 1.0, 0.0)]
         here = [pad for pad in self.pads if pad.touches(direction, side)]

@@ -149,7 +149,7 @@ def mesh_segment(
 
 
 def collar_breaks(segment: Segment) -> dict[str, float]:
-    """Return the x in m of the ends of a segment's collars, by name."""
+    """Return the x in m of both ends of each collar of a segment, by name."""
     breaks: dict[str, float] = {}
     for k, collar in enumerate(segment.collars, start=1):
         breaks |= dict(zip((f"collar-{k}-start", f"collar-{k}-end"), collar.span, strict=True))
@@ -162,7 +162,7 @@ def diaphragm_breaks(segment: Segment) -> dict[str, float]:
 
 
 def strip_lines(segment: Segment) -> dict[int, list[float]]:
-    """Return the distances in m of the edges of collars from the middle of each plate."""
+    """Return the distances in m of the edges of collars from the midpoint of each plate."""
     assert segment.section is not None
     lines: dict[int, list[float]] = {}
     for strip in (one for collar in segment.collars for one in collar.strips(segment.widest)):
@@ -175,7 +175,7 @@ def strip_lines(segment: Segment) -> dict[int, list[float]]:
 def _half_plates(
     plates: Sequence[Plate], across: Mapping[int, Sequence[float]]
 ) -> list[list[Offset]]:
-    """Return the starts (y, z) in m of the patches of each half plate, two halves per plate."""
+    """Return the start (y, z) in m of each patch of each half plate; a plate has two halves."""
     halves = []
     for number, plate in enumerate(plates):
         cuts = sorted(across.get(number, ()))
@@ -222,7 +222,7 @@ def _restore_signal_handlers() -> None:
 
 
 class _Ring(NamedTuple):
-    """Points of gmsh around a section, and the curves of each half plate from point i on.
+    """Points of gmsh around a section, and the curves of the half plate that begins at each point.
 
     Points of even index are corners, points of odd index are centres of plates.
     """

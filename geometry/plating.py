@@ -101,9 +101,9 @@ _ROUND_OFF = 1.0e-12
 
 
 def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
-    """Return a mesh with each point moved into the section at its x.
+    """Return a tapered mesh: each point moves to the wall of the section at its x.
 
-    Triangles from the centre of a section to each plate divide it. A point keeps its relative
+    Triangles between the centre and each plate divide a section. A point keeps its relative
     position in its triangle. Walls are flat between mesh lines.
 
     Args:
@@ -126,12 +126,12 @@ def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
 
 
 def _fan(section: Section) -> tuple[Array, Array]:
-    """Return the starts (num_plates, 2) of plates, and the centre (2,), in m."""
+    """Return the starts (num_plates, 2) of the plates and the centre (2,) of a section in m."""
     return np.array([plate.start for plate in section.plates]), np.mean(section.bounds, axis=0)
 
 
 def _in_fan(section: Section, places: Array) -> tuple[Indices, Array, Array]:
-    """Return the triangle (num_places,) of each place, and its relative coordinates along sides."""
+    """Return the triangle (num_places,) of each place, and coordinates along two of its sides."""
     starts, middle = _fan(section)
     arms = np.stack([starts, np.roll(starts, -1, axis=0)], axis=2) - middle[:, None]
     parts = np.einsum("kij,nj->nki", np.linalg.inv(arms), places - middle)

@@ -113,7 +113,7 @@ class PolygonSection(Section):
 
     @cached_property
     def faces(self) -> tuple[Face, ...]:
-        """The faces: the outermost plate of a direction and side, if only one is normal to it."""
+        """The outermost plate of each direction and side, if exactly one plate is normal to it."""
         ends = np.array([(plate.start, plate.end) for plate in self.plates])
         faces = []
         for direction, side in _OUTWARDS:
@@ -178,7 +178,7 @@ _OUTWARDS: Sequence[tuple[Direction, Side]] = (("z", -1), ("y", 1), ("z", 1), ("
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:
     """Return the section of a polygon. An upright rectangle becomes a :class:`BoxSection`.
 
-    So a box has the same shear area in both specifications: only its webs carry shear.
+    So a box has the same shear area, of its webs only, in both specifications.
 
     >>> corners = ((-0.15, -0.2), (0.15, -0.2), (0.15, 0.2), (-0.15, 0.2))
     >>> print(pt.closed_polygon(corners, thicknesses=(0.01, 0.006, 0.008, 0.006)))
@@ -245,7 +245,7 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
 
 
 def _plates(corners: Array, thicknesses: Array) -> tuple[Plate, ...]:
-    """Return the plates, whose names give their side and number from the bottom upwards."""
+    """Return the plates; their names have the side and a number from the bottom upwards."""
     names = _names(corners)
     ends: list[Offset] = [(y, z) for y, z in corners.tolist()]
     return tuple(
@@ -287,7 +287,7 @@ def _mirror(places: Array, axis: Direction) -> Array:
 
 
 def _partners(places: Array, images: Array) -> Indices:
-    """Return the index (num_places,) of the image nearest to each place."""
+    """Return the index (num_places,) of the mirror image nearest to each place."""
     apart = np.linalg.norm(places[:, None] - images, axis=2)
     return np.asarray(apart.argmin(axis=1))
 

@@ -68,7 +68,7 @@ def octagon(
 def u_section(
     height: float, width: float, radius: float, facets: int, top: float, bottom: float, web: float
 ) -> PolygonSection:
-    """Return a U-section under a flat top; plates tangent to the bend's circle form each bend.
+    """Return a U-section with a flat top; each bend consists of plates tangent to its circle.
 
     >>> print(pt.u_section(0.5, 0.4, radius=0.15, facets=3, top=0.008, bottom=0.006, web=0.006))
     500 x 400 x 6 / 8, 10 plates
@@ -105,7 +105,7 @@ def u_section(
 def _mirror_right_half(
     twice: Sequence[tuple[float, float]] | Array, thicknesses: Sequence[float]
 ) -> PolygonSection:
-    """Return the mirror-symmetric section of a right half.
+    """Return the mirror-symmetric section with this right half.
 
     Args:
         twice: doubled (y, z) in m of the right half's corners (num_corners, 2), upwards.

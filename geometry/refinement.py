@@ -51,14 +51,14 @@ class RefinementZone:
         return np.asarray(self.size + self.growth * np.sqrt((outside**2).sum(axis=1)))
 
     def reach(self, size: float) -> tuple[float, float]:
-        """Return the x in m between which the permitted edge length is below ``size`` in m."""
+        """Return the range of x in m with a permitted edge length below ``size`` in m."""
         distance = max((size - self.size) / self.growth, 0.0)
         return self.low[0] - distance, self.high[0] + distance
 
     def num_squares(self, size: float) -> float:
-        """Return the number of square elements where the permitted edge length is below ``size``.
+        """Return the number of square elements with a permitted edge length below ``size`` in m.
 
-        It is estimated for an infinite flat wall: in the zone, along its sides, at its corners.
+        It is estimated for an infinite flat wall, in and around the zone.
         """
         if self.size >= size:
             return 0.0
@@ -135,7 +135,7 @@ def _zones(
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
-    """Yield the x in m of forces in the plane of walls, and of stiffeners."""
+    """Yield the x in m of stiffeners, and of forces in the planes of walls."""
     segment = boom.segments[number]
     yield from (support.x for support in segment.supports)
     yield from (mass.x for mass in segment.masses)
@@ -170,7 +170,7 @@ def _corner(stretch: ContactInterval, face: Face) -> _Zone:
 
 
 def _envelope(places: Iterable[_Zone]) -> _Zone:
-    """Return the zone that encloses zones that differ only in x."""
+    """Return the common zone of zones with different x only."""
     lows, highs, sizes, growths = zip(*places, strict=True)
     return min(lows), max(highs), sizes[0], growths[0]
 

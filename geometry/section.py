@@ -36,7 +36,7 @@ _REAL = 1.0e-8
 
 
 class SectionError(ValueError):
-    """Error for data that no section can have."""
+    """Error for impossible data of a section."""
 
 
 class Plate(NamedTuple):
@@ -382,7 +382,7 @@ class BoxSection(Section):
         return tuple(axis for axis, same in alike.items() if same)
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Return (index, force) of the webs for z, of the flanges for y, by moment equilibrium."""
+        """Return (index, force) of webs for z, or of flanges for y, by moment equilibrium."""
         y, z = self.centroid
         if direction == "z":
             return (1, 0.5 + y / self.width), (3, y / self.width - 0.5)

@@ -139,7 +139,7 @@ class Segment:
         section: Section,
         **others: Any,
     ) -> Segment:
-        """Return a segment whose beam properties follow from its section, also in space.
+        """Return a segment with the beam properties of its section, including the lateral ones.
 
         >>> import protractile as pt
         >>> steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
@@ -195,7 +195,7 @@ class Segment:
 
     @property
     def mass_centre(self) -> float:
-        """The x in m of the centre of the mass per length."""
+        """The x in m of the centre of the distributed mass."""
         if self.section is None or self.head_section is None:
             return 0.5 * (self.start + self.end)
         _, middle, head = areas(self.section, self.head_section)
@@ -247,7 +247,7 @@ class Segment:
         return self.mass_per_length * self.length + sum(point.mass for point in self.all_masses)
 
     def mean_width(self, collar: Collar) -> float:
-        """Return the width in m around the section at the middle of a collar."""
+        """Return the width in m of a collar around the section at its midpoint."""
         return collar.width(self.section_at(collar.middle))
 
     @property
@@ -267,7 +267,7 @@ class Segment:
         return Segment.of_section(self.name, self.start, self.end, self.material, section)
 
     def property_ratio(self, number: Callable[[Segment], float], x: Array) -> Array:
-        """Return a property (num_places,) at x in m, relative to its value for the segment."""
+        """Return the ratio (num_places,) of a property at x in m to its value for the segment."""
         if self.head_section is None:
             return np.ones(x.shape)
         return np.array([number(self.prismatic_at(place)) for place in x.tolist()]) / number(self)

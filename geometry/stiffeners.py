@@ -14,7 +14,7 @@ from geometry.section import COMPONENT, Direction, Section
 
 
 class Strip(NamedTuple):
-    """Part of a wall between two distances from its middle, on both sides of the middle.
+    """Part of a wall between two distances from its midpoint, on both sides of it.
 
     Args:
         wall: index in the plates of the section.
@@ -67,7 +67,7 @@ class Collar:
         ]
 
     def width(self, section: Section) -> float:
-        """Return the total width in m of its strips around a section."""
+        """Return the total width of the collar's strips around a section in m."""
         return sum(2.0 * (strip.high - strip.low) for strip in self.strips(section))
 
     def is_symmetric(self, section: Section, axis: Direction) -> bool:

@@ -3,8 +3,8 @@
 
 Rigid motions of a segment are translation along z and rotation in the plane x-z; in 3-D also
 translation along y, rotation in the plane x-y, and rotation about the axis. Each restraint is a row
-over the rigid motions of all segments. The boom is supported if only zero motion satisfies rows ·
-motion = 0. If a one-sided stop is necessary, the loads at t = 0 must press the segment against it.
+over the rigid motions of all segments. The boom is supported if rows · motion = 0 has only the
+solution zero. If a one-sided stop is necessary, the loads at t = 0 must press the segment on it.
 """
 
 from __future__ import annotations
@@ -106,7 +106,7 @@ class _RigidBody(Member):
 
     @property
     def key(self) -> str:
-        """The attribute of the boom with this segment, for messages."""
+        """The name of the segment in messages, as an attribute of the boom."""
         return f"segments[{self.number}]"
 
     @property
@@ -231,5 +231,5 @@ def _free_motions(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
 
 
 def _segments_in_motion(bodies: list[_RigidBody], free: Array) -> Iterator[_RigidBody]:
-    """Yield the segments that take part in free motions."""
+    """Yield the segments that move in free motions."""
     return (body for body in bodies if np.abs(free[body.motions]).max(initial=0.0) > _ROUND_OFF)

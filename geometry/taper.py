@@ -65,7 +65,7 @@ def middle_section(section: Section, head: Section | None) -> Section:
 
 
 def areas(tail: Section, head: Section) -> tuple[float, float, float]:
-    """Return the areas in m² at tail, middle and head, which define a parabola along x."""
+    """Return the areas in m² at tail, midpoint and head; they define a parabola along x."""
     return tail.area, middle_section(tail, head).area, head.area
 
 

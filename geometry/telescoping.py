@@ -43,13 +43,13 @@ class TelescopingStations:
 
     @property
     def suffix(self) -> str | None:
-        """The suffix of result names; None for a stop that several joints move."""
+        """The suffix of result names; None for a stop on a segment that several joints move."""
         if len(self.joints) > 1:
             return None
         return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
 
     def extensions(self, extension: float) -> dict[int, float]:
-        """Return extensions in m by index of the joint whose sum is ``extension`` in m."""
+        """Return the extensions in m, by index of the joint, that add up to ``extension`` in m."""
         return {self.joints[0]: extension}
 
 
@@ -107,14 +107,14 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
 
 
 def farthest_travel(boom: Boom, segment: int) -> float:
-    """Return the largest outward travel of a segment in m; inward for drives that only retract."""
+    """Return the largest outward travel of a segment in m; inward if drives only retract."""
     drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
     reaches = [drive.reach for drive in drives if drive is not None]
     return sum(high or low for low, high in reaches)
 
 
 def sample_extensions(boom: Boom) -> list[dict[int, float]]:
-    """Return extensions in m by index of the joint, at extremes and at times between them."""
+    """Return extensions in m by index of the joint, at the extremes and at times between them."""
     drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
     times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))
     extensions = np.array([drive.history(times) for drive in drives.values()]).reshape(
@@ -210,7 +210,7 @@ def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None
 
 
 def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
-    """Check that the lock stays on both segments, or is a foot below the inner one."""
+    """Check that the lock stays on both segments, or is at the foot below the inner segment."""
     drive, x = joint.drive, joint.locked_at
     assert drive is not None
     if x is None:

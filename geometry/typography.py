@@ -38,7 +38,7 @@ MOST_CHOICES = 12
 
 
 def choices(names: Sequence[str]) -> str:
-    """Return names as "'a', 'b' or 'c'"; if there are many, the first of them."""
+    """Return names as "'a', 'b' or 'c'"; of many names only the first ones."""
     if len(names) > MOST_CHOICES:
         return f"{', '.join(repr(name) for name in names[:MOST_CHOICES])} or another of its kind"
     quoted = [repr(name) for name in names]

@@ -49,7 +49,7 @@ def trapezoids(plates: Sequence[Plate]) -> Array:
 
 
 def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
-    """Return the total clearances in m along z and y of a section within another one.
+    """Return the total clearances of a section within another one in m, along z and along y.
 
     Both sections must be convex. If a clearance is negative, the inner section does not fit.
 

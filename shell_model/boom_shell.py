@@ -11,7 +11,7 @@ from functools import cached_property, partial
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.gap_builder import GapBuilder, ObservedReading
+from dynamics.gap_builder import GapBuilder, OutputOperator
 from geometry.arrays import Array
 from geometry.axial import pin_moments
 from geometry.boom import Boom, BoomError, Direction
@@ -27,7 +27,7 @@ from shell_model.contact.rows import ShellContacts, ties
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.cross_section import Reading, Row, SectionNodes
+from shell_model.segment.cross_section import Operator, Row, SectionNodes
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.stages import Stages
 
@@ -94,11 +94,11 @@ class BoomShell:
     shells: Sequence[SegmentShell]
     stations: Sequence[tuple[float, Direction]]
     touching: ShellContacts
-    rows: GapBuilder[Reading]
-    ties: Sequence[Reading]
+    rows: GapBuilder[Operator]
+    ties: Sequence[Operator]
     own_loads: Sequence[Array]
     loads: Sequence[tuple[Load, Array]]
-    observed: Mapping[str, ObservedReading[Reading]]
+    observed: Mapping[str, OutputOperator[Operator]]
     lines: Sequence[GroundLine] = ()
     pin_moments: Sequence[tuple[int, Array]] = ()
     helper: Executor | None = None
@@ -118,10 +118,10 @@ class BoomShell:
         return sum(shell.num_dofs for shell in self.shells)
 
     @property
-    def joint_readings(self) -> list[Reading]:
+    def joint_operators(self) -> list[Operator]:
         """The displacement operators of contacts, then of friction."""
-        contacts = [contact.reading for contact in self.rows.contacts]
-        return contacts + [friction.reading for friction in self.rows.frictions]
+        contacts = [contact.operator for contact in self.rows.contacts]
+        return contacts + [friction.operator for friction in self.rows.frictions]
 
     def forces(self, number: int) -> Array:
         """Return all load vectors (num_owned, num_forces) on a segment, contacts first."""
@@ -139,12 +139,12 @@ class BoomShell:
 
     def joint_rows(self, number: int) -> Array:
         """Return the rows (num_owned, num_rows) of contacts, friction and bonded joints."""
-        return self.columns(number, [*self.joint_readings, *self.ties])
+        return self.columns(number, [*self.joint_operators, *self.ties])
 
-    def columns(self, number: int, readings: Iterable[Reading]) -> Array:
+    def columns(self, number: int, operators: Iterable[Operator]) -> Array:
         """Return a segment's operators as columns (num_owned, num_rows). Collective."""
         shell = self.shells[number]
-        rows = [shell.row(reading[number]) for reading in readings if number in reading]
+        rows = [shell.row(operator[number]) for operator in operators if number in operator]
         return np.array(rows).reshape(-1, shell.free.size).T
 
 
@@ -228,7 +228,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     return built if segment.head_section is None else tapered_mesh(segment, built)
 
 
-def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, ObservedReading[Reading]]:
+def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, OutputOperator[Operator]]:
     """Return the outputs of segment ends and observations. Collective."""
     ends: tuple[Quantity, ...] = ("deflection", "rotation", "distortion")
     if boom.spatial:
@@ -241,8 +241,8 @@ def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, ObservedR
             outlines[at] = shells[place.segment].outline(place.x)
         kind = place.kind
         row = _READ[kind.read](outlines[at])
-        observed[place.name] = ObservedReading(
-            Reading({place.segment: row}), kind.unit, kind.derivative
+        observed[place.name] = OutputOperator(
+            Operator({place.segment: row}), kind.unit, kind.derivative
         )
     return observed
 

@@ -278,7 +278,7 @@ def _modes_on(
         for segment, mesh in zip(boom.segments, meshes, strict=True)
     ]
     touching = ShellContacts.from_shells(boom, shells, options.contact_line, options.surface)
-    contacts = [contact.reading for contact in touching.rows(state.extensions).contacts]
+    contacts = [contact.operator for contact in touching.rows(state.extensions).contacts]
     joined = [
         *zip(contacts, state.contact_stiffness.tolist(), strict=True),
         *((tie, None) for tie in ties(boom, shells)),

@@ -137,7 +137,7 @@ def reduce_boom(
         fields=fields,
         errors={
             "contact_compliance": _largest(lost / local),
-            "readings": max(segment.reading_error for segment in segments),
+            "readings": max(segment.output_error for segment in segments),
             "frequency_limit_in_hz": min(segment.frequency_limit for segment in segments),
         },
         local_compliance=local,
@@ -169,10 +169,10 @@ def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> 
     """
     apart = BoomCoordinates(full.comm, full.shells, segments, ())
     contacts = full.rows.contacts
-    rows = np.array([apart.row(contact.reading) for contact in contacts])
+    rows = np.array([apart.row(contact.operator) for contact in contacts])
     lost = np.zeros(len(contacts))
     for number, segment in enumerate(segments):
-        touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
+        touching = [i for i, contact in enumerate(contacts) if number in contact.operator]
         lost[touching] += segment.lost_compliance[: len(touching)]
     return compliance(apart.omega2, rows.reshape(-1, apart.omega2.size)), lost
 
@@ -185,7 +185,7 @@ def _reduce_segment(
     at_surface = options.contact_line == "surface"
     if at_surface:
         krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
-    observed = full.columns(number, [seen.reading for seen in full.observed.values()])
+    observed = full.columns(number, [seen.operator for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as progress:
         forces = np.hstack([full.forces(number), *extra_forces])
         segment = reduce_segment(

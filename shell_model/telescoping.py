@@ -31,7 +31,7 @@ from shell_model.boom_shell import BoomShell
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
 from shell_model.reduction.pad_springs import SLOW, PadResponses, pad_responses, springs, squared
 from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment.cross_section import Reading
+from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.stress.stresses import lines_around
 
@@ -61,7 +61,7 @@ class _SampledRows:
     group: TelescopingStations | None
     moving: Sequence[tuple[RowKind, int]]
     extensions: Array
-    touching: Sequence[GapBuilder[Reading]]
+    touching: Sequence[GapBuilder[Operator]]
 
     @property
     def start(self) -> int:
@@ -77,8 +77,8 @@ class _SampledRows:
         """Return columns (num_owned, num_extensions · num_moving) at every n-th extension."""
         nothing = np.zeros(shell.free.size)
 
-        def read(reading: Reading) -> Array:
-            return shell.row(reading[number]) if number in reading else nothing
+        def read(operator: Operator) -> Array:
+            return shell.row(operator[number]) if number in operator else nothing
 
         rows = [one.evaluate_rows(self.moving, read) for one in self.touching[::step]]
         return np.asarray(np.concatenate(rows).T)
@@ -231,7 +231,7 @@ class TelescopingShell:
             for sampled, part in zip(self._sampled, np.split(columns, bounds, axis=1), strict=True)
         ]
         moving, staying = (np.concatenate(which) for which in zip(*masks, strict=True))
-        seen = [one.reading for one in self._full.observed.values()]
+        seen = [one.operator for one in self._full.observed.values()]
         rows, observed = project(columns), project(self._full.columns(number, seen))
         parts = rows[moving] ** 2 / (segment.omega2 + squared(SLOW))
         below = segment.omega2 < squared(_CUTOFF)
@@ -251,7 +251,7 @@ class TelescopingShell:
             omega2=omega2,
             shapes=segment.shapes @ shapes,
             geometric=shapes.T @ segment.geometric @ shapes,
-            reading_error=max(segment.reading_error, error),
+            output_error=max(segment.output_error, error),
         )
 
     def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
@@ -316,8 +316,8 @@ def _moving_axial_forces(
     rows = []
     for extension in extensions.tolist():
         outline = shell.outline(axial.x + axial.direction * extension)
-        readings = [Reading({axial.segment: outline.mean_deflection(d)}) for d in boom.directions]
-        rows.append([coordinates.row(reading) for reading in readings])
+        operators = [Operator({axial.segment: outline.mean_deflection(d)}) for d in boom.directions]
+        rows.append([coordinates.row(operator) for operator in operators])
     beside = np.zeros((len(rows), len(boom.directions), behind))
     table = RowTable.spline(extensions, np.concatenate([np.array(rows), beside], axis=2))
     return [MovingAxialForce(axial.force, table)]

@@ -53,7 +53,7 @@ class Probe(NamedTuple):
 
     what: str  #: its name
     family: SymmetryClass  #: symmetry class of the motions
-    places: Mapping[float, float]  #: weights of the readings by x in m
+    places: Mapping[float, float]  #: weights of the displacements by x in m
     read: Callable[[SectionNodes], Row]  #: of the section
 
     def row(self, outline: Callable[[float], SectionNodes]) -> Row:

@@ -77,9 +77,9 @@ class RowTable:
 
     @classmethod
     def interpolate(cls, rows: Callable[[float], Array], breaks: Sequence[float]) -> RowTable:
-        """Return the table of rows (num_rows, num_modes) that are smooth between breaks in m.
+        """Return the table of a function of s that is smooth between breaks in m.
 
-        ``rows`` returns the rows at an extension in m.
+        ``rows`` returns the rows (num_rows, num_modes) at an extension s in m.
         """
         # Rows are cached, since pieces share ends, and halves share points with the whole piece.
         rows = cache(rows)
@@ -120,7 +120,7 @@ class RowTable:
         return _combined(part ** np.arange(4), self.coefficients[piece])
 
     def locate(self, s: float) -> tuple[int, float, float]:
-        """Return the piece at s in m, the relative position in it, and its length in m."""
+        """Return index and length in m of the piece at s in m, and the relative position in it."""
         last = len(self.knots) - 2
         piece = min(max(int(np.searchsorted(self.knots, s, side="right")) - 1, 0), last)
         length = float(self.knots[piece + 1] - self.knots[piece])
@@ -129,14 +129,14 @@ class RowTable:
 
 @dataclass(frozen=True)
 class MovingAxialForce:
-    """Axial force that moves along a segment with a travel and reduces its bending stiffness.
+    """Axial force that moves along a segment as it telescopes, and reduces its bending stiffness.
 
     >>> table = RowTable.interpolate(lambda s: np.array([[3.0 * s]]), [0.0, 1.0])
     >>> MovingAxialForce(2.0, table).geometric_stiffness(0.5)
     array([[9.]])
 
     Args:
-        force: N in N, positive if the length between 0 and a positive s is in compression.
+        force: N in N, positive if it compresses the length between 0 and a positive s.
         table: rows (num_planes, num_modes) of the deflections at the force, over s in m.
     """
 
@@ -165,7 +165,7 @@ class MovingAxialForce:
         return np.asarray(factors * self.table.coefficients[:, 1:] / lengths)
 
     def slope_products(self, plane: int) -> Array:
-        """Return ∫ w′ᵀ w′ ds (num_pieces, num_modes, num_modes) from 0 to the start of pieces."""
+        """Return ∫ w′ᵀ w′ ds (num_pieces, num_modes, num_modes) from 0 to each piece."""
         slopes, lengths = self.slopes[:, :, plane], np.diff(self.table.knots)
         within = np.einsum("p,ij,pik,pjl->pkl", lengths, 1 / _POWERS, slopes, slopes, optimize=True)
         upto = np.concatenate([np.zeros_like(within[:1]), within.cumsum(axis=0)])
@@ -202,8 +202,7 @@ class ChangingAxialForce:
     def of(cls, geometric: Array, stiffness: Array, peak: float) -> ChangingAxialForce:
         """Return the force whose geometric stiffness is K_G (num_modes, num_modes) at s = 1.
 
-        Directions in which its relative change of the stiffness at s = ``peak`` is below 1e-5 are
-        left out.
+        Directions with a relative change of the stiffness below 1e-5 at s = ``peak`` are left out.
 
         Args:
             geometric: K_G in 1/s².

@@ -83,7 +83,7 @@ class StickSlip:
     """Results of an elastic drive.
 
     Args:
-        mean: mean of |drive force| in N while the drive moves.
+        mean: mean |drive force| in N while the drive moves.
         peak: largest |drive force| in N.
         sticks: number of times that the segment sticks while the drive moves.
         slip: longest slip in m.

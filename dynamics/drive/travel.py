@@ -2,8 +2,8 @@
 """Travels: the extension of a segment over time, and the rows that it changes.
 
 In material coordinates, a segment that moves along its axis has the inertia m̄ ü if slopes are
-small. So its modes, loads and observers do not change. A row of a contact changes, since it reads
-one of both segments at a position that moves with the extension.
+small. So its modes, loads and observers do not change. The row of a contact changes: on one of
+the two segments, the position of the contact moves with the extension.
 """
 
 from __future__ import annotations

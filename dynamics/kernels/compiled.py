@@ -33,7 +33,7 @@ SUMS: Mapping[str, Any] = MappingProxyType(
 
 
 def make_cache_folder() -> TemporaryDirectory[str] | None:
-    """Return a temporary cache folder if the folders of numba cannot be written, else None.
+    """Return a temporary cache folder if numba cannot write to its own folders, else None.
 
     Without a writable folder, numba does not compile cached functions. Child processes share the
     folder.

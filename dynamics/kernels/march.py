@@ -38,7 +38,7 @@ _MAX_ITERATIONS, _TOLERANCE = 40, 1.0e-10
 
 
 class LoopSystem(NamedTuple):
-    """Data of a gap system that do not change over time.
+    """Constant data of a gap system.
 
     Args:
         load: (num_modes,) constant load.
@@ -66,8 +66,8 @@ class State(NamedTuple):
         tally: sums over all steps; ``TIME`` to ``CONTACT`` are its indices.
         driven: (num_travels,) cumulative work of each drive in J.
         crest: (num_contacts,) largest force of all steps in N.
-        resolving: (num_contacts,) step in s that resolves the contact at its largest force;
-            infinite if the step of this run resolves it.
+        resolving: (num_contacts,) step in s that is short enough for the contact at its largest
+                force; infinite if the step of this run is.
     """
 
     a: Array
@@ -180,11 +180,11 @@ def _update_peaks(
     state: State, laws: Laws, compliance: Array, time: float, end: Array, force: Array,
     free: Array, peaks: Array,
 ) -> None:  # fmt: skip
-    """Update the peaks of contact forces, and the steps that would resolve them.
+    """Update the peaks of contact forces, and the steps in s that are short enough for them.
 
-    A peak is the force at the end of a step if the step resolves the contact, else the mean of the
-    step, about which the force oscillates. The resolving step follows from the stiffness at the
-    maximum penetration, where the contact also stores the kinetic energy (y_free − y₀)²/(4 C).
+    A peak is the force at the end of a step that is short enough. In a longer step the force
+    oscillates, and the peak is its mean. The required step follows from the stiffness at the
+    maximum penetration, when the contact also stores the kinetic energy (y_free − y₀)²/(4 C).
     """
     for j in range(laws.limits.size):
         largest = 0.0
@@ -233,8 +233,8 @@ def _set_loads(
 def free_time(system: LoopSystem, flow: Flow, state: State, longest: float) -> float:
     """Return a time in s up to ``longest`` within which no contact closes; 0 if one is closed.
 
-    Without contact, the speed of mode i is at most √(v² + (ω² a − Q)²/ω²), or |v| + |Q| t for
-    ω = 0, and the speed of a row at most the sum over its modes.
+    Without contact, the speed of a mode is at most √(v² + (ω² a − Q)²/ω²), or |v| + |Q| t for
+    ω = 0. The speed of a row is at most the sum over its modes.
     """
     limits, speed = system.laws.limits, np.empty(state.a.size)
     for i in range(speed.size):
@@ -259,7 +259,7 @@ def march(
     system: LoopSystem, flow: Flow, compliances: Array, state: State, schedule: Schedule,
     stretches: int, joined: int, problem: Problem, output: Output,
 ) -> bool:  # fmt: skip
-    """Advance by the output intervals of ``output``, and return whether all steps converged.
+    """Advance to the last time of ``output``, and return whether all steps converged.
 
     An output interval has several stretches of 2ʲ steps. Steps in which no contact can close are
     joined, at most to a whole stretch, since the modal solution is exact.
@@ -267,8 +267,9 @@ def march(
     Args:
         system: system that moves.
         flow: coefficients for a stretch, half of it, a quarter and so on. They continue below the
-            step, since a step whose forces do not converge is halved.
-        compliances: (num_lengths, num_rows, num_rows) C for each length, if rows are constant.
+            step, since a step is halved if its forces do not converge.
+        compliances: (num_lengths, num_rows, num_rows) C for each length of ``flow``, if rows are
+            constant.
         state: state at the start; it is changed.
         schedule: loads and extensions of all stretches.
         stretches: number of stretches of an output interval.

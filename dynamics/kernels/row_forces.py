@@ -207,7 +207,7 @@ def _eliminate(problem: Problem, count: int) -> None:
     """Replace the residuals of the ``count`` active rows by the changes of their forces.
 
     This is Gaussian elimination with partial pivoting, in place in the Jacobian. Columns without
-    pivot are exchanged to the end, as their order in ``active`` is.
+    pivot, and their indices in ``active``, are moved to the end.
     """
     matrix, right, active = problem.jacobian, problem.residual, problem.active
     for p in range(count):

@@ -62,7 +62,7 @@ _WEIGHTS = np.array([9.0, 49.0, 64.0, 49.0, 9.0]) / 180.0
 def motion_after(
     body: SlidingMass, state: Array, interval: LinearInterval, time: float
 ) -> tuple[float, float, float]:
-    """Return the lag in m, ṡ in m/s and the drive force in N after ``time`` in this phase."""
+    """Return lag in m, ṡ in m/s and drive force in N after ``time`` in s of the same phase."""
     if state[SIGN] == 0.0:
         lag, rate = state[LAG] + interval.rate * time, interval.rate
     else:
@@ -115,7 +115,7 @@ def advance(
 
 @njit(**LOOP)
 def keeps_phase(body: SlidingMass, state: Array, interval: LinearInterval, time: float) -> bool:
-    """Return whether the phase is the same after a time in s."""
+    """Return whether the same phase, stick or slip, continues for a time in s."""
     _, speed, force = motion_after(body, state, interval, time)
     if state[SIGN] == 0.0:
         return bool(abs(force) <= body.sticking * interval.friction)
@@ -124,7 +124,7 @@ def keeps_phase(body: SlidingMass, state: Array, interval: LinearInterval, time:
 
 @njit(**LOOP)
 def phase_duration(body: SlidingMass, state: Array, interval: LinearInterval, left: float) -> float:
-    """Return the time in s until the phase ends, or ``left`` if it lasts longer."""
+    """Return the time in s until stick or slip ends, at most ``left``."""
     low = 0.0
     for place in range(_CHECKS + 1):
         high = left * place / _CHECKS
@@ -149,7 +149,7 @@ def advance_interval(
     sums: Array,
     largest: Array,
 ) -> None:
-    """Advance the state by a time in s of linear data, phase by phase."""
+    """Advance the state by a time in s with linear data, phase by phase."""
     left, turns = time, 0
     while left > 0.0 and turns < _MAX_PHASES:
         turns += 1
@@ -185,7 +185,7 @@ def march_stick_slip(
         step: step of the data in s.
         substeps: number of steps per output.
         commands, pushes: s_c in m and p in N (num_outputs · substeps + 1,).
-        frictions: R in N (num_outputs + 1,) in the interval before each output.
+        frictions: R (num_outputs + 1,) in N during the interval before each output.
         recorded: array (num_outputs + 1, 3) for z in m, ṡ in m/s and s̈ in m/s².
         sums: array (num_outputs + 1, 5) for the sums up to each output.
         largest: array (6,) for the extremes.

@@ -30,7 +30,7 @@ MEMBER_VARIABLES = ("tip", "head", "contact_force")
 
 @dataclass(frozen=True, slots=True)
 class EnsembleMember:
-    """Run of an ensemble.
+    """One run of an ensemble.
 
     Args:
         motion: motion without changes.

@@ -40,7 +40,7 @@ def horizon(members: Array, time: Array, share: float) -> float:
     """Return the time in s at which members (num_members, num_times) diverge; NaN if they do not.
 
     Members diverge when their spread exceeds a share of the range of member 0. The spread is half
-    the distance between the largest and the smallest member, which is the error of the best single
+    the distance between the largest and the smallest member. It is the error of the best single
     prediction. A standard deviation would be smaller while most members agree.
     """
     spread = 0.5 * np.ptp(members, axis=0)
@@ -105,7 +105,7 @@ class Horizons:
 
     @property
     def limits(self) -> list[Literal["step", "physics", "nothing"]]:
-        """The limit of predictability at each share (num_shares).
+        """The limit of predictability at each share (num_shares,).
 
         ``step``: the finer step has a larger effect than the largest change of the data, so that a
             finer step extends the horizon. ``physics``: the changes of data have the larger effect.
@@ -185,7 +185,9 @@ def measure_horizons(
         progress(before + _STAGE * part)
 
     def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
-        """Return the horizons (num_groups, num_shares) in s; ``done`` is the progress before it."""
+        """Run groups of members, and return their horizons (num_groups, num_shares) in s.
+
+        ``done`` is the completed fraction before these runs."""
         of_groups = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
             left = [g for g in range(len(groups)) if np.isnan(of_groups[g]).any()]
@@ -218,6 +220,6 @@ def measure_horizons(
 def ensemble_horizons(
     ensemble: xr.Dataset, shares: Sequence[float] = SHARES, observer: str = "tip"
 ) -> list[float]:
-    """Return the horizons (num_shares) of an ensemble in s; NaN for shares out of reach."""
+    """Return the horizons (num_shares,) of an ensemble in s; NaN if a share is not reached."""
     members, time = ensemble[observer].values, ensemble["time"].values
     return [horizon(members, time, share) for share in shares]

@@ -209,10 +209,10 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
     full = assemble_boom(boom, model.options(), comm)
     shells = full.shells
 
-    def parts(reading: Mapping[int, Row]) -> dict[int, Array]:
-        return {n: shells[n].row(row) for n, row in reading.items()}
+    def parts(operator: Mapping[int, Row]) -> dict[int, Array]:
+        return {n: shells[n].row(row) for n, row in operator.items()}
 
-    springs = [SpringRow(what, parts(seen.reading)) for what, seen in full.observed.items()]
+    springs = [SpringRow(what, parts(seen.operator)) for what, seen in full.observed.items()]
     gaps = built.system.rows @ rest
     for contact, law, gap in zip(full.rows.contacts, built.system.laws, gaps, strict=True):
         force = float(law.force(np.array([gap]))[0])
@@ -220,7 +220,7 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
             slope = float(law.slope(gap + np.array([-TOUCHING, TOUCHING])).max())
             what = f"contact that presses with {force:.6g} N"
             back = slope * gap - force
-            springs.append(SpringRow(what, parts(contact.reading), slope, back))
+            springs.append(SpringRow(what, parts(contact.operator), slope, back))
     springs += [SpringRow("tie", parts(tie), rigid(shells[min(tie)])) for tie in full.ties]
     springs += [
         SpringRow(line.force, {line.segment: line.push}, line.stiffness) for line in full.lines

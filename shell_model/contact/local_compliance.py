@@ -18,7 +18,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses, probe_places
 from shell_model.reduction.symmetry import Job, SymmetryReduction
-from shell_model.segment.cross_section import Reading
+from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver
 
@@ -32,13 +32,13 @@ def compliance(omega2: Array, rows: Array) -> Array:
 
 
 def full_compliance(
-    shells: Sequence[SegmentShell], contacts: Sequence[LawRow[Reading, ContactLaw]]
+    shells: Sequence[SegmentShell], contacts: Sequence[LawRow[Operator, ContactLaw]]
 ) -> Array:
     """Return the compliance (num_contacts, num_contacts) of unreduced shells. Collective."""
     compliance = np.zeros((len(contacts), len(contacts)))
     for number, shell in enumerate(shells):
-        touching = [i for i, contact in enumerate(contacts) if number in contact.reading]
-        parts = [shell.row(contacts[i].reading[number]) for i in touching]
+        touching = [i for i, contact in enumerate(contacts) if number in contact.operator]
+        parts = [shell.row(contacts[i].operator[number]) for i in touching]
         rows = np.array(parts).reshape(-1, shell.free.size).T
         # These symmetry reductions are used only once.
         compliance[np.ix_(touching, touching)] += shell_compliance(SymmetryReduction(shell), rows)

@@ -22,7 +22,7 @@ from geometry.section import Offset, Section, Side
 from geometry.telescoping import drives_below
 from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
 from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints, gauss
-from shell_model.segment.cross_section import Reading, Row, SectionNodes
+from shell_model.segment.cross_section import Operator, Row, SectionNodes
 from shell_model.segment.segment_shell import SegmentShell
 
 _SIDES: tuple[Side, Side] = (1, -1)
@@ -32,12 +32,12 @@ _POINTS = 4
 
 
 # Contact point: side, weight, and operator of the relative displacement u − w.
-_Point = tuple[Side, float, Reading]
+_Point = tuple[Side, float, Operator]
 
 
 @dataclass(frozen=True, slots=True)
-class _PadReadings:
-    """Readings of the relative displacements u − w at a pad.
+class _PadOperators:
+    """Operators of the relative displacements u − w at a pad.
 
     Args:
         pad: the pad.
@@ -49,7 +49,7 @@ class _PadReadings:
     corners: Sequence[CornerLines]
     walls: Sequence[WallPoints]
 
-    def contact(self, line: ContactLine) -> tuple[list[_Point], Reading]:
+    def contact(self, line: ContactLine) -> tuple[list[_Point], Operator]:
         """Return the contact points of the pad, and the operator of its sliding. Collective."""
         pad = self.pad
         if pad.joint.lateral_play is not None:
@@ -75,7 +75,7 @@ class _PadReadings:
         first, *others = (0.5 * weight * approach for _, weight, approach in points)
         return points, sum(others, first)
 
-    def at_corners(self, direction: Direction, inner: Offset, outer: Offset) -> Reading:
+    def at_corners(self, direction: Direction, inner: Offset, outer: Offset) -> Operator:
         """Return the operator of u − w on the corners at offsets (y, z) in m."""
         places = zip(self._ends, self.pad.intervals, (inner, outer), strict=True)
         rows = (self.corners[n].deflection(at, direction, *offset) for n, at, offset in places)
@@ -96,7 +96,7 @@ class _PadReadings:
                 rows.append(mean(Wall("z", side), places, np.tile(force, 2), "z"))
             yield side, share, self._approach(*rows)
 
-    def over_patch(self, patch: Patch, side: Side, half: int) -> Reading:
+    def over_patch(self, patch: Patch, side: Side, half: int) -> Operator:
         """Return the mean of u − w over a patch, on which the pressure is uniform. Collective."""
         x, along = gauss(patch.start, patch.end, _POINTS)
         near, far = patch.across(self._inner_section.face(self.pad.direction, side))
@@ -120,8 +120,8 @@ class _PadReadings:
     def _ends(self) -> tuple[int, int]:
         return self.pad.joint.inner, self.pad.joint.outer
 
-    def _approach(self, inner: Row, outer: Row) -> Reading:
-        return Reading({self.pad.joint.inner: inner, self.pad.joint.outer: -outer})
+    def _approach(self, inner: Row, outer: Row) -> Operator:
+        return Operator({self.pad.joint.inner: inner, self.pad.joint.outer: -outer})
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,16 +166,16 @@ class ShellContacts:
         walls = [WallPoints(shell) for shell in shells] if by_points else []
         return cls(boom, line, [CornerLines(shell) for shell in shells], walls, points)
 
-    def rows(self, extensions: Mapping[int, float]) -> GapBuilder[Reading]:
+    def rows(self, extensions: Mapping[int, float]) -> GapBuilder[Operator]:
         """Return the rows of pads, surfaces, stops and dashpots. Collective.
 
         ``extensions`` are the extensions of joints in m.
         """
         boom, points = self.boom, self.points
-        rows = GapBuilder([LawRow(point.reading, point.law, point.station) for point in points])
+        rows = GapBuilder([LawRow(point.operator, point.law, point.station) for point in points])
         for pad in pads(boom):
             extended = pad.at_extension(boom, extensions.get(pad.number, 0.0))
-            touching, slide = _PadReadings(extended, self.corners, self.walls).contact(self.line)
+            touching, slide = _PadOperators(extended, self.corners, self.walls).contact(self.line)
             if self.line == "surface":
                 pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
             else:
@@ -189,14 +189,14 @@ class ShellContacts:
             pressed, lines = rest.at_extension(boom, extension).interval, self.corners[segment]
             # A stop touches a flange at both webs.
             flanges = [
-                (side, 1.0, Reading({segment: lines.deflection(pressed, "z", 0.0, side)}))
+                (side, 1.0, Operator({segment: lines.deflection(pressed, "z", 0.0, side)}))
                 for side in _SIDES
             ]
             rows.add_stop(rest.station, rest.stop.law, flanges)
         return rows
 
 
-def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
+def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Operator]:
     """Return the constraints of bonded joints: deflections, in 3-D booms also twist. Collective.
 
     Their forces act in the planes of walls.
@@ -206,13 +206,13 @@ def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Reading]:
     ]
     if boom.spatial:
         reads.append(SectionNodes.twist)
-    constraints: list[Reading] = []
+    constraints: list[Operator] = []
     for joint in boom.joints:
         for x in joint.stations if joint.bonded else ():
             outlines = [shells[number].outline(x) for number in (joint.inner, joint.outer)]
             for read in reads:
                 inner, outer = (read(outline) for outline in outlines)
-                constraints.append(Reading({joint.inner: inner, joint.outer: -outer}))
+                constraints.append(Operator({joint.inner: inner, joint.outer: -outer}))
     return constraints
 
 

@@ -23,7 +23,7 @@ from geometry.contact_places import Pad
 from shell_model.contact.wall_rows import Wall, WallPoints, gauss
 from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment.cross_section import Reading
+from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 
 # Fraction of the compliance of a row that is neglected. It changes the tip deflection of the
@@ -59,14 +59,14 @@ class SurfacePoint(NamedTuple):
     """Contact point of a surface; in a flat boom a symmetric pair of points.
 
     Args:
-        reading: operator of the relative displacement u − w, the mean for a pair.
+        operator: operator of the relative displacement u − w, the mean for a pair.
         law: one-sided contact law, with the penalty times the area of the point.
         station: index of the nearest station of the joint in the same direction.
         side: side of the inner segment in contact, 1 or −1.
         half: half of the wall with the point, 1 or −1; 0 for a pair.
     """
 
-    reading: Reading
+    operator: Operator
     law: ContactLaw
     station: int
     side: int
@@ -128,12 +128,12 @@ def _on_wall(
     x, beside = np.repeat(along[0], across[0].size), np.tile(across[0], along[0].size)
     stations = np.abs(np.subtract.outer(x, joint.stations)).argmin(axis=1) + first
 
-    def approaches(half: int) -> list[Reading]:
+    def approaches(half: int) -> list[Operator]:
         """Return the operators of u − w along the normal at the points of one half."""
         places, ends = np.column_stack([x, half * beside]), (joint.inner, joint.outer)
         rows = (walls[number].rows(wall, places, wall.normal) for number in ends)
         return [
-            Reading({ends[0]: inner, ends[1]: -outer}) for inner, outer in zip(*rows, strict=True)
+            Operator({ends[0]: inner, ends[1]: -outer}) for inner, outer in zip(*rows, strict=True)
         ]
 
     points = zip(approaches(1), approaches(-1), weights, stations.tolist(), strict=True)

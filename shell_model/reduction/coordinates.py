@@ -13,7 +13,7 @@ from dynamics.second_order import buckling_factor, soften_modes
 from geometry.arrays import Array
 from geometry.cylinder import GroundLine
 from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment.cross_section import Reading
+from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 
 # Fraction of the largest stiffness below which a constraint is neglected.
@@ -48,7 +48,7 @@ class BoomCoordinates:
         comm: MPI.Comm,
         shells: Sequence[SegmentShell],
         reduced: Sequence[ReducedSegment],
-        ties: Sequence[Reading],
+        ties: Sequence[Operator],
         lines: Sequence[GroundLine] = (),
     ) -> None:
         self._comm, self._shells, self._reduced = comm, shells, reduced
@@ -75,9 +75,11 @@ class BoomCoordinates:
             self.omega2, turn = comm.bcast(soften_modes(self.omega2, softening))
             self._combination = tied @ turn
 
-    def row(self, reading: Reading) -> Array:
+    def row(self, operator: Operator) -> Array:
         """Return the row (num_modes,) of a displacement operator, the same on every rank."""
-        rows = [self.push(number, self._shells[number].row(row)) for number, row in reading.items()]
+        rows = [
+            self.push(number, self._shells[number].row(row)) for number, row in operator.items()
+        ]
         return np.asarray(np.sum(rows, axis=0))
 
     def push(self, number: int, force: Array) -> Array:

@@ -68,7 +68,7 @@ class ClassCoordinates(NamedTuple):
     Args:
         omega2: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0.
         shapes: shapes (num_rows, num_modes) in 1/√kg.
-        compliance_error, reading_error, lost_compliance: errors as in ``ReducedSegment``.
+        compliance_error, output_error, lost_compliance: errors as in ``ReducedSegment``.
         accurate: mask (num_modes,) of modes with a natural frequency within 0.1 %.
         geometric: K_G (num_modes, num_modes), to be subtracted from diag(ω²).
     """
@@ -76,7 +76,7 @@ class ClassCoordinates(NamedTuple):
     omega2: Array
     shapes: Array
     compliance_error: float
-    reading_error: float
+    output_error: float
     lost_compliance: Array
     accurate: Mask
     geometric: Array
@@ -85,7 +85,7 @@ class ClassCoordinates(NamedTuple):
 def reduce_class(
     shell: Shell,
     inputs: Array,
-    readings: Array,
+    outputs: Array,
     options: KrylovOptions,
     progress: Callable[[float], None],
 ) -> ClassCoordinates:
@@ -94,7 +94,7 @@ def reduce_class(
     Args:
         shell: the full model.
         inputs: load vectors (num_rows, num_inputs); they may be zero or dependent.
-        readings: rows (num_rows, num_readings) of outputs.
+        outputs: rows (num_rows, num_outputs) of outputs.
         options: options; ``most`` is for this shell.
         progress: callback that receives the completed fraction, 0 to 1.
 
@@ -103,7 +103,7 @@ def reduce_class(
     """
     inputs = inputs * shell.free[:, None]
     forces = _independent(inputs)
-    rows = readings * shell.free[:, None]
+    rows = outputs * shell.free[:, None]
     rows = rows[:, rows.any(axis=0)]
     order, tests = list(options.order), options.tests
     stages = len(order) + len(tests)
@@ -153,7 +153,7 @@ class _FullResponse(NamedTuple):
         sigma: (2π frequency)² in rad²/s².
         compliance: compliance (num_forces, num_forces) of the forces.
         scale: geometric means of pairs of diagonal entries of ``compliance``.
-        transfer: responses (num_readings, num_forces) of outputs to forces.
+        transfer: responses (num_outputs, num_forces) of outputs to forces.
         transfer_scale: geometric means of the compliances of outputs and forces.
     """
 

@@ -34,7 +34,7 @@ class ReducedSegment:
         shapes: this rank's rows (num_owned, num_modes) of the shapes in 1/√kg.
         compliance_error: largest relative error of the contact compliance at frequencies between
             the shifts.
-        reading_error: largest error of the response of outputs to inputs, relative to the geometric
+        output_error: largest error of the response of outputs to inputs, relative to the geometric
             mean of both compliances.
         lost_compliance: largest error (num_inputs,) of the compliance of each input in m/N. The
             error of a pair is at most the geometric mean of both (Galerkin).
@@ -45,7 +45,7 @@ class ReducedSegment:
     omega2: Array
     shapes: Array
     compliance_error: float
-    reading_error: float
+    output_error: float
     lost_compliance: Array
     frequency_limit: float
     geometric: Array
@@ -56,7 +56,7 @@ def reduce_segment(
     inputs: Array,
     options: KrylovOptions,
     progress: Callable[[float], None] | None = None,
-    readings: Array | None = None,
+    outputs: Array | None = None,
     helper: Executor | None = None,
 ) -> ReducedSegment:
     """Reduce a segment for its inputs and outputs. Collective.
@@ -66,14 +66,14 @@ def reduce_segment(
         inputs: load vectors (num_owned, num_inputs); they may be zero or dependent.
         options: shifts and moments, or a tolerance.
         progress: callback that receives the completed fraction, 0 to 1.
-        readings: output rows (num_owned, num_readings), whose error is also measured.
+        outputs: output rows (num_owned, num_outputs), whose error is also measured.
         helper: second process, which reduces every second symmetry class of this rank.
 
     Raises:
         NumericsError: a compliance is not finite, all inputs are zero, or the tolerance is not met.
     """
     comm = symmetry.shell.comm
-    jobs = symmetry.jobs(inputs, np.zeros((len(inputs), 0)) if readings is None else readings)
+    jobs = symmetry.jobs(inputs, np.zeros((len(inputs), 0)) if outputs is None else outputs)
     symmetry_classes = comm.bcast([job.symmetry_class for job in jobs])
     if not symmetry_classes:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
@@ -126,7 +126,7 @@ def reduce_segment(
         omega2=omega2[order],
         shapes=shapes,
         compliance_error=max(part.compliance_error for part in parts),
-        reading_error=max(part.reading_error for part in parts),
+        output_error=max(part.output_error for part in parts),
         lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),
         frequency_limit=float(limit),
         geometric=block_diag(*(part.geometric for part in parts))[np.ix_(order, order)],
@@ -139,4 +139,4 @@ def _reduce_job(
     options: KrylovOptions,
     progress: Callable[[float], None] = lambda _: None,
 ) -> ClassCoordinates:
-    return reduce_class(job.shell(cell), job.forces, job.readings, options, progress)
+    return reduce_class(job.shell(cell), job.forces, job.outputs, options, progress)

@@ -147,14 +147,14 @@ class Job:
 
     Args:
         symmetry_class: the symmetry class.
-        forces, readings: load vectors and output rows (num_rows, num_columns) on the cell,
+        forces, outputs: load vectors and output rows (num_rows, num_columns) on the cell,
             sums over all images.
         springs, masses: springs and masses of the segment on the rows of the cell.
     """
 
     symmetry_class: SymmetryClass
     forces: Array
-    readings: Array
+    outputs: Array
     springs: Attachments
     masses: Attachments
 
@@ -210,13 +210,13 @@ class SymmetryReduction:
             self._image_of_row[dofs - first] = image_of(nodes, self._mirrors)[:, None]
             self._component[dofs - first] = _COMPONENTS[part]
 
-    def jobs(self, inputs: Array, readings: Array) -> list[Job]:
+    def jobs(self, inputs: Array, outputs: Array) -> list[Job]:
         """Return a job for each symmetry class that an input excites, on rank 0. Collective.
 
-        Inputs and output rows (``readings``) are (num_owned, num_columns) on the whole segment.
+        Inputs and output rows (``outputs``) are (num_owned, num_columns) on the whole segment.
         """
         shell = self.shell
-        blocks = inputs, readings, shell.springs.rows, shell.masses.rows
+        blocks = inputs, outputs, shell.springs.rows, shell.masses.rows
         gathered = [self._gather(block) for block in blocks]
         if self._comm.rank != 0:
             return []

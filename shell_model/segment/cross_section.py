@@ -43,16 +43,16 @@ class Row(dict[int, float]):
         return self + -other
 
 
-class Reading(dict[int, Row]):
+class Operator(dict[int, Row]):
     """Displacement of a boom: rows by index of the segment."""
 
-    def __add__(self, other: Reading) -> Reading:
+    def __add__(self, other: Operator) -> Operator:
         """Return the sum of two displacement operators."""
         both = {number: self.get(number, Row()) + row for number, row in other.items()}
-        return Reading(self | both)
+        return Operator(self | both)
 
-    def __rmul__(self, factor: float) -> Reading:
-        return Reading({number: factor * row for number, row in self.items()})
+    def __rmul__(self, factor: float) -> Operator:
+        return Operator({number: factor * row for number, row in self.items()})
 
 
 def on_outline(places: Array, section: Section, x: float) -> Mask:

@@ -24,11 +24,11 @@ from geometry.arrays import Array
 
 _ROUNDS = 1000
 _MOST_NEWTON = 100
-# C in m/N (num_rows, num_rows), contact rows first; readings without forces in m (num_rows,);
+# C in m/N (num_rows, num_rows), contact rows first; displacements without forces in m (num_rows,);
 # terms of the contacts' laws, one on each side of a row at most; of friction rows (num_frictions,)
-# μN in N and the readings in m at which they stick.
+# μN in N and the displacements in m at which they stick.
 Problem = tuple[Array, Array, Terms, Array, Array]
-# Round-off of a reading, as parts of the terms of its sum.
+# Round-off of a displacement, as parts of the terms of its sum.
 _ROUND_OFF = 32.0 * float(np.finfo(np.float64).eps)
 
 
@@ -42,7 +42,7 @@ class ResistingRows:
         onward: ratio of the displacement over the whole step to the displacement at this time.
 
     Attributes:
-        readings: displacements (num_rows,) of the rows in m at the end of the step.
+        displacements: displacements (num_rows,) of the rows in m at the end of the step.
         friction_loss: dissipated energy so far, in J.
     """
 
@@ -57,7 +57,7 @@ class ResistingRows:
         self._bound = np.array([one.coefficient * one.normal_force for one in frictions])
         self._compliance, self._onward = compliance, onward
         self._place, self._forces = np.zeros(len(frictions)), np.zeros(len(compliance))
-        self.readings = np.zeros(len(compliance))
+        self.displacements = np.zeros(len(compliance))
         self.friction_loss = 0.0
 
     def forces(self, free: Array) -> Array:
@@ -73,17 +73,17 @@ class ResistingRows:
         problem = self._compliance, free, self._terms, self._bound, self._place
         if not (np.isfinite(free).all() and resist(problem, forces)):
             raise NumericsError("the forces of contact and friction are not found; halve the step")
-        way = self._onward * (free - self._compliance @ forces - self.readings)
-        self.readings += way
+        way = self._onward * (free - self._compliance @ forces - self.displacements)
+        self.displacements += way
         self.friction_loss += float(forces[friction] @ way[friction])
         slides = np.abs(forces[friction]) >= self._bound
-        self._place[slides] = self.readings[friction][slides]
+        self._place[slides] = self.displacements[friction][slides]
         return forces
 
     @property
     def contact_energy(self) -> float:
         """Energy of the contacts in J."""
-        return float(contact_energy(self.readings[: self._contacts], self._terms))
+        return float(contact_energy(self.displacements[: self._contacts], self._terms))
 
 
 @njit(**LOOP)

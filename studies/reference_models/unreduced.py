@@ -36,7 +36,7 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from geometry.boom import BoomError
 from shell_model.boom_shell import BoomShell
-from shell_model.segment.cross_section import Reading, Row
+from shell_model.segment.cross_section import Operator, Row
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver, gram
 from studies.reference_models.resisting_rows import ResistingRows
@@ -257,7 +257,7 @@ def integrate_directly(
     substeps = max(1, int(np.ceil(output_step / step * (1.0 - 1e-12))))
     alpha = GeneralisedAlpha(output_step / substeps, radius)
     steppers = [
-        SegmentStepper(shell, load, _rows(full.joint_readings, number, shell), alpha)
+        SegmentStepper(shell, load, _rows(full.joint_operators, number, shell), alpha)
         for number, (shell, load) in enumerate(zip(full.shells, full.own_loads, strict=True))
     ]
     try:
@@ -301,10 +301,10 @@ def _march(
         np.sum([stepper.compliance for stepper in steppers], axis=0),
         1.0 / (1.0 - alpha.force_shift),
     )
-    readings = [seen.reading for seen in full.observed.values()]
-    observers = [_rows(readings, number, shell) for number, shell in enumerate(full.shells)]
+    operators = [seen.operator for seen in full.observed.values()]
+    observers = [_rows(operators, number, shell) for number, shell in enumerate(full.shells)]
     contacts = len(full.rows.contacts)
-    observed = np.zeros((outputs + 1, len(readings)))
+    observed = np.zeros((outputs + 1, len(operators)))
     means = np.zeros((outputs + 1, contacts + len(full.rows.frictions)))
     slides = np.zeros((outputs + 1, len(full.rows.frictions)))
     energies = np.zeros((outputs + 1, len(ENERGIES)))
@@ -321,7 +321,7 @@ def _march(
         parts = zip(observers, steppers, strict=True)
         seen = np.sum([row @ stepper.displacement() for row, stepper in parts], axis=0)
         observed[k] = full.comm.allreduce(seen)
-        slides[k] = rows.readings[contacts:]
+        slides[k] = rows.displacements[contacts:]
         energies[k, [0, 1, 3]] = np.sum([stepper.energies() for stepper in steppers], axis=0)
         energies[k, [2, 5]] = rows.contact_energy, rows.friction_loss
         if k == outputs or k % max(1, outputs // _CHECKS) == 0:
@@ -337,7 +337,9 @@ def _march(
     )
 
 
-def _rows(readings: Sequence[Reading], number: int, shell: SegmentShell) -> scipy.sparse.csr_matrix:
+def _rows(
+    operators: Sequence[Operator], number: int, shell: SegmentShell
+) -> scipy.sparse.csr_matrix:
     """Return this rank's part (num_rows, num_owned) of the displacement rows of a segment."""
-    parts = [shell.row(reading.get(number, Row())) for reading in readings]
+    parts = [shell.row(operator.get(number, Row())) for operator in operators]
     return scipy.sparse.csr_matrix(np.array(parts).reshape(-1, shell.free.size))

@@ -50,7 +50,7 @@ def elements(
 
 
 def tips(system: GapSystem) -> list[float]:
-    """Return the readings of observers of the ends at rest."""
+    """Return the outputs of the ends at rest."""
     rest = equilibrium(system, system.load)
     return [float(system.observers[name].row @ rest) for name in ("tip", "head", "tail")]
 

@@ -14,7 +14,7 @@ from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
-from shell_model.segment.cross_section import Reading, Row
+from shell_model.segment.cross_section import Operator, Row
 from tests.shell_model.booms import LAW, flat_boom, three_segments
 from tests.shell_model.models import assert_rests_as_beams, bonded_beams, pressed_rest, reduced
 from tests.touching import touching
@@ -103,7 +103,10 @@ def test_loads_act_where_and_when_they_say() -> None:
 
 
 def test_readings_add_up_over_the_segments_of_either() -> None:
-    one, other = Reading({0: Row({3: 1.0})}), Reading({0: Row({3: 0.5, 4: 2.0}), 1: Row({7: 1.0})})
+    one, other = (
+        Operator({0: Row({3: 1.0})}),
+        Operator({0: Row({3: 0.5, 4: 2.0}), 1: Row({7: 1.0})}),
+    )
     both = {0: {3: 1.5, 4: 2.0}, 1: {7: 1.0}}
     assert one + other == both
     assert other + one == both

@@ -137,7 +137,7 @@ def _squeezed(boom: Boom, tolerance: float | None) -> float:
         .rows({})
         .contacts
     )
-    up, down = (contact.reading for contact in contacts if contact.station == 0)
+    up, down = (contact.operator for contact in contacts if contact.station == 0)
     return sum(given_way(shell, up[k] - down[k]) for k, shell in enumerate(shells))
 
 

@@ -102,7 +102,7 @@ def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Sectio
     force = np.random.default_rng(1).standard_normal((shell.num_dofs, 2)) * shell.free[:, None]
     total, parts = np.zeros(2), np.zeros(2)
     for job in symmetry.jobs(force, force):
-        assert np.array_equal(job.forces, job.readings)
+        assert np.array_equal(job.forces, job.outputs)
         motion = np.random.default_rng(2).standard_normal((len(job.forces), 1))
         motion *= job.shell(symmetry.cell).free[:, None]
         parts += (job.forces.T @ motion)[:, 0]

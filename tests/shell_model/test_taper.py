@@ -176,7 +176,7 @@ def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -
         moved, turned = np.zeros((2, inner.free.size))
         column = inner.node_dofs[:, COMPONENT[direction]]
         moved[column], turned[column] = 1.0, inner.nodes[:, 0]
-        row = inner.row(contact.reading[1])
+        row = inner.row(contact.operator[1])
         assert row @ moved == pytest.approx(1.0, rel=1e-9)
         assert row @ turned == pytest.approx(place + (reach if place == 5.0 else -reach), rel=1e-9)
 

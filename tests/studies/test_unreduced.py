@@ -17,7 +17,7 @@ from petsc4py import PETSc
 from dynamics.contact import DryFriction, PowerContact, contact_terms
 from dynamics.energy import energy_residual
 from dynamics.failure import NumericsError
-from dynamics.gap_builder import GapBuilder, ObservedReading
+from dynamics.gap_builder import GapBuilder, OutputOperator
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
@@ -26,7 +26,7 @@ from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
 from shell_model.contact.rows import ShellContacts
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.segment.cross_section import Reading
+from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.resisting_rows import ResistingRows, resist
 from studies.reference_models.unreduced import GeneralisedAlpha, integrate_directly
@@ -61,7 +61,7 @@ class _Loaded:
         self._omega, self._gains = np.sqrt(omega2[few]), gains[few]
         self.rest = float(gains.sum())
         self.period = 2.0 * np.pi / float(self._omega.max())
-        observed = {"tip": ObservedReading(Reading({0: tip}))}
+        observed = {"tip": OutputOperator(Operator({0: tip}))}
         touching = ShellContacts(Boom((shell.segment,), ()), "near webs", [], [], [])
         self.few, self.all = (
             BoomShell(MPI.COMM_WORLD, [shell], [], touching, GapBuilder(), [], [push], [], observed)
@@ -260,10 +260,10 @@ def test_a_block_on_a_rough_floor_stays_or_slides() -> None:
     μN s."""
     rows = ResistingRows([], [DryFriction(0.5, 0, 20.0)], np.array([[1.0e-3]]), onward=2.0)
     assert rows.forces(np.array([9.0e-3])) == pytest.approx([9.0], rel=1.0e-14)
-    assert rows.readings == pytest.approx([0.0], abs=1.0e-17)
+    assert rows.displacements == pytest.approx([0.0], abs=1.0e-17)
     assert rows.friction_loss == pytest.approx(0.0, abs=1.0e-15)
     assert rows.forces(np.array([14.0e-3])) == pytest.approx([10.0], rel=1.0e-14)
-    assert rows.readings == pytest.approx([2.0 * 4.0e-3], rel=1.0e-12)
+    assert rows.displacements == pytest.approx([2.0 * 4.0e-3], rel=1.0e-12)
     assert rows.friction_loss == pytest.approx(10.0 * 8.0e-3, rel=1.0e-12)
 
 
