@@ -82,8 +82,8 @@ class PointwiseDifferences:
     """
 
     scope: ClassVar[str] = (
-        "Tells how far the models are apart from one moment to the next up to the common horizon; "
-        "it cannot tell anything about later times."
+        "Shows the difference of the models at every instant up to the common horizon; it does "
+        "not show later differences."
     )
 
     until: float

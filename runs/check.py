@@ -271,7 +271,7 @@ def _friction(joint: Joint) -> str:
         return "none"
     forces = ", ".join(f"{force:g}" for force in joint.normal_forces) + " N"
     return (
-        f"{joint.friction:g}, pressed by {forces if any(joint.normal_forces) else 'the contacts'}"
+        f"{joint.friction:g}, normal force {forces if any(joint.normal_forces) else 'of contacts'}"
     )
 
 
@@ -465,7 +465,7 @@ def _static_lines(
 ) -> Iterator[str]:
     """Yield the static tip deflection, the first frequency, the tilts by play, and cautions."""
     if static is None or beam is None:
-        yield "No rest under the loads of t = 0 is found."
+        yield "There is no static equilibrium under the loads at t = 0."
         return
     state, bonded = static
     hertz, bonded_hertz = (

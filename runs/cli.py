@@ -390,7 +390,7 @@ def prove(
         return print_proofs(checked, case, Terminal())
     shells = {one.name: one for one in checked.models if isinstance(one, Shell)}
     if shell not in shells:
-        what = f"{shell!r} is no shell of the case; leave it out for beam elements"
+        what = f"{shell!r} is not a shell of the case; leave it out for beam elements"
         raise BadInput(case, "--shell", what)
     comm = ranks.enter_mpi(checked, case)
     assert comm is not None
@@ -407,7 +407,7 @@ def prove(
 def live(
     case: CaseFile,
     no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the address of the page, and open none.")
+        bool, typer.Option("--no-browser", help="Print the address of the page without opening it.")
     ] = False,
 ) -> None:
     """Serve a page of a case: change its numbers, and see the results of its beam at once."""

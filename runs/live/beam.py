@@ -63,7 +63,7 @@ def beam_results(
     check_current()
     equilibria = positions(loaded.system, instants(loaded.system, duration))
     if not equilibria:
-        raise NumericsError("the beam finds no rest under the loads of t = 0")
+        raise NumericsError("the beam has no static equilibrium under the loads at t = 0")
     check_current()
     extended = extended_positions(loaded.system, duration)
     design = loaded.at_rest(equilibria, extended)

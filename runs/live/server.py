@@ -110,7 +110,7 @@ class LivePage:
         case = self.draft.with_shell(self.draft.changed(dict(request["values"])))
         cost = run_cost(case)
         if cost.large and not request.get("large"):
-            yield {"stage": "large", "what": f"The run may take {cost}. Start it all the same?"}
+            yield {"stage": "large", "what": f"The run may take {cost}. Start it anyway?"}
             return
         yield {"stage": "shell", "progress": f"may take {cost}"}
         yield from self.shells.run(case, self.draft.file)
@@ -225,7 +225,7 @@ def serve(file: str, browser: bool) -> None:
     """
     live = LivePage(Draft.load(file))
     server, address = make_server(live)
-    print(f"{address}\nThe page ends with Ctrl-C.", flush=True)
+    print(f"{address}\nCtrl-C ends the page.", flush=True)
     if browser:
         webbrowser.open(address)
     with when_interrupted(live.shells.end):

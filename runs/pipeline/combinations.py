@@ -138,7 +138,7 @@ def combination_tables(
         notes.append(f"By {shell}, with the axial forces of each combination.")
     else:
         notes.append(beam_note(boom_with_play(case, build_boom(case))))
-    notes += [f"{one.name}: no rest is found." for one in results if not one.extremes]
+    notes += [f"{one.name}: there is no static equilibrium." for one in results if not one.extremes]
     yield Table("Combinations, the largest results", columns, notes, "combinations")
     if len(results) > 1:
         yield _envelope(results, system)

@@ -31,8 +31,8 @@ class PeakDifferences:
     """
 
     scope: ClassVar[str] = (
-        "Shows which common peaks of the slow motion differ by more than chaos explains; it "
-        "cannot tell differences of the ripple, or of peaks that some members lack."
+        "Shows which common peaks of the slow motion differ by more than the ensembles scatter; it "
+        "does not show differences of fast vibration, or of peaks that only some members have."
     )
 
     time: Numbers
@@ -73,7 +73,7 @@ class Distributions:
 
     scope: ClassVar[str] = (
         "Shows whether the models have the same distribution of values after the horizons; it "
-        "cannot tell differences of time and order."
+        "does not show differences of time and order."
     )
 
     since: Number

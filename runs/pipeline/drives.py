@@ -51,8 +51,8 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
         ]
         yield (
             f"A drive {' and '.join(travels)} from {max(0.0, min(kinks)):g} to {max(kinks):g} s, "
-            f"at {system.text(max_speed(joint.drive.history), 'm/s')} at most; the least overlap "
-            f"is {system.text(boom.smallest_overlap(joint), 'm')}."
+            f"at {system.text(max_speed(joint.drive.history), 'm/s')} at most; the smallest "
+            f"overlap is {system.text(boom.smallest_overlap(joint), 'm')}."
         )
 
 
@@ -173,7 +173,7 @@ def stick_slip_cautions(estimates: Iterable[StickSlipEstimate], system: System) 
                 "speed, the stiffness or the damping"
             )
         yield (
-            f"caution: the drive of {one.inner!r} sticks and slips along its whole travel: it "
+            f"caution: the drive of {one.inner!r} sticks and slips during its whole travel: it "
             f"moves at {system.text(one.max_speed, 'm/s', 3)} at most, and {remedy}"
         )
 

@@ -144,7 +144,7 @@ def refuse_large(cost: Cost, file: str) -> None:
         raise BadInput(
             file,
             "--large",
-            f"missing, and it may take {cost}; give it to start all the same, or ask for fewer "
+            f"missing, and it may take {cost}; give it to start anyway, or ask for fewer "
             "outputs, members, points or steps, or for coarser meshes",
         )
 

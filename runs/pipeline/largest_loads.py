@@ -116,7 +116,7 @@ class StaticBeam(NamedTuple):
         """
         equilibria = positions(system, instants(system, duration))
         if not equilibria:
-            raise NumericsError("the boom has no rest under the loads of t = 0")
+            raise NumericsError("the boom has no static equilibrium under the loads at t = 0")
         rests = [static_result(boom, system, along, *rest) for rest in equilibria.items()]
         return cls(boom, along, np.array([*equilibria.values()]), rests)
 

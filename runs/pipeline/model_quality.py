@@ -144,7 +144,7 @@ def quality_notes(
         most = _percent(max(errors))
         yield QualityNote(
             "step",
-            f"The estimated error of the tip by the time step is {most} of its range at most.",
+            f"The time step causes an estimated error of the tip of at most {most} of its range.",
         )
     for name, model in models.items():
         if (error := model.reduction_errors.get("contact_compliance")) is not None:
@@ -221,8 +221,8 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
     if parted:
         which = join_words([f"{name} {time:.2f} s" for name, time in parted.items()])
         yield (
-            "The motion is chaotic: runs whose data differ immeasurably are "
-            f"{_percent(_DIVERGED)} of the tip's range apart after these times: {which}. A later "
+            "The motion is chaotic: runs with immeasurably different data differ by "
+            f"{_percent(_DIVERGED)} of the tip's range after these times: {which}. A later "
             "curve is one of many possible motions; slow peaks are predictable for longer."
         )
     regular = [name for name, time in times.items() if time is None]
@@ -300,7 +300,7 @@ def _large_displacements(boom: Boom, data: xr.Dataset) -> Iterator[str]:
         if move > LARGE_DISPLACEMENT * boom.length:
             yield (
                 f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of "
-                "the boom's length: small displacements do not hold; check units and loads"
+                "the boom's length: small-displacement theory is not valid; check units and loads"
             )
 
 
@@ -309,12 +309,13 @@ def _numerical(summary: Summary) -> Iterator[str]:
     for name, model in summary.models.items():
         if (error := model.reduction_errors.get("contact_compliance") or 0.0) > MAX_RELATIVE_ERROR:
             yield (
-                f"caution: the {model.modes} coordinates of {name} err by {TO_PERCENT * error:.2g} "
-                "% where the segments touch; allow more modes, or --modes auto"
+                f"caution: the reduction of {name} to {model.modes} coordinates has an error of "
+                f"{TO_PERCENT * error:.2g} % of the local contact compliance; allow more modes, or "
+                "--modes auto"
             )
     for name, model in summary.models.items():
         if (error := model.mesh_error or 0.0) > MAX_RELATIVE_ERROR:
             yield (
-                f"caution: the mesh of {name} errs by {TO_PERCENT * error:.2g} % of the local "
-                "compliance where the segments touch; give a smaller mesh_size"
+                f"caution: the mesh of {name} causes an error of {TO_PERCENT * error:.2g} % of the "
+                "local contact compliance; give a smaller mesh_size"
             )

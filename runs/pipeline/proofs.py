@@ -163,7 +163,7 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
 def _proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
     name, beam, table = state.combined.name, state.beam, state.combined.combination
     if beam is None:
-        raise NumericsError(f"{name}: the boom has no rest; nothing holds it, or it buckles")
+        raise NumericsError(f"{name}: no static equilibrium; the boom is unrestrained or buckles")
     for rule in (_wall_proofs, _boom_proofs, _station_proofs, _foot_proofs):
         for one in rule(beam, table, case):
             if one.kind in table.proofs:

@@ -95,8 +95,8 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
     for number, joint in enumerate(case.joints, start=1):
         if any(joint.normal_forces) and joint.friction == 0.0:
             yield (
-                f"joint[{number}].normal_forces: they press for a friction, which is 0, and do "
-                "nothing; give friction, usual is 0.05 to 0.3, or leave them out"
+                f"joint[{number}].normal_forces: they have no effect, since friction is 0; give "
+                "friction, usual is 0.05 to 0.3, or leave them out"
             )
     moves = (case.loads, case.base, case.driven, case.hoist, case.slew, case.luff)
     if case.gravity is not None and not case.start.at_rest and any(moves):
@@ -309,7 +309,7 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
         for number, table in enumerate(tables):
             if table in tables[:number]:
                 first = tables.index(table) + 1
-                yield f"{name}[{number + 1}]: is {name}[{first}] once more; leave one of them out"
+                yield f"{name}[{number + 1}]: repeats {name}[{first}]; leave one of them out"
     payload, end = case.payload, boom.tip - NEAR_TIP * boom.length
     weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [case.gravity.across]))
 
@@ -327,7 +327,7 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
         if sum(isclose(mass, payload.mass, rel_tol=SAME_LOAD) for mass in tip_masses) > 1:
             yield (
                 f"segment[{len(boom.segments)}].masses: the {payload.mass:g} kg of the payload "
-                "are at the tip once more; leave one of them out"
+                "are repeated at the tip; leave one of them out"
             )
     for number, (table, load) in enumerate(zip(case.loads, loads_of_case, strict=True), start=1):
         if load.direction == "y" or table.moment or not isinstance(load.history, Step | Ramp):
@@ -448,6 +448,6 @@ def tip_cautions(where: str, tip: float | None, boom: Boom) -> list[str]:
         return []
     return [
         f"caution: {where} the tip rests at {tip:.3g} m, {100.0 * abs(tip) / boom.length:.2g} % of "
-        "the boom's length and more than 5 %: small displacements do not hold; check units and "
-        "loads"
+        "the boom's length and more than 5 %: small-displacement theory is not valid; check "
+        "units and loads"
     ]

@@ -146,7 +146,7 @@ def _equilibrium_steps(values: Array, passed: Array) -> Indices:
     """
     turns = sorted({step for change in values for step in _reversals(change).tolist()})
     if len(turns) > _MOST_TURNS:
-        raise NumericsError(f"loads turn back {len(turns)} times, too often")
+        raise NumericsError(f"loads and drives reverse {len(turns)} times, more than {_MOST_TURNS}")
     ends = passed[[0, *turns, -1]]
     parts = np.arange(_BETWEEN_TURNS) / _BETWEEN_TURNS
     between = ends[:-1, None] + np.diff(ends)[:, None] * parts

@@ -102,7 +102,7 @@ class Results:
         case = case_file.load(str(folder / CASE))
         expected = toml.digest(case)
         if expected != summary.case_hash == sha256((folder / CASE).read_bytes()).hexdigest():
-            what = "is another version's, which had other keys; run the case again"
+            what = "was written by another version with other keys; run the case again"
             raise BadInput(str(folder), CASE, what)
         marks = {TRAJECTORIES: trajectories.attrs.get("case_hash"), SUMMARY: summary.case_hash}
         if ensembles is not None:
@@ -226,9 +226,7 @@ def prepare(out: str, file: str) -> Path:
     if folder.exists() and not folder.is_dir():
         raise BadInput(file, key, "is a file; give a folder")
     if resolve_path(folder).is_mount():
-        raise BadInput(
-            file, key, "is where a disk begins, and cannot be replaced; give a folder in it"
-        )
+        raise BadInput(file, key, "is a mount point and cannot be replaced; give a folder in it")
     try:
         with scratch_folder(folder):
             names = {path.name for path in folder.glob("*")}
@@ -238,7 +236,7 @@ def prepare(out: str, file: str) -> Path:
         ) from None
     if names and not {MANIFEST, TRAJECTORIES} <= names:
         raise BadInput(
-            file, key, "holds files that are not a run's; give a new folder or an earlier run's"
+            file, key, "contains other files; give a new folder or one of an earlier run"
         )
     check_not_working_folder(folder, file, key)
     return folder
@@ -327,7 +325,7 @@ def _read(path: Path, how: Callable[[Path], Any]) -> Any:
     except FileNotFoundError:
         what = "missing; give the folder of a run that has finished"
     except ValidationError as error:
-        what = f"{first_error(error)}; is damaged or another version's; run the case again"
+        what = f"{first_error(error)}; is damaged or of another version; run the case again"
     except (OSError, ValueError, TypeError, KeyError) as error:
         what = f"cannot be understood ({error}); run the case again"
     raise BadInput(str(path.parent), path.name, what)

@@ -175,14 +175,14 @@ class ModelSummary(SummaryTable):
     first_peak: dict[str, FirstPeak]
     peak_contact_force: Annotated[
         FiniteNumber,
-        Metric("peak_contact_force", "N", "peak of a blow", TO_KILO, "kN", charted=False),
+        Metric("peak_contact_force", "N", "peak force of an impact", TO_KILO, "kN", charted=False),
     ]
     wall_time: Annotated[
         float | None, Metric("", "s", "wall time", 1.0, "s", heading="wall time", form=".1f")
     ] = None
     step_error: Annotated[
         FiniteNumber,
-        Metric("step_error", "1", "error by the time step", TO_PERCENT, "%", charted=False),
+        Metric("step_error", "1", "time-step error of the tip", TO_PERCENT, "%", charted=False),
     ] = None
     resolving_step: FiniteNumber = None
     ensemble: EnsembleSummary | None = None

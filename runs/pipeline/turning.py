@@ -203,7 +203,7 @@ def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:
             if swing > _SMALL:
                 yield (
                     f"caution: hoist.pendulum: in {model} the load swings by "
-                    f"{np.rad2deg(np.arctan(swing)):.3g} degrees; it moves as for small angles"
+                    f"{np.rad2deg(np.arctan(swing)):.3g} degrees; its model is for small angles"
                 )
 
 
@@ -220,6 +220,6 @@ def turning_cautions(where: str, frequency: float, case: Case) -> Iterator[str]:
         if part > _SLOW:
             yield (
                 f"caution: {key}: the boom turns with {100.0 * part:.3g} % of its first circular "
-                f"frequency {where}; beyond 5 % the Coriolis forces of its vibration, which are "
-                "left out, matter"
+                f"frequency {where}; beyond 5 % the neglected Coriolis forces of its "
+                "vibration are significant"
             )

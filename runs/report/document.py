@@ -29,6 +29,13 @@ from runs.report.tables import Table
 # Parts of the report in which figures are numbered, in order.
 PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
 
+# Text for each error of the reduction of a shell.
+_REDUCTION_ERRORS = {
+    "contact_compliance": "reduction error of the local contact compliance {}",
+    "readings": "of tip and head {}",
+    "frequency_limit_in_hz": "natural frequencies accurate up to {} Hz",
+}
+
 
 def render(
     results: Results,
@@ -110,14 +117,11 @@ def _costs(results: Results) -> Mapping[str, str]:
     costs = {}
     for name, model in results.summary.models.items():
         parts = [f"{stage} {seconds:.2f} s" for stage, seconds in model.seconds.items()]
-        errors = dict(model.reduction_errors)
-        right_to = errors.pop("frequency_limit_in_hz", None)
         parts += [
-            f"{what.replace('_', ' ')} of the reduction within {number(error, 2)}"
-            for what, error in errors.items()
+            text.format(number(error, 2))
+            for key, text in _REDUCTION_ERRORS.items()
+            if (error := model.reduction_errors.get(key)) is not None
         ]
-        if right_to is not None:
-            parts.append(f"its modes accurate up to {number(right_to, 2)} Hz")
         if error := model.mesh_error:
             parts.append(f"mesh error of the local compliance {percent(error, 2)}")
         costs[name] = ", ".join(parts)

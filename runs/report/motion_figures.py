@@ -198,8 +198,8 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
     first, last = (f"{100.0 * share:g} %" for share in SHARES)
     beyond = "" if run.regular else "; a later curve is one of many possible motions"
     return (
-        f"{band} Vertical lines: from when its members are {first} (dotted) and {last} (dashed) "
-        f"of the tip's range apart{beyond}."
+        f"{band} Vertical lines: times at which its members differ by {first} (dotted) and {last} "
+        f"(dashed) of the tip's range{beyond}."
     )
 
 

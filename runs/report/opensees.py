@@ -133,8 +133,8 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
         if present:
             raise BoomError(
                 key,
-                "cannot be exported to OpenSees, for which a boom is flat and undamped, starts "
-                "from rest, and rubs under given normal_forces; leave it out",
+                "cannot be exported to OpenSees, for which a boom must be flat and undamped, start "
+                "from rest, and have friction under given normal_forces only; leave it out",
             )
 
 

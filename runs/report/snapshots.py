@@ -345,7 +345,7 @@ def describe_one(results: Results, path: Path) -> Figure:
         segment = results.boom.segments[int(mode["segment"]) - 1].name
         caption = (
             f"The first buckling mode of the walls of {segment!r} in {model!r}, where they move "
-            "most, in the static state with the farthest tip. A mode has no size of its own."
+            "most, in the static state with the farthest tip. The amplitude is arbitrary."
         )
         return Figure(path, f"Buckling of {segment}", caption)
     seen = _NAME.fullmatch(name.removesuffix(path.suffix))

@@ -271,8 +271,8 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
     remarks = [
         *([f"grey: no {quantity.title}"] if values[has_values].isnull().any() else []),
         *([] if permitted is None else [f"red, dotted: limit of {permitted:.4g}"]),
-        *(["×: the numerics failed"] if failed[has_values].values.any() else []),
-        *([f"without any: {', '.join(left_out)}"] if left_out else []),
+        *(["×: the computation failed"] if failed[has_values].values.any() else []),
+        *([f"no values: {', '.join(left_out)}"] if left_out else []),
     ]
     sheet.supxlabel("; ".join(remarks), x=0.02, ha="left", fontsize=9.0)
     title = f"{quantity.title[0].upper()}{quantity.title[1:]}: {low:.3g} to {high:.3g} "

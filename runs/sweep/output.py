@@ -58,7 +58,7 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
         attributes = {"units": one.unit, "long_name": one.title}
         variables[one.name] = dims, values, attributes | permitted.get(one.name, {})
     failed = np.array([row["failed"] for row in rows], dtype=np.int8).reshape(shape)
-    variables["failed"] = dims, failed, {"long_name": "the numerics failed"}
+    variables["failed"] = dims, failed, {"long_name": "the computation failed"}
     if plan.reference is not None:
         ends = np.array([one.until for one in outcomes], dtype=float).reshape(plan.shape)
         until = {"units": "s", "long_name": "tips compared until"}

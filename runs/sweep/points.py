@@ -125,7 +125,7 @@ def plan(
         what = f"{reference!r} is not a model that is run; give {choices(names)}"
         raise BadInput(file, "--against", what)
     if names == [reference]:
-        what = f"nothing is run beside {reference!r}; run another model, too"
+        what = f"no model is compared with {reference!r}; run another model"
         raise BadInput(file, "--against", what)
     bonded = [model.name for model in run if model.bonded]
     limits = case_limits(whole.limits)
@@ -252,7 +252,7 @@ def _check_influence(file: str, variations: Sequence[Variation], points: Sequenc
             raise BadInput(
                 file,
                 f"--vary {variation.key}",
-                "nothing that is run depends on it; leave it out, or run the models that do",
+                "no model of the sweep depends on it; leave it out, or run a model that does",
             )
 
 

@@ -61,7 +61,7 @@ def prepare(folder: Path, file: str) -> None:
     key = f"--out {folder}"
     if folder.is_dir() and not (folder / POINTS).is_dir() and any(folder.iterdir()):
         raise BadInput(
-            file, key, "holds files that are not a sweep's; give a new folder or an earlier sweep's"
+            file, key, "contains other files; give a new folder or one of an earlier sweep"
         )
     check_not_working_folder(folder, file, key)
     (folder / POINTS).mkdir(parents=True, exist_ok=True)

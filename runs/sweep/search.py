@@ -142,7 +142,7 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
         "satisfied": "",
     }
     ways = np.sign(np.diff(results))
-    note = f"The {quantity.title} is not monotone over {key}: other places may hold, too."
+    note = f"The {quantity.title} is not monotonic over {key}: other values may meet it, too."
     notes = [note] if (ways > 0.0).any() and (ways < 0.0).any() else []
     notes += rigid_wall_cautions(plan.points[0].case, plan.coordinates["model"][0])
     Table.of_rows("search", f"Bracket of {key}: {bound}", columns, rows, notes).show(console)

@@ -222,7 +222,7 @@ def _values(text: str) -> tuple[float, ...]:
     else:
         raise Unplaced(f"{text!r} is not understood; {_REMEDY}")
     if len(numbers) == 1:
-        raise Unplaced("one value varies nothing; give two or more")
+        raise Unplaced("there is only one value; give two or more")
     if len(set(numbers)) < len(numbers):
         raise Unplaced(f"a value is given twice in {text!r}; give each once")
     return tuple(sorted(numbers))

@@ -103,7 +103,7 @@ def test_results_are_saved_reported_and_put_into_a_workbook(
     assert "<b>The paper's boom" in results._repr_html_().replace("&#x27;", "'")
     (folder / "mine.txt").touch()
     (folder / "trajectories.nc").unlink()
-    with pytest.raises(pt.BadInput, match="holds files that are not a run's"):
+    with pytest.raises(pt.BadInput, match="contains other files"):
         results.save(folder)
 
 

@@ -118,7 +118,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
          "more than a third: deflections grow out of proportion"),
         ('[[load]]\nsegment = "fly"\nx = 14.0\nmagnitude = -1e5\n',
          "caution: {} the tip rests at -1.79 m, 13 % of the boom's length and more than 5 %: "
-         "small displacements do not hold; check units and loads"),
+         "small-displacement theory is not valid; check units and loads"),
     ],
 )  # fmt: skip
 def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:

@@ -148,8 +148,8 @@ MISTAKES = {
     "be written (Not a directory); give a folder that can",
     f"run case.toml {SERIES} --out /proc/nowhere": "case.toml: --out /proc/nowhere: cannot be "
     "written (No such file or directory); give a folder that can",
-    f"run case.toml {SERIES} --out .": "case.toml: --out .: holds files that are not a run's; give "
-    "a new folder or an earlier run's",
+    f"run case.toml {SERIES} --out .": "case.toml: --out .: contains other files; give a new "
+    "folder or one of an earlier run",
     "check case.toml --picture boom.pdf": "case.toml: --picture boom.pdf: must end in .png",
     "report nowhere": "nowhere: folder: does not exist; give the folder of a run",
     "report .": ".: trajectories.nc: missing; give the folder of a run that has finished",

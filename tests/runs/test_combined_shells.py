@@ -117,4 +117,4 @@ def test_the_command_takes_a_shell(
     with pytest.raises(SystemExit) as refused:
         cli.main(["prove", str(path), "--shell", "beam"])
     assert refused.value.code == 2
-    assert "--shell: 'beam' is no shell" in capsys.readouterr().err
+    assert "--shell: 'beam' is not a shell" in capsys.readouterr().err

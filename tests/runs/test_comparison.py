@@ -108,7 +108,7 @@ def test_times_must_agree() -> None:
 def test_every_level_has_a_description() -> None:
     for level in (PointwiseDifferences, PeakDifferences, Distributions):
         assert level.scope.count(".") == 1
-        assert "cannot tell" in level.scope
+        assert "it does not show" in level.scope
     assert list(Comparison.__slots__) == ["pointwise", "peaks", "distributions"]
 
 

@@ -205,7 +205,7 @@ def test_maps_over_a_third_key_stand_side_by_side(against: Plan, sheets: list[Sh
     ("models", "reference", "line"),
     [
         (MODELS, "shel", "'shel' is not a model that is run; give {}"),
-        (MODELS[:1], MODELS[0], "nothing is run beside 'kantorovich-4'; run another model, too"),
+        (MODELS[:1], MODELS[0], "no model is compared with 'kantorovich-4'; run another model"),
     ],
 )
 def test_a_reference_must_be_one_of_several_models(

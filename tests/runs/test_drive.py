@@ -368,8 +368,8 @@ def test_check_prints_drives() -> None:
     shown = StringIO()
     print_check(CheckedCase(case), Console(file=shown, width=200))
     assert (
-        "A drive extends 'inner' by 4 m from 0 to 5 s, at 1.6 m/s at most; the least overlap is "
-        "1 m.\n"
+        "A drive extends 'inner' by 4 m from 0 to 5 s, at 1.6 m/s at most; the smallest overlap "
+        "is 1 m.\n"
     ) in shown.getvalue()
 
 

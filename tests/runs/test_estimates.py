@@ -165,7 +165,7 @@ def test_excessive_memory_or_time_is_refused(edits: tuple[tuple[str, str], ...],
     """Reference: non-regression; what a million outputs, dofs and steps take was measured."""
     write(*edits)
     with refused(
-        f"case.toml: --large: missing, and it may take {line}; give it to start all the same, or "
+        f"case.toml: --large: missing, and it may take {line}; give it to start anyway, or "
         "ask for fewer outputs, members, points or steps, or for coarser meshes"
     ):
         refuse_large(run_cost(case_file.load("case.toml")), "case.toml")

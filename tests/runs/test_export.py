@@ -183,8 +183,9 @@ def test_points_follow_a_law_behind_its_spring() -> None:
 def test_unsupported_cases_are_refused(tmp_path: Path) -> None:
     case = case_file.load(str(CASES / "spatial.toml"))
     with refused(
-        "case.toml: joint.lateral_play: cannot be exported to OpenSees, for which a boom is flat "
-        "and undamped, starts from rest, and rubs under given normal_forces; leave it out"
+        "case.toml: joint.lateral_play: cannot be exported to OpenSees, for which a boom must be "
+        "flat and undamped, start from rest, and have friction under given normal_forces only; "
+        "leave it out"
     ):
         write(case_file.select(case, "", ["beam-fe"]), "case.toml", None, tmp_path / "x.py", None)
 

@@ -216,9 +216,7 @@ def test_a_large_run_is_asked_about(draft: Draft, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr("runs.pipeline.estimates.MAX_TIME", 1.0)
     (question,) = page.shell({"values": {}})
     assert question["stage"] == "large"
-    assert re.fullmatch(
-        r"The run may take .* GB and .*\. Start it all the same\?", question["what"]
-    )
+    assert re.fullmatch(r"The run may take .* GB and .*\. Start it anyway\?", question["what"])
     assert [one["stage"] for one in page.shell({"values": {}, "large": True})] == small
 
 

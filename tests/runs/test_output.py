@@ -135,6 +135,6 @@ def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
     )
     assert told == (
         "caution: in kantorovich-4 the tip rests at -1.9 m, 10 % of the boom's length and more "
-        "than 5 %: small displacements do not hold; check units and loads"
+        "than 5 %: small-displacement theory is not valid; check units and loads"
     )
     assert told.replace("'", "&#39;") in (folder / "report.html").read_text(encoding="utf-8")

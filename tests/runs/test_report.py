@@ -271,20 +271,20 @@ def test_large_displacement_gives_a_caution(results: Results) -> None:
     (line,) = told(replace(results, trajectories=wild))
     name = str(wild["model"].values[0])
     assert line == (
-        f"caution: in {name} the tip moves by 2 m, more than a tenth of the boom's length: small "
-        "displacements do not hold; check units and loads"
+        f"caution: in {name} the tip moves by 2 m, more than a tenth of the boom's length: "
+        "small-displacement theory is not valid; check units and loads"
     )
     summary = results.summary.model_copy(update={"cautions": [line]})
     assert line in tables(replace(results, summary=summary), width=200)
 
 
 POOR_REDUCTION = (
-    "caution: the 6 coordinates of {} err by 93 % where the segments touch; allow more modes, or "
-    "--modes auto"
+    "caution: the reduction of {} to 6 coordinates has an error of 93 % of the local contact "
+    "compliance; allow more modes, or --modes auto"
 )
 POOR_MESH = (
-    "caution: the mesh of {} errs by 34 % of the local compliance where the segments touch; "
-    "give a smaller mesh_size"
+    "caution: the mesh of {} causes an error of 34 % of the local contact compliance; give a "
+    "smaller mesh_size"
 )
 
 
@@ -314,9 +314,9 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     shell = {"reduction_errors": errors, "mesh_error": 0.26, "seconds": {"reduction": 1.204}}
     page = render(changed(results, name, **shell), Addition(), [], [])
     assert (
-        "reduction 1.20 s, contact compliance of the reduction within 2.4 × 10⁻⁹, readings of the "
-        "reduction within 0.013, its modes accurate up to 85 Hz, mesh error of the local "
-        "compliance 26 %" in page
+        "reduction 1.20 s, reduction error of the local contact compliance 2.4 × 10⁻⁹, of tip and "
+        "head 0.013, natural frequencies accurate up to 85 Hz, mesh error of the local compliance "
+        "26 %" in page
     )
 
 

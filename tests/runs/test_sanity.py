@@ -135,7 +135,7 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
          "joint[1].drive: the largest speed at which 'fly' moves is 8 m/s, usual is up to 5 "
          "m/s; if it is in mm/s, give 0.008 m/s"),
         (PLAY, f"{PLAY}normal_forces = [1e3, 1e3]\n",
-         "joint[1].normal_forces: they press for a friction, which is 0, and do nothing; "
+         "joint[1].normal_forces: they have no effect, since friction is 0; "
          "give friction, usual is 0.05 to 0.3, or leave them out"),
         ("[0.7, -1.1]", "[0.7, 1.1]",
          "cylinder[1].ground: a height of 1.1 m is above the lug, and the cylinder would pull; "
@@ -155,7 +155,7 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
          "load[1].magnitude: -2942 N at the tip is the weight of the payload, which acts already; "
          "leave it out"),
         (LOAD, f"{LOAD}, {LOAD}",
-         "load[2]: is load[1] once more; leave one of them out"),
+         "load[2]: repeats load[1]; leave one of them out"),
         ("-1595.0", "-2942.0",
          "load[1].magnitude: -2942 N at the tip is the weight of the payload, which acts already; "
          "leave it out"),
@@ -166,7 +166,7 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
          "load[2].magnitude: -1257 N in all is the weight of 'fly', which the table gravity adds "
          "already; leave it out"),
         ("0.004 }", "0.004 }\nmasses = [{ x = 'head', mass = 300.0 }]",
-         "segment[2].masses: the 300 kg of the payload are at the tip once more; leave one of them "
+         "segment[2].masses: the 300 kg of the payload are repeated at the tip; leave one of them "
          "out"),
         ('x = "head", magnitude', "magnitude",
          "load[1]: -1595 N/m along the whole of 'fly' makes 9570 N, 5.4 times its weight; a force "

@@ -150,7 +150,7 @@ def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
     """Reference: the line that a user reads, and the speeds above."""
     slow = {"time = 5.0": "time = 40.0", "duration = 7.0": "duration = 41.0"}
     assert (
-        f"caution: the drive of 'inner' sticks and slips along its whole travel: it moves at "
+        f"caution: the drive of 'inner' sticks and slips during its whole travel: it moves at "
         f"{caution}\n"
     ) in printed(print_check, CheckedCase(drawn_by(tmp_path, rope, **slow)), width=300)
 

@@ -122,7 +122,7 @@ def test_beams_without_plates_accept_any_play(planned: Planned) -> None:
         (["joint.play=0:1:1"], "joint.play: COUNT must be from 2 to 10000, got 1"),
         (["joint.play=0,inf"],
          "joint.play: must be finite numbers, got 'inf'; give KEY=START:STOP:COUNT or KEY=A,B,..."),
-        (["joint.play=0"], "joint.play: one value varies nothing; give two or more"),
+        (["joint.play=0"], "joint.play: there is only one value; give two or more"),
         (["joint.play=1,1"], "joint.play: a value is given twice in '1,1'; give each once"),
         (["joint.play=0,0.01", "joint.play=0,0.02"],
          "joint.play: given twice; give all its values at once"),
@@ -136,8 +136,8 @@ def test_beams_without_plates_accept_any_play(planned: Planned) -> None:
         (["payload.gravity=1,2"], "payload.gravity=1: payload.mass: missing; it is the mass in kg"),
         (["joint.play=0,0.01", "segment[2].span[2]=8,19"], "joint.play=0 segment[2].span[2]=8: "
          "segment[2].span: must run from a smaller to a larger x, got [9, 8] m"),
-        (["model[3].element_length=0.5,1"], "model[3].element_length: nothing that is run depends "
-         "on it; leave it out, or run the models that do"),
+        (["model[3].element_length=0.5,1"], "model[3].element_length: no model of the sweep "
+         "depends on it; leave it out, or run a model that does"),
     ],
     ids=lambda value: value if isinstance(value, str) else " ".join(value),
 )  # fmt: skip
@@ -163,8 +163,7 @@ def test_a_box_without_room_for_the_play_is_refused(planned: Planned) -> None:
 
 def test_a_folder_of_something_else_is_refused(planned: Planned) -> None:
     with refused(
-        "case.toml: --out .: holds files that are not a sweep's; give a new folder or an earlier "
-        "sweep's"
+        "case.toml: --out .: contains other files; give a new folder or one of an earlier sweep"
     ):
         sweep.prepare(Path(), planned("joint.play=0,0.01").file)
 

@@ -128,7 +128,7 @@ def test_a_run_of_another_version_is_told_from_a_mixed_one(again: Path, refusal:
     marks = [sha256(text).hexdigest() for text in (now, case.read_bytes())]
     summary.write_text(summary.read_text(encoding="utf-8").replace(*marks), encoding="utf-8")
     assert refusal("report", again) == (
-        "case.toml: is another version's, which had other keys; run the case again\n"
+        "case.toml: was written by another version with other keys; run the case again\n"
     )
 
 
@@ -204,7 +204,7 @@ def test_a_summary_of_another_version_is_one_line(
     (again / "summary.json").write_text(json.dumps(summary), encoding="utf-8")
     assert refusal(command, again) == (
         "summary.json: models: kantorovich-5: contact_changes: Field required; is damaged or "
-        "another version's; run the case again\n"
+        "of another version; run the case again\n"
     )
 
 
