@@ -128,8 +128,8 @@ def critical_factor(
     """Return the buckling factor of the axial forces for bonded joints.
 
     It is infinite without axial forces, and None for a mechanism. For a telescoping boom it is the
-    minimum over several extensions, including the extreme ones. Axial forces that change with time
-    also count at their largest value at the foot.
+    minimum over several extensions, including the extreme ones. If axial forces change with time,
+    their state with the largest compression of the foot also counts.
 
     Args:
         boom: boom with its axial forces.
@@ -231,7 +231,10 @@ class _CoupledGroup:
         return BeamMember(read)
 
     def changes(self, levels: Array) -> list[Array]:
-        """Return the part of K_G for each change of axial forces, at values of the histories."""
+        """Return the change of K_G by axial forces that change with time.
+
+        ``levels`` has the value of each history.
+        """
         boom = self._boom
         lines: list[dict[Direction, tuple[Array, Array]]] = [
             {
@@ -256,8 +259,8 @@ class _CoupledGroup:
 
         The keys are joint, motion and index of the station.
 
-        ``moved`` gives (x on the outer segment, x on the inner segment) in m of the stations of
-        telescoping joints.
+        ``moved`` has (x on the outer segment, x on the inner segment) in m of each station of a
+        telescoping joint.
         """
         return {
             (number, motion, k): self.members[joint.inner].at(motion, on_inner)

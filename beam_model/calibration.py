@@ -166,7 +166,7 @@ def effective_stiffness(segment: Segment, probed: ProbeResponses) -> Stiffness:
 
 
 def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
-    """Return the segment with a stiffness, and with the rotary inertia of its plates.
+    """Return the segment with another stiffness, and with the rotary inertia of its plates.
 
     A tapered segment stays unchanged.
     """
@@ -207,7 +207,7 @@ def _bending(segment: Segment, probed: ProbeResponses, motion: ProbedMotion) -> 
 
 
 def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: int) -> Array:
-    """Return the factors (count,) of the stiffnesses by least squares of relative errors."""
+    """Return the stiffness ratios (count,) of shell to beam by least squares of relative errors."""
     first, turns = _component(segment, probed, motion, np.ones(count))
     probes = _probes(first, probed, motion)
     moved = probes.any(axis=1)
@@ -234,7 +234,7 @@ def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: 
 def _component(
     segment: Segment, probed: ProbeResponses, motion: ProbedMotion, factors: Array
 ) -> tuple[Component, int]:
-    """Return the component of a motion with stiffness factors, and its number of rigid modes."""
+    """Return the component of a motion with scaled stiffnesses, and its number of rigid modes."""
     if motion == "twist":
         assert segment.lateral is not None
         torsion = factors[0] * segment.lateral.torsion_constant

@@ -80,7 +80,7 @@ class Component:
 
     @property
     def member(self) -> BeamMember:
-        """The load vectors of a segment that moves only along z by this component."""
+        """The load vectors of a segment with this component only, along z."""
         nothing = np.zeros(len(self.load))
         return BeamMember(lambda motion, rule: rule(self) if motion == "z" else nothing)
 
@@ -114,14 +114,14 @@ class BeamMember:
     """Rows and load vectors of a segment in any coordinates; a :class:`geometry.load.Member`.
 
     Args:
-        read: function that returns a row (num_coordinates,), from a motion and the function that
-            returns this row of its component.
+        read: function (motion, row of a component) that returns the row (num_coordinates,); the
+            second argument is a function that returns the row of a :class:`Component`.
     """
 
     read: Callable[[Motion, Rule], Array]
 
     def at(self, motion: Motion, x: float) -> Array:
-        """Return the row (num_coordinates,) of a deflection or the twist at x in m."""
+        """Return the row (num_coordinates,) of a deflection, or of the twist, at x in m."""
         return self.read(motion, lambda component: component.at(x))
 
     def unit_load_vector(self, x: float, direction: Direction) -> Array:
@@ -172,5 +172,5 @@ def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
 
 
 def products(values: Array, weights: Array) -> Array:
-    """Return ∫ f_i f_j dx, from values (num_functions, num_points) and weights in m."""
+    """Return ∫ f_i f_j dx by values (num_functions, num_points) and weights (num_points,) in m."""
     return np.asarray((values * weights) @ values.T)

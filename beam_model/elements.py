@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Two-node beam elements, which are exact at their nodes if no load acts between them.
 
-Both elements have the deflection w and the rotation θ as nodal unknowns. With Φ = 12 E J / (G A_s
-h²) the shape functions of a prismatic element solve the homogeneous Timoshenko equations (Friedman
-and Kosmatka 1993); for Φ = 0 they are the Hermite cubics with θ = w′. In a tapered element, the
-moment is also linear, and the curvature follows from the local flexibility (Eisenberger and Reich
-1989).
+The nodal unknowns are the deflection w and the rotation θ. The shape functions of a prismatic
+element solve the homogeneous Timoshenko equations with Φ = 12 E J / (G A_s h²) (Friedman and
+Kosmatka 1993); for Φ = 0 they are the Hermite cubics with θ = w′. In a tapered element, the moment
+is also linear, and the curvature follows from the local flexibility (Eisenberger and Reich 1989).
 """
 
 from __future__ import annotations
@@ -162,7 +161,7 @@ class TaperedElement:
         return np.asarray(moved.T @ flexibility @ moved)
 
     def _shapes(self, rigid: tuple[float | Array, ...], bent: _Pair, xi: Array) -> Array:
-        """Return shape functions (4, num_points): motion with the first node, plus bending."""
+        """Return shape functions (4, num_points): rigid motion of the first node, plus bending."""
         moved = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
         return np.asarray(moved + self._moments.T @ np.array([one(xi) for one in bent]))
 
@@ -183,7 +182,7 @@ class TaperedElement:
 
 
 def _powers(xi: Array) -> tuple[Any, Any, Any]:
-    """Return ξ, ξ² and ξ³; for a single ξ as Python numbers, which are faster."""
+    """Return ξ, ξ² and ξ³; a single ξ gives Python numbers, which are faster."""
     powers = xi, xi**2, xi**3
     return powers if xi.ndim else (xi.item(), powers[1].item(), powers[2].item())
 

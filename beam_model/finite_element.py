@@ -197,7 +197,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
-    """Return the nodes of equal elements between required x; close x share a node."""
+    """Return the x of nodes in m, with equal elements between required x. Close x share a node."""
     supports = [support.x for support in segment.supports]
     masses = [*(mass.x for mass in segment.all_masses), *segment.compression.places]
     places: list[float] = []

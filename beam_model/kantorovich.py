@@ -219,10 +219,10 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
 
 
 def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
-    """Return functions of a free segment, (30), (31): 1, x − x2, then (x − x2)^(i−1) (x − x4).
+    """Return the functions (30), (31) of a free segment: 1, x − x2, then (x − x2)^(i−1) (x − x4).
 
-    The base is incomplete: all functions keep x4 on the tangent at x2, so that the series does not
-    converge to a free beam.
+    The base is incomplete. With all functions, the deflection at x4 lies on the tangent at x2, so
+    that the series does not converge to a free beam.
 
     Args:
         segment: segment from x2 to x4.

@@ -91,7 +91,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
 
 
 def _both_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
-    """Return the rows (2 num_pieces, num_modes) of a continuous quantity at both ends of pieces."""
+    """Return rows (2 num_pieces, num_modes) of a continuous quantity at both ends of each piece."""
     return np.asarray(np.repeat([read(x) for x in breaks], 2, axis=0)[1:-1])
 
 
@@ -101,7 +101,7 @@ def _slope(breaks: Array, rows: Array) -> Array:
 
 
 def _to_ends(breaks: Array, means: Array, acting: set[float]) -> Array:
-    """Return rows (2 num_pieces, num_modes) at both ends of pieces, from means over pieces."""
+    """Return rows (2 num_pieces, num_modes) at both ends of each piece, from means over pieces."""
     jumps = [int(np.abs(breaks - x).argmin()) for x in acting]
     ends = np.repeat(means, 2, axis=0)
     for first, last in pairwise(np.unique(jumps).tolist()):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Condensation of shells to as few coordinates as a beam has.
+"""Condensation of shells to a number of coordinates as small as that of a beam.
 
 The condensed system keeps the lowest modes, and modes with a large inertial response b²/ω⁴ to loads
 b relative to the static response Σ b²/ω². Responses to forces represent the other modes, and match
@@ -48,7 +48,7 @@ def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
 
 
 def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
-    """Return the order (num_modes,) of modes: lowest, then by b²/ω⁴ over the total b²/ω²."""
+    """Return the order (num_modes,) of modes: the lowest, then by b²/ω⁴ relative to Σ b²/ω²."""
     elastic = omega2 > 0.0
     gives = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
     whole = gives.sum(axis=1, keepdims=True)

@@ -33,8 +33,8 @@ def gap_system(
 ) -> GapSystem:
     """Return the gap system of a boom of beams.
 
-    Pad forces act at the centres of pads. ``sides`` are the sides of contact rows, ``BOTH_SIDES``
-    or ``EACH_SIDE``.
+    Forces act at the centres of pads. ``sides`` is ``BOTH_SIDES`` for contact rows that act on both
+    sides, or ``EACH_SIDE`` for a row for each side.
     """
     modes = BoomModes(boom, models)
     system = system_without_drives(boom, modes, sides)

@@ -64,7 +64,7 @@ class StaticState(NamedTuple):
 
 @dataclass(frozen=True)
 class Elements:
-    """Segments of a boom as elements whose static solution is exact.
+    """Segments of a boom, with elements that are exact in statics.
 
     Args:
         boom: boom with joints bonded or with play.
@@ -82,7 +82,7 @@ class Elements:
 
     @cached_property
     def unsupported(self) -> list[Component]:
-        """Components along z of segments without supports, with nodes at possible supports."""
+        """The components along z without supports, with nodes at all possible supports."""
         size, theory = self._kind
         components = []
         for number, segment in enumerate(self.boom.segments):
@@ -94,7 +94,7 @@ class Elements:
 
     @property
     def _kind(self) -> tuple[float, Theory]:
-        """Return the element length in m, smaller with axial forces or tapers, and the theory."""
+        """Return the element length in m, small with axial forces or tapers, and the theory."""
         segments, count = self.boom.segments, self.count
         if self.boom.compressed or any(one.head_section is not None for one in segments):
             count = max(count, ELEMENTS_WITH_AXIAL_FORCE)
@@ -143,9 +143,9 @@ def static_state(
 
 
 def estimate_critical_factor(boom: Boom) -> float | None:
-    """Return the buckling factor of beam elements on walls that bend under pads.
+    """Return the buckling factor of beam elements, with walls that bend under pads.
 
-    It is infinite without axial forces, and None for a mechanism or extreme numbers.
+    It is infinite without axial forces, and None for a mechanism or if numbers overflow.
     """
     if not boom.compressed:
         return float("inf")
@@ -157,12 +157,12 @@ def estimate_critical_factor(boom: Boom) -> float | None:
 
 
 def telescoping_system(boom: Boom) -> GapSystem:
-    """Return the gap system of beam elements as for :func:`static_state`, with drives."""
+    """Return the gap system of the elements of :func:`static_state`, with drives."""
     return gap_system(boom, Elements(boom).segments).gather_loads()
 
 
 def net_reactions(boom: Boom, reactions: Sequence[NodeReaction]) -> list[NodeReaction]:
-    """Return the forces between segments at joints, and the reactions of the ground elsewhere.
+    """Return the forces between segments at joints, and the ground's reactions elsewhere.
 
     Args:
         boom: boom at rest.

@@ -79,7 +79,7 @@ def _travel(
 
 
 def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStations) -> list[float]:
-    """Return the extensions in m at which a station passes a node, and the extreme extensions."""
+    """Return the extreme extensions in m, and those at which a station passes a node."""
     joint = boom.joints[group.joints[-1]]
     outer, inner = (
         np.concatenate([c.breaks for c in models[segment].components.values()])
@@ -97,7 +97,7 @@ def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStatio
 def _extensions_between(
     boom: Boom, reach: tuple[float, float], passed: Sequence[Array]
 ) -> list[float]:
-    """Return the extensions in m within a range, and both ends of the range."""
+    """Return both ends of a range of extensions in m, and the extensions within it."""
     low, high = reach
     extensions = np.unique(np.clip(np.concatenate([reach, *passed]), low, high))
     near = SAME_PLACE * boom.length

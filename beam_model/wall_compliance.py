@@ -57,7 +57,7 @@ class PressedArea(NamedTuple):
 
 
 class _Axis:
-    """Cubic Hermite elements between nodes in m; on a closed axis, the last node is the first."""
+    """Cubic Hermite elements between nodes in m. The end nodes of a closed axis coincide."""
 
     def __init__(self, nodes: Array, closed: bool) -> None:
         self.nodes = nodes

@@ -7,7 +7,8 @@ import numpy as np
 class NumericsError(RuntimeError):
     """Error for a result that is not finite or exceeds its energy bound.
 
-    The message gives the remedy."""
+    The message gives the remedy.
+    """
 
 
 # Errors that extreme data may cause anywhere in a computation.

@@ -323,7 +323,8 @@ def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, fl
 def _lock(joints: Sequence[Joint], number: int) -> Joint | None:
     """Return the joint that carries a segment's axial force.
 
-    It is the joint with ``locked_at``; if no joint has this key, it is the last of the segment."""
+    It is the joint with ``locked_at``; if no joint has this key, it is the last of the segment.
+    """
     around = [joint for joint in joints if joint.inner == number]
     return max(around, key=lambda joint: (joint.locked_at is not None, joint.outer), default=None)
 

@@ -43,7 +43,8 @@ class Member(Body, Protocol):
     def rotation_load(self, direction: Direction) -> Array:
         """Return the load vector of an angular acceleration of 1 rad/s² about x = 0.
 
-        It is positive towards a larger slope, and excludes point masses."""
+        It is positive towards a larger slope, and excludes point masses.
+        """
 
 
 @dataclass(frozen=True, slots=True)

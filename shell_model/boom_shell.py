@@ -131,7 +131,7 @@ class BoomShell:
         return np.column_stack([self.joint_rows(number), dashpots, self.fixed_loads(number)])
 
     def fixed_loads(self, number: int) -> Array:
-        """Return the load vectors (num_owned, num_loads) of loads and ground lines of a segment."""
+        """Return the load vectors (num_owned, num_loads) of a segment's loads and ground lines."""
         loads = [push for load, push in self.loads if load.segment == number]
         loads += [push for segment, push in self.pin_moments if segment == number]
         loads += [line.push for line in self.lines if line.segment == number]
@@ -142,7 +142,7 @@ class BoomShell:
         return self.columns(number, [*self.joint_operators, *self.ties])
 
     def columns(self, number: int, operators: Iterable[Operator]) -> Array:
-        """Return a segment's operators as columns (num_owned, num_rows). Collective."""
+        """Return the operators' parts on a segment as columns (num_owned, num_rows). Collective."""
         shell = self.shells[number]
         rows = [shell.row(operator[number]) for operator in operators if number in operator]
         return np.array(rows).reshape(-1, shell.free.size).T

@@ -12,9 +12,9 @@ of −K_G φ = μ K φ: shift-and-invert at λ = 0, with one Cholesky factorisat
 walls have nearly the same λ; a Krylov space with several vectors for each mode separates them.
 
 Each segment buckles separately, on its supports, its cylinders and the tangent stiffness of its
-closed contacts. There, lateral motion and twist are fixed; at one of them, motion along the boom is
-also fixed. :func:`dynamics.second_order.buckling_factor` covers buckling of the whole boom, such as
-column buckling.
+closed contacts. At these places lateral motion and twist are fixed; at one of them, motion along
+the boom is also fixed. :func:`dynamics.second_order.buckling_factor` covers buckling of the whole
+boom, such as column buckling.
 """
 
 from __future__ import annotations
@@ -80,7 +80,7 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
     """Return the lowest buckling modes of a shell. Collective.
 
     Args:
-        shell: its supports and springs leave no rigid motion.
+        shell: shell without rigid motions.
         forces: (num_triangles, 3) membrane forces N_x, N_s, N_xs in N/m, positive in tension, in
             the frame of :func:`shell_model.stress.fields.wall_frame`; the same on every rank.
         count: number of modes.
@@ -124,7 +124,7 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
 
 
 def _has_compression(forces: Array) -> bool:
-    """Return whether a principal membrane force is compressive anywhere, beyond round-off."""
+    """Return whether a triangle has a compressive principal membrane force, beyond round-off."""
     n_x, n_s, n_xs = forces.T
     least = 0.5 * (n_x + n_s) - np.hypot(0.5 * (n_x - n_s), n_xs)
     return bool(least.min() < -_ROUND_OFF * np.abs(forces).max())
@@ -311,7 +311,7 @@ def rigid(shell: SegmentShell) -> float:
 
 
 def sideways(boom: Boom, number: int, shell: SegmentShell) -> Iterator[tuple[Array, float]]:
-    """Yield (row, stiffness) of rigid springs that prevent lateral motion, twist and axial motion.
+    """Yield (row, stiffness) of rigid springs against lateral motion, twist and axial motion.
 
     Rows are (num_owned,); stiffness is in N/m or N·m/rad. Collective.
     """

@@ -40,12 +40,12 @@ _JIT_DEFAULTS["cache_dir"] = (Path(_FORMS) / "protractile", *_MEANING)
 
 
 def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., Any]:
-    """Wrap a compiler so that it waits until no other process compiles. Collective.
+    """Return a compiler that waits until no other process compiles. Collective.
 
-    FFCx marks a form before it compiles the form. Another process that finds the mark waits for at
-    most ten seconds and then fails, which happens if the first process is slow or killed. So this
-    program's forms have their own folder, in which one process compiles at a time. An unfinished
-    form there belongs to a killed process and is removed.
+    FFCx marks a form while it compiles it. Another process that needs the form waits for ten
+    seconds at most. Then it fails, for example if the first process was killed. So this program's
+    forms have their own folder, and only one process compiles in it at a time. An unfinished form
+    there belongs to a killed process and is removed.
     """
 
     @wraps(compile_form)
@@ -101,7 +101,7 @@ def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> A
 
 
 def _edge_arguments(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
-    """Return arguments of ``create_mesh`` that connect three cells on an edge across ranks."""
+    """Return arguments of ``create_mesh`` that let three cells of different ranks share an edge."""
     if "max_facet_to_cell_links" in _CREATE_MESH:
         joined: dict[str, Any] = {"max_facet_to_cell_links": _CELLS_OF_AN_EDGE}
         if comm.size > 1:
@@ -216,8 +216,8 @@ def cell_nodes(space: Any) -> Indices:
 def node_places(space: Any) -> Array:
     """Return the positions (num_nodes, 3) of this rank's quadratic or Crouzeix-Raviart nodes in m.
 
-    Mid-side nodes are computed as the mean of their corners, so that a node has the same position
-    to the last bit on every rank; DOLFINx computes it in one of the node's cells.
+    The position of a mid-side node is the mean of both corners, so that it is the same to the last
+    bit on every rank. DOLFINx would compute it in one of the cells with this node.
     """
     geometry = space.mesh.geometry
     corners = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap

@@ -48,7 +48,7 @@ class ReducedShell:
             :func:`shell_model.stress.fields.gather_fields`.
         errors: largest reduction errors of all segments: ``contact_compliance``, relative to the
             local compliance, NaN without contacts; ``readings``, the relative error of outputs such
-            as the tip; ``frequency_limit_in_hz``, up to which natural frequencies are accurate.
+            as the tip. Natural frequencies are accurate up to ``frequency_limit_in_hz``.
         local_compliance: local compliances (num_rows,) of the contacts in m/N, see
             :func:`shell_model.contact.local_compliance.local_compliance`.
         mesh_error: largest relative discretisation error of the local compliance; NaN without
@@ -157,15 +157,15 @@ def _mesh_compliance(boom: Boom, options: ShellOptions, comm: MPI.Comm = MPI.COM
 
 
 def _contact_local_compliance(whole: Array, shell: BoomShell) -> Array:
-    """Return the local compliance (num_contacts,) from the compliance of all contacts."""
+    """Return the local compliance (num_contacts,) in m/N from the compliance of all contacts."""
     rows = shell.rows.contacts
     return local_compliance(whole, [row.law for row in rows], [row.station for row in rows])
 
 
 def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> tuple[Array, Array]:
-    """Return compliance and error of contacts for the separate reduced segments.
+    """Return the compliance of contacts in m/N, and its error, from the reduced segments.
 
-    The compliance is (num_contacts, num_contacts), its largest error (num_contacts,), in m/N.
+    The compliance is (num_contacts, num_contacts), its largest error (num_contacts,).
     """
     apart = BoomCoordinates(full.comm, full.shells, segments, ())
     contacts = full.rows.contacts

@@ -30,7 +30,7 @@ class Stages:
     def stage(
         self, name: str, number: int = 0, count: int = 1
     ) -> Iterator[Callable[[float], None]]:
-        """Measure part ``number`` of ``count`` parts of a stage, and yield a progress callback."""
+        """Time part ``number`` of ``count`` of a stage, and yield its progress callback."""
         begin = perf_counter()
         self.progress(name, number / count)
         yield lambda part: self.progress(name, (number + part) / count)

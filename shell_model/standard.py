@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reduced shell of booms that differ only in play and magnitudes of loads.
+"""Common reduced shell of booms that differ only in play and magnitudes of loads.
 
 The reduced coordinates do not depend on play and magnitudes of loads. So the boom is reduced
 without play and under unit loads, and its system then receives play, loads and histories. In space,

@@ -74,7 +74,7 @@ class _SampledRows:
         return self.extensions.size * len(self.moving)
 
     def columns(self, shell: SegmentShell, number: int, step: int = 1) -> Array:
-        """Return columns (num_owned, num_extensions · num_moving) at every n-th extension."""
+        """Return columns (num_owned, num_extensions · num_moving); ``step`` skips extensions."""
         nothing = np.zeros(shell.free.size)
 
         def read(operator: Operator) -> Array:
@@ -166,7 +166,7 @@ class TelescopingShell:
         self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
 
     def compliance_error(self, contacts: int) -> Array:
-        """Return the largest error (num_contacts,) of the compliance at all extensions in m/N."""
+        """Return the largest error (num_contacts,) of the compliance over all extensions in m/N."""
         sigma, errors = squared(self._test), np.zeros(contacts)
         for k, sampled in enumerate(self._sampled):
             omega2, pulls = self._springs[k]
@@ -215,7 +215,7 @@ class TelescopingShell:
     def _with_few_modes(
         self, number: int, segment: ReducedSegment, columns: Array
     ) -> ReducedSegment:
-        """Reduce a segment to the modes that pads excite and responses to all other forces.
+        """Reduce a segment to modes that pads excite, and to responses to all other forces.
 
         ``columns`` (num_owned, num_columns) are the rows of pads at all extensions.
         """
@@ -270,7 +270,7 @@ class TelescopingShell:
         return float((np.abs(missed) / scale).max(initial=0.0))
 
     def _residuals(self, k: int) -> tuple[Array, Array]:
-        """Return compliance and inertia of sampled rows, without the part of the modes."""
+        """Return compliance and inertia of sampled rows, less the contribution of the modes."""
         rows, shifted = self._rows[k], self._segment_coordinates.omega2 + squared(SLOW)
         compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
         return self._compliance(k, "compliance") - compliance, self._compliance(

@@ -67,7 +67,7 @@ class State(NamedTuple):
         driven: (num_travels,) cumulative work of each drive in J.
         crest: (num_contacts,) largest force of all steps in N.
         resolving: (num_contacts,) step in s that is short enough for the contact at its largest
-                force; infinite if the step of this run is.
+            force; infinite if the step of this run is.
     """
 
     a: Array

@@ -187,7 +187,8 @@ def measure_horizons(
     def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
         """Run groups of members, and return their horizons (num_groups, num_shares) in s.
 
-        ``done`` is the completed fraction before these runs."""
+        ``done`` is the completed fraction before these runs.
+        """
         of_groups = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
             left = [g for g in range(len(groups)) if np.isnan(of_groups[g]).any()]

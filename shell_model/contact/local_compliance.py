@@ -63,7 +63,7 @@ def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float 
 def local_compliance(
     whole: Array, laws: Sequence[ContactLaw], station_of_row: Sequence[int]
 ) -> Array:
-    """Return the local compliance (num_rows,) in m/N; NaN without contact on the opposite side.
+    """Return the local compliance (num_rows,) in m/N; NaN for a row without an opposite contact.
 
     Args:
         whole: compliance (num_rows, num_rows) in m/N.

@@ -41,8 +41,9 @@ class SurfaceOptions:
 
     Args:
         points: numbers of points along the overlap, and across each half of a wall.
-        stiffness: k_A in N/mⁿ⁺² of the stiffer side of all joints. By default it is the stiffness
-            of all stations over the area, so that a uniform displacement causes the same force.
+        stiffness: k_A in N/mⁿ⁺² of the stiffer side of all joints. By default it is the sum of the
+            stiffnesses of the stations over the area, so that a uniform displacement causes the
+            same force.
         shifts, moments: shifts and moments of the reduction, see
             :class:`shell_model.reduction.krylov.KrylovOptions`. Since all points are inputs, few
             suffice: more of them change the tip deflection of the paper's boom with friction by

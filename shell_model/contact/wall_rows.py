@@ -93,7 +93,7 @@ _ON_EDGE = 1.0e-8
 
 @dataclass(frozen=True, slots=True)
 class Wall:
-    """Face of a section on the positive side of the axis (``side`` 1) or the negative one."""
+    """Face of a section, on the positive (``side`` 1) or the negative side (−1) of the axis."""
 
     normal: Direction
     side: int
@@ -105,7 +105,7 @@ class Wall:
 
 
 class _Candidate(NamedTuple):
-    """Coordinates (6,) in m of the corners of a triangle on a wall, and its row."""
+    """Coordinates (6,) of the corners of a triangle in m, and the row of a point in it."""
 
     corners: tuple[float, ...]
     row: Row

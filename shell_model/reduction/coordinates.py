@@ -83,13 +83,13 @@ class BoomCoordinates:
         return np.asarray(np.sum(rows, axis=0))
 
     def push(self, number: int, force: Array) -> Array:
-        """Return the modal load (num_modes,) of this rank's part (num_owned,) of a load vector."""
+        """Return the modal load (num_modes,) of a segment's load vector, from this rank's part."""
         parts = [np.zeros(segment.omega2.size) for segment in self._reduced]
         parts[number] = exact_product(self._comm, force, self._reduced[number].shapes)
         return self.of_rows(np.concatenate(parts))
 
     def of_rows(self, apart: Array) -> Array:
-        """Return rows (…, num_modes) in the modes of the boom, from rows in modes of segments."""
+        """Return rows (…, num_modes) in modes of the boom, from rows in modes of its segments."""
         if self._combination is None:
             return apart
         return np.asarray(apart @ self._combination.astype(apart.dtype, copy=False))
@@ -101,7 +101,7 @@ def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array,
     Args:
         omega2: ω² (num_modes,) without constraints and springs.
         tied: rows (num_ties, num_modes) of displacements that are zero.
-        pulls: rows (num_springs, num_modes) of springs times the root of their stiffness in 1/s.
+        pulls: rows (num_springs, num_modes) of springs times the roots of stiffnesses, in 1/s.
     """
     free = null_space(tied) if tied.size else np.eye(omega2.size)
     held = pulls @ free
@@ -118,10 +118,10 @@ def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array,
 
 
 def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
-    """Return left · right (num_columns,), bitwise equal for any number of ranks. Collective.
+    """Return leftᵀ right (num_columns,), bitwise equal for any number of ranks. Collective.
 
-    The factors are (num_owned,) and (num_owned, num_columns). Sums have twice the precision, so
-    that their order has no effect.
+    The factors are (num_owned,) and (num_owned, num_columns). Sums have double the usual precision,
+    so that their order has no effect.
     """
     rows = np.flatnonzero(left != 0.0)
     parts = [np.zeros((1, right.shape[1]))]

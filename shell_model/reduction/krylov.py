@@ -46,8 +46,8 @@ class KrylovOptions:
     def order(self) -> Iterator[float]:
         """The shifts of successive blocks in Hz.
 
-        Successive blocks at the same shift save factorisations. But a basis that may end early
-        needs a block at each shift first.
+        Successive blocks at the same shift need only one factorisation. But with a tolerance the
+        basis may end early, so that the first blocks have different shifts.
         """
         if self.tolerance is None and self.most is None:
             return chain.from_iterable(repeat(shift, self.moments) for shift in self.shifts)
@@ -307,7 +307,7 @@ def _independent(block: Array) -> Array:
 
 
 def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:
-    """Return the mask (num_modes,) of ω that are within 0.1 % of a natural frequency.
+    """Return the mask (num_modes,) of modes with ω within 0.1 % of a natural frequency.
 
     Modes above the first inaccurate one are not tested.
 

@@ -38,7 +38,7 @@ class SymmetryClass(NamedTuple):
 
     @property
     def signs(self) -> Array:
-        """The factors (4, 6) of components in each image (:func:`image_of`) relative to the cell.
+        """The factors (4, 6) of components in each image relative to the cell (:func:`image_of`).
 
         The first columns are components of the displacement, a polar vector; the others are
         components of the rotation, an axial vector.
@@ -79,7 +79,7 @@ def symmetry_classes(mirrors: Sequence[Direction]) -> list[SymmetryClass]:
 
 
 def image_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
-    """Return the image (num_places,) of points: 1 at negative y, 2 at negative z, 3 at both, or 0.
+    """Return each point's image (num_places,): 1 at negative y, 2 at negative z, 3 at both, else 0.
 
     Only coordinates along ``mirrors`` count.
     """
@@ -101,7 +101,7 @@ def on_plane(places: Array, axis: int) -> Mask:
 
 
 def match_points(places: Array, among: Array) -> Indices | None:
-    """Return the indices (num_places,) of points in other points; None if a point is missing."""
+    """Return the index (num_places,) in ``among`` of each point; None if one is missing there."""
     distance, number = cKDTree(among).query(places)
     if distance.max(initial=0.0) > _near(among):
         return None

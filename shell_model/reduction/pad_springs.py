@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Springs that move with pads, for the compliance of walls that modes of segments do not include.
+"""Springs that move with pads: the compliance of walls beyond the modes of segments.
 
-The residual response to pad forces at the extension x, R(x, σ) = B(x) (K + σ M)⁻¹ B(x)ᵀ −
-Σ_k b_k(x) b_k(x)ᵀ / (ω_k² + σ), with the rows b_k(x) of the modes ω_k, is a compliance of walls
-with small inertia up to about 1000 Hz. Springs with the frequencies W^½ and the rows
+At the extension x, pad forces cause the response B(x) (K + σ M)⁻¹ B(x)ᵀ. Modes with frequencies ω_k
+and rows b_k(x) give Σ_k b_k(x) b_k(x)ᵀ / (ω_k² + σ) of it. The difference R(x, σ) is a compliance
+of walls, with small inertia up to about 1000 Hz. Springs with the frequencies W^½ and the rows
 L(x) = R^½ Q (W + σ)^½ represent it: L (W + σ)⁻¹ Lᵀ = R for all x at one shift σ (residual
 flexibility; MacNeal 1971). W and the orthogonal Q represent the inertia R′ = −dR/dσ (Rubin 1975)
 by the mean of R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over all extensions. The symmetric root is smooth.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Symmetry reduction: each symmetry class of motions is computed on one rank, on a symmetry cell.
+"""Symmetry reduction: one rank computes each symmetry class of motions, on a symmetry cell.
 
 A symmetry cell is a quarter or half of the shell of a segment. So matrices are small, round-off
 does not mix classes, and results are bitwise equal on any rank. Ranks exchange only forces and
@@ -71,7 +71,7 @@ class SymmetryCell:
 
     @cached_property
     def plates(self) -> Plates:
-        """The mesh of the cell on this rank, with matrices that count all images of the cell."""
+        """The plates of the cell on this rank, with matrices that count all images of the cell."""
         copies = 2.0 ** len(self.mirrors)
         return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh, copies)
 
@@ -96,7 +96,7 @@ class SymmetryCell:
         return {}
 
     def matrix(self, form: Any) -> _FreeMatrix:
-        """Return the matrix of a form without supports, with the energy of the whole segment."""
+        """Return the matrix of a form without supports; its energy is that of the whole segment."""
         if form not in self._matrices:
             whole = compat.assemble_matrix(form, [], 0.0)
             first, columns, values = whole.getValuesCSR()
@@ -123,7 +123,7 @@ class _FreeMatrix(NamedTuple):
 class _ClassShell(Shell):
     """Shell of a symmetry class on one rank, with the matrices of its cell.
 
-    Matrices omit the zeros of the sparsity pattern of their forms, which factors would store.
+    Matrices omit zeros in the sparsity pattern of their forms, since factors would store them.
     """
 
     cell: SymmetryCell
@@ -159,7 +159,7 @@ class Job:
     masses: Attachments
 
     def shell(self, cell: SymmetryCell) -> Shell:
-        """Return the shell of a cell in this class, with the energy of the whole segment."""
+        """Return the shell of a cell in this class; its energy is that of the whole segment."""
         conditions = [
             dirichlet_condition(cell.plates.space, kind, component, partial(on_plane, axis=axis))
             for axis in (COMPONENT[mirror] for mirror in cell.mirrors)
@@ -278,7 +278,7 @@ class SymmetryReduction:
     def _images(self, gathered: list[_Entries]) -> Array:
         """Return the images (4, num_rows, num_columns) of a block.
 
-        Entries on a mirror plane are shared equally by both images.
+        Both images of an entry on a mirror plane have half of it.
         """
         images = np.zeros((4, self.cell.component.size, gathered[0].columns))
         for entries in gathered:
@@ -383,7 +383,10 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
 
 
 def _sum_of_class(images: Array, signs: Array) -> Array:
-    """Return the part (num_rows, num_columns) of images in a symmetry class, without round-off."""
+    """Return the part (num_rows, num_columns) of images that belongs to a symmetry class.
+
+    It is free of round-off.
+    """
     part = np.zeros(images.shape[1:])
     for image, sign in zip(images, signs, strict=True):
         part += sign[:, None] * image

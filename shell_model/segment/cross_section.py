@@ -24,7 +24,7 @@ class Row(dict[int, float]):
 
     @classmethod
     def from_weights(cls, dofs: Indices, weights: Array) -> Row:
-        """Return the row with weights of degrees of freedom; weights of the same one are added."""
+        """Return the row with these weights; several weights of a degree of freedom are added."""
         row = cls()
         for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
             row[dof] = row.get(dof, 0.0) + weight
@@ -44,7 +44,7 @@ class Row(dict[int, float]):
 
 
 class Operator(dict[int, Row]):
-    """Displacement of a boom: rows by index of the segment."""
+    """Displacement operator of a boom: a row for each segment that contributes, by its index."""
 
     def __add__(self, other: Operator) -> Operator:
         """Return the sum of two displacement operators."""
@@ -62,7 +62,7 @@ def on_outline(places: Array, section: Section, x: float) -> Mask:
 
 
 def quadratic(s: Array) -> Array:
-    """Return shape functions (..., 3) of first end, middle and last end of an edge, s in [0, 1]."""
+    """Return shape functions (..., 3) of first end, midpoint and last end of an edge, 0 ≤ s ≤ 1."""
     return np.stack([(1 - s) * (1 - 2 * s), 4 * s * (1 - s), s * (2 * s - 1)], axis=-1)
 
 
@@ -100,7 +100,7 @@ class SectionNodes:
         return cls(x, places, dofs, section)
 
     def mean_deflection(self, direction: Direction = "z") -> Row:
-        """Return the row of the mean of u_z or u_y over the area in m, the axis deflection."""
+        """Return the row of the axis deflection in m: the mean of u_z or u_y over the area."""
         return self.mean_displacement(COMPONENT[direction])
 
     def mean_displacement(self, component: int) -> Row:
@@ -118,7 +118,7 @@ class SectionNodes:
     def distortion(self) -> Row:
         """Return the row of the increase of the section's height in m.
 
-        It is the difference of mean u_z of the plates with the highest and the lowest middles.
+        It is the mean u_z of the highest plates less that of the lowest ones, by their midpoints.
         """
         plates = self.section.plates
         levels = np.array([plate.middle[1] for plate in plates])
@@ -154,7 +154,7 @@ class SectionNodes:
         return turn
 
     def flange_deflection(self, side: float, y: float) -> Row:
-        """Return the row of the mean u_z in m of points ±y on the top (side 1) or bottom (−1)."""
+        """Return the row of the mean u_z in m at both ±y, on the top (side 1) or bottom (−1)."""
         face = self.section.face("z", side)
         nodes, along = self._along(self.section.plates[face.plate])
         rows = []

@@ -85,7 +85,7 @@ def plane_stress(young: Any, nu: Any, strain: Any) -> Any:
 
 
 class ShellForms:
-    """Bilinear forms of a shell, and the linear form of a load of 1 N/m³, compiled on first use.
+    """Bilinear forms of a shell, and the linear form of a load of 1 N/m³. First use compiles them.
 
     Args:
         space: displacement and rotation, see :func:`compat.shell_space`.

@@ -51,7 +51,7 @@ class SegmentShell(Shell):
     def plain_loads(self) -> Mapping[Direction, Array]:
         """The inertia loads (num_owned,) of the walls in each direction. Collective.
 
-        Collars and diaphragms are excluded. The mean load is 1 N/m; without taper it is uniform.
+        They exclude collars and diaphragms. The mean load is 1 N/m; without taper it is uniform.
         """
         loads = self._loads_on(lambda mesh: mesh.plain)
         return {direction: load / self.segment.area for direction, load in loads.items()}
@@ -116,10 +116,10 @@ class SegmentShell(Shell):
     def _loads_on(self, thickness: Callable[[PlatedMesh], Array]) -> dict[Direction, Array]:
         """Return load vectors (num_owned,) of a body force of 1 N/m³. Collective.
 
-        ``thickness`` returns thicknesses (num_triangles,) in m. Loads are zero in fixed rows, and
-        exactly zero at vertices, where the integral of a quadratic shape function vanishes.
-        Elsewhere at most two cells contribute in a plain box, so that the order of summation has no
-        effect.
+        ``thickness`` returns thicknesses (num_triangles,) in m. Loads are zero in fixed rows. They
+        are exactly zero at vertices, since the integral of their quadratic shape functions
+        vanishes. Elsewhere at most two cells of a plain box contribute, so that the order of
+        summation has no effect.
         """
         of_cells = self.comm.bcast(None if self.mesh is None else thickness(self.mesh))
         forms = self.plates.forms

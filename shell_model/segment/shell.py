@@ -86,7 +86,7 @@ class Shell:
 
     @cached_property
     def stiffness(self) -> PETSc.Mat:
-        """The stiffness (num_dofs, num_dofs), positive diagonal in fixed rows. Collective."""
+        """The stiffness (num_dofs, num_dofs). Fixed rows have a positive diagonal. Collective."""
         return self._assemble(self.plates.forms.stiffness, 1.0, self.springs)
 
     @cached_property
@@ -187,7 +187,7 @@ def free_rows(space: Any, conditions: list[Any]) -> Mask:
 def dirichlet_condition(
     space: Any, part: int, component: int, where: Callable[[Array], Mask]
 ) -> Any:
-    """Return the condition of zero displacement (part 0) or rotation (part 1) in a component.
+    """Return the condition that a component of displacement (part 0) or rotation (part 1) is zero.
 
     ``where`` returns the mask of fixed points from points (num_places, 3) in m.
     """
@@ -202,7 +202,7 @@ def dirichlet_condition(
 def assemble_plates(
     comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None, copies: float = 1.0
 ) -> Plates:
-    """Return the plates of a mesh of a segment or of one of its ``copies`` parts. Collective."""
+    """Return the plates of a segment, or of one of ``copies`` congruent parts. Collective."""
     points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
     if mesh is not None:
         # Collars do not carry the axial force, so that it is the same in all sections.

@@ -76,7 +76,7 @@ def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
 
 
 def _stress_form(space: Any, segment: Segment) -> tuple[Any, Any]:
-    """Return the (cell, dof) form of stress times area, and the constant that selects a component.
+    """Return the form (cell, dof) of stress times area, and its constant that selects a component.
 
     Bending stress is per unit of distance from the mid-surface.
     """
@@ -188,7 +188,7 @@ def vertex_displacements(shell: SegmentShell, shapes: Array) -> _Numbers | None:
 
 
 def _axial_stress_of(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) -> Array:
-    """Return the axial stress (num_triangles,) in Pa of a normal force in N as a function of x.
+    """Return the axial stress (num_triangles,) in Pa of a normal force N(x) in N.
 
     The force acts on the walls, and spreads over the thickness of collars.
     """

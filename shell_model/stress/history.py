@@ -50,7 +50,7 @@ class PlaceHistory:
 
 @dataclass(frozen=True, slots=True)
 class StressHistory:
-    """Largest stresses near each place in intervals of a run, with their centres in s."""
+    """Largest stresses near each place in intervals of a run, and centres of intervals in s."""
 
     time: list[float]
     places: list[PlaceHistory]
@@ -219,7 +219,7 @@ def _summed_history(history: xr.Dataset) -> StressHistory:
 
 
 def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
-    """Return the largest stress: bands at all output times, all triangles at some output times."""
+    """Return the largest stress: of bands at all output times, of all triangles at some times."""
     bands = history["von_mises"].values
     stride = max(1, shell.time.size // INSTANTS)
     segments = np.unique(shell.segment)
@@ -243,11 +243,11 @@ def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> 
 def _peaks(
     shell: ShellStress, triangles: Indices, steps: slice = slice(None)
 ) -> tuple[Modes, Indices]:
-    """Return the largest stress (num_steps,) of triangles of a segment in Pa, and its triangle.
+    """Return the largest stress (num_steps,) of a segment's triangles in Pa, and its triangle.
 
-    Stresses are evaluated only for triangles whose upper bound exceeds the largest known stress of
-    an interval. The von Mises stress is a norm, so that the sum of the norms of its parts bounds
-    it: of axial forces, of principal motions, and of the rest of the motion.
+    The von Mises stress is a norm. So it is at most the sum of the norms of its parts: of axial
+    forces, of principal motions, and of the rest of the motion. Stresses are evaluated only for
+    triangles with such a bound above the largest known stress of an interval.
     """
     number = int(shell.segment[triangles[0]])
     modes = shell.modes[number].take(triangles - np.searchsorted(shell.segment, number), axis=1)
@@ -275,7 +275,7 @@ def _peaks(
 
 
 def _patches(shell: ShellStress, band: Indices) -> Array:
-    """Return the area weights (num_patches, num_triangles) of wall halves in a band."""
+    """Return the area weights (num_patches, num_triangles) of patches, half walls in a band."""
     wall, places = shell.wall[band], shell.centroids[band, 1:]
     # A level wall is divided at its middle, a steep wall or a diaphragm at half its height.
     flat = np.abs(shell.outward[band, 2]) > np.sqrt(0.5)

@@ -146,7 +146,7 @@ def _forces(
     lengths: Array,
     reaches: tuple[Array, Array],
 ) -> Array:
-    """Return section forces (5, num_bands, num_own) per unit of each coordinate.
+    """Return section forces (5, num_bands, num_own) per unit of each coordinate of a segment.
 
     They are shear, moment, lateral shear, lateral moment and torque.
     """

@@ -53,8 +53,8 @@ class WallForces:
 
     Args:
         axial: force along x in N, positive in tension.
-        shear: in-plane force in N on the part nearer the base, along y in a wall below 45°, else
-            along z.
+        shear: in-plane force in N on the part nearer the base, along y if the slope of the wall is
+            below 45°, else along z.
         moment: moment in N·m of the axial stresses of the wall about the y-axis of the section,
             positive for tension at the top.
     """
@@ -184,9 +184,9 @@ class ShellStress:
 
         Args:
             triangles: indices of triangles of one segment.
-            steps: output times; the yielded slices count from the first of them.
-            means: weights (num_means, num_triangles) of means, which are yielded instead of
-                triangles.
+            steps: slice of output times; the yielded slices are relative to its start.
+            means: weights (num_means, num_triangles); if they are given, weighted means are yielded
+                instead of stresses of triangles.
         """
         (number,) = np.unique(self.segment[triangles])
         first = int(np.searchsorted(self.segment, number))
@@ -222,8 +222,8 @@ class ShellStress:
     def row(self, segment: int, x: float) -> Indices:
         """Return the triangles of walls between two neighbouring mesh lines around x in m.
 
-        Mesh lines are around the whole section. If x is on such a line, the triangles are beyond
-        it.
+        Mesh lines are around the whole section. If x is on such a line, the triangles are those
+        beyond it.
         """
         mine = (self.segment == segment) & (self.wall < len(self.plates[segment]))
         lines = lines_around(self.spans[mine])
@@ -240,7 +240,8 @@ class ShellStress:
 def lines_around(spans: Array) -> Array:
     """Return ascending x in m of mesh lines, which no triangle crosses.
 
-    ``spans`` (num_triangles, 2) has the smallest and the largest x of triangles in m."""
+    ``spans`` (num_triangles, 2) has the smallest and the largest x of triangles in m.
+    """
     first, last = np.sort(spans[:, 0]), np.sort(spans[:, 1])
     lines = np.unique(spans.round(6))
     started = np.searchsorted(first, lines - SAME_LINE)
@@ -295,7 +296,7 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
 
 
 def within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
-    """Return additional moment weights (num_triangles,) in m³ for linear stress in triangles.
+    """Return weights (num_triangles,) in m³ of the moment of linear stress within triangles.
 
     Args:
         part: index (num_triangles,) of the wall in its band.
