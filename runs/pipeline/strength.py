@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Dynamic stresses in outer fibres and in walls of shells, and their fatigue damage.
 
-σ = N/A + M z/J + M_y y/J_y (Navier 1826). Section forces of a shell are integrals of its wall
+σ = N/A + M_y z/J + M_z y/J_z (Navier 1826). Section forces of a shell are integrals of its wall
 stresses, so that beams and shells give the same nominal stress.
 
 Cycles are counted by the rainflow method (Matsuishi and Endo 1968; ASTM E1049). Miner's sum uses
