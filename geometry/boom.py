@@ -124,6 +124,11 @@ class Boom:
         return replace(self, joints=bonded)
 
     @property
+    def without_drives(self) -> Boom:
+        """The boom with all joints at their initial extension."""
+        return replace(self, joints=tuple(replace(joint, drive=None) for joint in self.joints))
+
+    @property
     def driven(self) -> bool:
         """True if a joint telescopes during the motion."""
         return any(joint.drive is not None for joint in self.joints)

@@ -40,7 +40,7 @@ from runs.pipeline.drives import (
 )
 from runs.pipeline.estimates import Preview, preview_cost
 from runs.pipeline.largest_loads import (
-    StaticBeam,
+    BeamStates,
     beam_note,
     overload_cautions,
     static_table,
@@ -130,7 +130,7 @@ def check_case(declared: CheckedCase) -> Check:
     case, boom, preview = declared.case, declared.boom, Preview(declared)
     static = statics(case, boom)
     boom_with_laws = boom if static is None else static.with_play.boom
-    beam = None if static is None else StaticBeam.of(case, boom_with_laws)
+    beam = None if static is None else BeamStates.of(case, boom_with_laws)
     extremes = [] if beam is None else beam.extremes(case.system)
     panels = [] if beam is None else weakest_at_rest(beam)
     tables = [
@@ -461,7 +461,7 @@ def _cylinders(state: StaticState, system: System) -> Table:
 
 
 def _static_lines(
-    case: Case, boom: Boom, static: Statics | None, beam: StaticBeam | None
+    case: Case, boom: Boom, static: Statics | None, beam: BeamStates | None
 ) -> Iterator[str]:
     """Yield the static tip deflection, the first frequency, the tilts by play, and cautions."""
     if static is None or beam is None:

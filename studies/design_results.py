@@ -22,6 +22,7 @@ from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.modes import modes
 from runs.pipeline.motion_results import MotionAndStatics, evaluate_motion
 from runs.pipeline.run import run_case
+from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import Diagram, positions, static_result
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from studies.study import Criterion, Progress, Verification, define_study
@@ -152,8 +153,9 @@ def suddenly_loaded_results(boom: Boom, segments: list[SegmentModel]) -> ModelDe
     """Return the design results of half a second of a single segment under a sudden load."""
     system, along = gap_system(boom.bonded, segments), lines(boom, segments)
     rest = positions(system)[0.0]
-    static = [static_result(boom, system, along, 0.0, rest)]
+    model = LoadedModel.of(boom, system, along)
+    static = [static_result(model, 0.0, rest)]
     motion = simulate(system, duration=0.5)
-    motions = MotionAndStatics(boom, along, motion, rest[None], static, jumps=False)
+    motions = MotionAndStatics(model, motion, rest[None], static, jumps=False)
     moved, _ = evaluate_motion(motions)
-    return ModelDesignResults(static=static, modes=modes(boom, system, along, rest), motion=moved)
+    return ModelDesignResults(static=static, modes=modes(model, rest), motion=moved)

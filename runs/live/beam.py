@@ -19,7 +19,7 @@ from runs.live.boom_figure import boom_figure
 from runs.live.calibrated import build_beam
 from runs.live.knobs import Draft
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.evaluation import LoadedModel
+from runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
 from runs.pipeline.limits import check_limits
 from runs.pipeline.model_run import summarise_motion
 from runs.pipeline.models import MotionPlan
@@ -27,9 +27,9 @@ from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.pads import pad_loads
 from runs.pipeline.proportions import proportion_cautions
 from runs.pipeline.results import Results, label
-from runs.pipeline.section_forces import section_forces
+from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import extended_positions, instants, positions
-from runs.pipeline.strength import Fibres, FibreStress, largest_stresses
+from runs.pipeline.strength import FibreStress, fibre_forces, largest_stresses
 from runs.pipeline.summary import Summary
 from runs.report import theme
 from runs.report.charts import Chart, Curve
@@ -58,7 +58,7 @@ def beam_results(
     """
     checked, built, stiffness = build_beam(checked, draft.case, draft.shells)
     case, boom, (model,) = checked.case, checked.boom, checked.case.models
-    loaded = LoadedModel.of(boom, model, built)
+    loaded = loaded_model(boom, model, built)
     duration = case.time.duration
     check_current()
     equilibria = positions(loaded.system, instants(loaded.system, duration))
@@ -66,7 +66,7 @@ def beam_results(
         raise NumericsError("the beam has no static equilibrium under the loads at t = 0")
     check_current()
     extended = extended_positions(loaded.system, duration)
-    design = loaded.at_rest(equilibria, extended)
+    design = results_at_rest(loaded, equilibria, extended)
     forces = [[station.force for station in rest.stations] for rest in design.static]
     station_forces = xr.Dataset(
         {"contact_force_peak": (("model", "time", "station"), [forces])},
@@ -98,7 +98,7 @@ def beam_results(
     ):
         trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
-        moved = loaded.with_motion(design, equilibria | extended, trajectory, case, model)
+        moved = with_motion(design, loaded, equilibria | extended, trajectory, case, model)
         results = _results(checked, moved, label(boom, {model.name: trajectory}))
         summary = summarise_motion(
             model, plan.motion.system, trajectory, built.num_dofs, design.static[0].tip
@@ -147,10 +147,8 @@ def _results(
 def _fibres(loaded: LoadedModel, rests: Sequence[Any]) -> Iterator[FibreStress]:
     """Yield the largest static stress of each segment over the equilibria (num_modes,)."""
     states, times = np.array(rests), np.zeros(len(rests))
-    for index, (segment, line) in enumerate(zip(loaded.boom.segments, loaded.lines, strict=True)):
-        if (fibres := Fibres.of(segment, line)) is not None:
-            curves = section_forces(loaded.boom, index, line, states, times)
-            yield largest_stresses(segment, fibres, curves, curves, times)[0]
+    for segment, fibres, curves in fibre_forces(loaded, states, times):
+        yield largest_stresses(segment, fibres, curves, curves, times)[0]
 
 
 def _plain(chart: Chart) -> Any:

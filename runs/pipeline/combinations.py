@@ -19,7 +19,7 @@ from runs.case.build import build_boom
 from runs.case.combinations import CombinedCase, combined_cases
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.largest_loads import StaticBeam, StaticExtreme, beam_note, in_units
+from runs.pipeline.largest_loads import BeamStates, StaticExtreme, beam_note, in_units
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import WallStress
 from runs.report.tables import Column, Table
@@ -66,7 +66,7 @@ class CombinationState(NamedTuple):
     """
 
     combined: CombinedCase
-    beam: StaticBeam | None
+    beam: BeamStates | None
     walls: Sequence[WallStress] = ()
     buckling: Sequence[WallBuckling] = ()
 
@@ -95,7 +95,7 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
 
                     beam = beam_in_motion(combined.case)
                 else:
-                    beam = StaticBeam.of(combined.case, boom)
+                    beam = BeamStates.of(combined.case, boom)
         except NUMERICAL_ERRORS:
             beam = None
         states.append(CombinationState(combined, beam))

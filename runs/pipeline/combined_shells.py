@@ -26,10 +26,10 @@ from runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.pipeline.combinations import CombinationState
-from runs.pipeline.largest_loads import StaticBeam
+from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.model_output import force_places
 from runs.pipeline.panels import weakest_panels
-from runs.pipeline.section_forces import with_cylinder_forces
+from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.strength import wall_stresses
 from runs.pipeline.wall_buckling import buckle_shell
 
@@ -46,7 +46,7 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
         context: ranks, progress reporter and cache.
     """
     combined = list(combined_cases(case))
-    booms = [_without_drives(model.model_boom(build_boom(one.case)).boom) for one in combined]
+    booms = [model.model_boom(build_boom(one.case)).boom.without_drives for one in combined]
     groups: dict[str, list[int]] = {}
     for number, boom in enumerate(booms):
         places = [segment.ends for segment in boom.segments]
@@ -64,10 +64,6 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
             states = _with_buckling(case, shared, states, model, built, context)
         states_by_number |= dict(zip(numbers, states, strict=False))
     return [states_by_number[number] for number in sorted(states_by_number)]
-
-
-def _without_drives(boom: Boom) -> Boom:
-    return replace(boom, joints=tuple(replace(joint, drive=None) for joint in boom.joints))
 
 
 def _shared(booms: Sequence[Boom]) -> list[Boom]:
@@ -144,16 +140,16 @@ def _state(
         for segments in (boom.segments, shared.segments)
     )
     system = replace(shell.system.gather_loads(), geometric_stiffness=forces - largest)
-    along = with_cylinder_forces(boom, system, lines)
     try:
         with np.errstate(all="ignore"):
-            beam = StaticBeam.at_rest(boom, system, along, combined.case.time.duration)
+            loaded = LoadedModel.of(boom, system, lines)
+            beam = BeamStates.at_rest(loaded, combined.case.time.duration)
     except NUMERICAL_ERRORS:
         return CombinationState(combined, None)
     assert shell.fields is not None
     fields = shell.fields.assign(
         state=(("time", "mode"), beam.positions.astype(np.float32)),
-        time=("time", [rest.time for rest in beam.rests]),
+        time=("time", beam.time),
     )
     names = [segment.name for segment in boom.segments]
     stresses = stress_near_places(ShellStress.from_fields(fields), force_places(boom), names)

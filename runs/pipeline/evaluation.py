@@ -8,13 +8,10 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property
 from types import MappingProxyType
-from typing import NamedTuple
 
 import numpy as np
 
 from dynamics.failure import NUMERICAL_ERRORS
-from dynamics.gap_system import GapSystem
-from dynamics.line import Line
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
@@ -34,7 +31,7 @@ from runs.pipeline.motion_results import MotionAndStatics, evaluate_motion
 from runs.pipeline.panels import weakest_panels
 from runs.pipeline.proofs import prove
 from runs.pipeline.residual_vibration import residual_vibration
-from runs.pipeline.section_forces import with_cylinder_forces
+from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import (
     extended_positions,
     instants,
@@ -47,56 +44,47 @@ from runs.pipeline.summary import Summary
 from runs.pipeline.turning import crane_drives
 
 
-class LoadedModel(NamedTuple):
-    """A model with its lines; the load of its system includes all constant loads."""
+def loaded_model(boom: Boom, model: Model, built: BuiltModel) -> LoadedModel:
+    """Return a built model of a boom under all constant loads."""
+    boom_of_model = boom.bonded if model.bonded else boom
+    return LoadedModel.of(boom_of_model, built.system, model.lines(boom, built))
 
-    boom: Boom
-    system: GapSystem
-    lines: Sequence[Line]
 
-    @classmethod
-    def of(cls, boom: Boom, model: Model, built: BuiltModel) -> LoadedModel:
-        """Return a built model with its lines."""
-        system, boom_of_model = built.system.gather_loads(), boom.bonded if model.bonded else boom
-        return cls(
-            boom_of_model,
-            system,
-            with_cylinder_forces(boom_of_model, system, model.lines(boom, built)),
-        )
+def results_at_rest(
+    loaded: LoadedModel,
+    equilibria: Mapping[float, Array],
+    extended: Mapping[float, Array] = MappingProxyType({}),
+) -> ModelDesignResults:
+    """Return modes and static states at equilibria.
 
-    def at_rest(
-        self,
-        equilibria: Mapping[float, Array],
-        extended: Mapping[float, Array] = MappingProxyType({}),
-    ) -> ModelDesignResults:
-        """Return modes and static states at equilibria.
+    Args:
+        loaded: the model.
+        equilibria: equilibria (num_modes,) by time in s.
+        extended: equilibria at the largest and smallest extension by time in s.
+    """
+    static, static_extended = (
+        [static_result(loaded, time, position) for time, position in positions.items()]
+        for positions in (equilibria, extended)
+    )
+    first = modes(loaded, equilibria[0.0]) if equilibria else []
+    return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
-        Args:
-            equilibria: equilibria (num_modes,) by time in s.
-            extended: equilibria at the largest and smallest extension by time in s.
-        """
-        static, static_extended = (
-            [static_result(*self, time, position) for time, position in positions.items()]
-            for positions in (equilibria, extended)
-        )
-        first = modes(*self, equilibria[0.0]) if equilibria else []
-        return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
-    def with_motion(
-        self,
-        results: ModelDesignResults,
-        equilibria: Mapping[float, Array],
-        trajectory: Trajectory,
-        case: Case,
-        model: Model,
-    ) -> ModelDesignResults:
-        """Return the static results with the results of the motion and the fatigue life."""
-        rest_positions = np.array([*equilibria.values()]).reshape(-1, self.system.num_modes)
-        static, jumps = [*results.static, *results.static_extended], not model.smooth
-        motions = MotionAndStatics(self.boom, self.lines, trajectory, rest_positions, static, jumps)
-        motion, varying = evaluate_motion(motions)
-        lives = [life(one, case.life) for one in varying] if HAS_RAINFLOW else []
-        return replace(results, motion=motion, life=lives)
+def with_motion(
+    results: ModelDesignResults,
+    loaded: LoadedModel,
+    equilibria: Mapping[float, Array],
+    trajectory: Trajectory,
+    case: Case,
+    model: Model,
+) -> ModelDesignResults:
+    """Return the static results with the results of the motion and the fatigue life."""
+    rest_positions = np.array([*equilibria.values()]).reshape(-1, loaded.system.num_modes)
+    static, jumps = [*results.static, *results.static_extended], not model.smooth
+    motions = MotionAndStatics(loaded, trajectory, rest_positions, static, jumps)
+    motion, varying = evaluate_motion(motions)
+    lives = [life(one, case.life) for one in varying] if HAS_RAINFLOW else []
+    return replace(results, motion=motion, life=lives)
 
 
 @dataclass(frozen=True)
@@ -117,7 +105,7 @@ class ModelEvaluation:
 
     @cached_property
     def _played(self) -> LoadedModel:
-        return LoadedModel.of(self.boom, self.model, self.built)
+        return loaded_model(self.boom, self.model, self.built)
 
     @cached_property
     def _times(self) -> list[float]:
@@ -137,8 +125,9 @@ class ModelEvaluation:
         played, case = self._played, self.case
         system, equilibria = played.system, self._equilibria
         extended = extended_positions(system, case.time.duration)
-        results = played.at_rest(equilibria, extended)
-        results = played.with_motion(results, equilibria | extended, trajectory, case, self.model)
+        results = results_at_rest(played, equilibria, extended)
+        rests = equilibria | extended
+        results = with_motion(results, played, rests, trajectory, case, self.model)
         if shell is not None and results.motion is not None:
             walls = wall_stresses(played.boom, shell.stresses)
             results = replace(results, motion=replace(results.motion, walls=walls))
@@ -159,7 +148,7 @@ class ModelEvaluation:
         try:
             bonded = _bonded_model(boom, case, model, self._played, self._equilibria)
             equilibria = positions(bonded.system, self._times)
-            other = bonded.at_rest(equilibria)
+            other = results_at_rest(bonded, equilibria)
         except NUMERICAL_ERRORS:
             # Rigid segments without play, for example, have no degree of freedom.
             return results
@@ -176,7 +165,7 @@ class ModelEvaluation:
             return results
         try:
             motion = MotionPlan.of(bonded.system, case, model).trajectory()
-            other = bonded.with_motion(other, equilibria, motion, case, model)
+            other = with_motion(other, bonded, equilibria, motion, case, model)
         except NUMERICAL_ERRORS:
             # The static results remain valid.
             return results
@@ -188,13 +177,9 @@ def _bonded_model(
 ) -> LoadedModel:
     """Return the model with bonded joints in place of play."""
     without = boom.bonded
-    if (model_without_play := model.system_without_play(boom)) is not None:
-        system = complete_system(
-            model_without_play[0], case, without, model_without_play[1]
-        ).gather_loads()
-        return LoadedModel(
-            without, system, with_cylinder_forces(without, system, model_without_play[1])
-        )
+    if (bonded := model.system_without_play(boom)) is not None:
+        lines = bonded[1]
+        return LoadedModel.of(without, complete_system(bonded[0], case, without, lines), lines)
     initial = [
         position for time, position in equilibria.items() if _at_initial_extension(boom, time)
     ]

@@ -8,7 +8,7 @@ fibres at its cross-section. Stress ranges are counted around the closed sequenc
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -17,13 +17,9 @@ from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.combinations import combine
 from runs.case.schema import Case
-from runs.pipeline.largest_loads import StaticBeam
-from runs.pipeline.section_forces import section_forces
+from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import HAS_RAINFLOW, MEGA, Fibres, count_stress_ranges, endurance
-
-if TYPE_CHECKING:
-    from runs.pipeline.combined_motion import BeamMotion
 
 # Number of cross-sections of a segment at which its worst weld may be.
 _SECTIONS = 41
@@ -83,7 +79,7 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
     damages: dict[str, tuple[Detail, Damage]] = {}
     tables = {one.name: one for one in case.load_cases}
     named = {(name, one.motion) for one in case.spectra for name in one.load_cases}
-    beams: dict[tuple[str, bool], StaticBeam | BeamMotion] = {}
+    beams: dict[tuple[str, bool], BeamStates] = {}
     for name, moving in named:
         plain = combine(case, tables[name])
         if moving:
@@ -91,7 +87,7 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
 
             beams[name, moving] = beam_motion(plain)
         else:
-            beams[name, moving] = StaticBeam.of(plain, boom_with_play(plain, build_boom(plain)))
+            beams[name, moving] = BeamStates.of(plain, boom_with_play(plain, build_boom(plain)))
     boom = build_boom(case)
     for detail in details(case, boom):
         if boom.segments[detail.segment].section is None:
@@ -104,12 +100,12 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
     return [*damages.values()]
 
 
-def _stress(beam: StaticBeam | BeamMotion, number: int, inside: float) -> Array:
+def _stress(beam: BeamStates, number: int, inside: float) -> Array:
     """Return the stress (2 num_fibres, num_times) in Pa on both sides of a cross-section."""
-    segment, line = beam.boom.segments[number], beam.lines[number]
+    segment, line = beam.boom.segments[number], beam.model.lines[number]
     fibres = Fibres.of(segment, line)
     assert fibres is not None
-    curves = section_forces(beam.boom, number, line, beam.positions, beam.time)
+    curves = beam.model.section_forces(number, beam.positions, beam.time)
     x = np.clip(segment.start + inside + np.array([-_BESIDE, _BESIDE]), *segment.ends)
     return np.array(
         [

@@ -7,7 +7,6 @@ The model has beam elements and the compliance of walls under pads, at the initi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -15,8 +14,6 @@ import numpy as np
 from beam_model.lines import lines
 from beam_model.statics import Elements, static_state, static_theory
 from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
-from dynamics.line import Line
 from geometry.arrays import Array
 from geometry.axial import foot_thrust
 from geometry.boom import Boom
@@ -24,9 +21,9 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.panels import PanelBuckling, weakest_panels
 from runs.pipeline.proportions import tip_cautions
-from runs.pipeline.section_forces import section_forces, with_cylinder_forces
+from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
-from runs.pipeline.strength import Fibres, largest_stresses
+from runs.pipeline.strength import fibre_forces, largest_stresses
 from runs.pipeline.utilisation import Utilisation
 from runs.report.formatting import amount, number
 from runs.report.tables import Column, Table
@@ -57,28 +54,33 @@ class StaticExtreme(NamedTuple):
     utilisation: Utilisation | None = None
 
 
-class StaticBeam(NamedTuple):
-    """Static states of a boom of beam elements under the loads at several times.
+class BeamStates(NamedTuple):
+    """States of a boom without drives under the loads at several times, at rest or in motion.
 
     Args:
-        boom: the boom, without drives.
-        lines: lines along the segments, with the forces of cylinders.
-        positions: equilibria (num_rests, num_modes).
-        rests: static states at the equilibria.
+        model: the model of the boom.
+        time: (num_states,) in s.
+        positions: modal coordinates (num_states, num_modes).
+        rests: result of each state; empty for a whole motion.
     """
 
-    boom: Boom
-    lines: Sequence[Line]
+    model: LoadedModel
+    time: Array
     positions: Array
-    rests: Sequence[StaticResult]
+    rests: Sequence[StaticResult] = ()
 
     @property
-    def time(self) -> Array:
-        """The times (num_rests,) of the states in s."""
-        return np.array([rest.time for rest in self.rests])
+    def boom(self) -> Boom:
+        """The boom of the model."""
+        return self.model.boom
+
+    def with_results(self) -> BeamStates:
+        """Return the states with the result of each of them."""
+        states = zip(self.time.tolist(), self.positions, strict=True)
+        return self._replace(rests=[static_result(self.model, *state) for state in states])
 
     @classmethod
-    def of(cls, case: Case, boom: Boom) -> StaticBeam:
+    def of(cls, case: Case, boom: Boom) -> BeamStates:
         """Return the static states at t = 0 and under extreme loads.
 
         Args:
@@ -88,37 +90,31 @@ class StaticBeam(NamedTuple):
         Raises:
             NumericsError: there is no equilibrium at t = 0.
         """
-        boom = replace(boom, joints=tuple(replace(joint, drive=None) for joint in boom.joints))
+        boom = boom.without_drives
         elements = Elements(boom, _ELEMENTS)
         system = static_state(boom, elements).system
         lines_of_elements = lines(boom, elements.segments)
         # The coordinates of wall springs come after the coordinates of the segments.
         basis = np.eye(lines_of_elements[0].rows["deflection"].shape[1], system.num_modes)
-        along = with_cylinder_forces(
-            boom, system, [line.transform(basis) for line in lines_of_elements]
-        )
-        return cls.at_rest(boom, system, along, case.time.duration)
+        along = [line.transform(basis) for line in lines_of_elements]
+        return cls.at_rest(LoadedModel.of(boom, system, along), case.time.duration)
 
     @classmethod
-    def at_rest(
-        cls, boom: Boom, system: GapSystem, along: Sequence[Line], duration: float
-    ) -> StaticBeam:
+    def at_rest(cls, model: LoadedModel, duration: float) -> BeamStates:
         """Return the static states of a model at t = 0 and under extreme loads.
 
         Args:
-            boom: the boom, without drives.
-            system: system of the model, whose ``load`` includes all constant loads.
-            along: lines along the segments, with the forces of cylinders.
+            model: the model.
             duration: duration of the loads' histories in s.
 
         Raises:
             NumericsError: the boom has no equilibrium at t = 0.
         """
-        equilibria = positions(system, instants(system, duration))
+        equilibria = positions(model.system, instants(model.system, duration))
         if not equilibria:
             raise NumericsError("the boom has no static equilibrium under the loads at t = 0")
-        rests = [static_result(boom, system, along, *rest) for rest in equilibria.items()]
-        return cls(boom, along, np.array([*equilibria.values()]), rests)
+        states = cls(model, np.array([*equilibria]), np.array([*equilibria.values()]))
+        return states.with_results()
 
     def extremes(self, system: System) -> list[StaticExtreme]:
         """Return the extremes of tip, stresses, pads, contacts and cylinders.
@@ -132,13 +128,9 @@ class StaticBeam(NamedTuple):
             lateral = [rest.tip_lateral or 0.0 for rest in rests]
             name = "tip to the side"
             extremes.append(_static_extreme(name, name, "m", rests, lateral))
-        time = self.time
-        for number_of, (segment, line) in enumerate(zip(boom.segments, self.lines, strict=True)):
-            if (fibres := Fibres.of(segment, line)) is None:
-                continue
-            curves = section_forces(boom, number_of, line, self.positions, time)
+        for segment, fibres, curves in fibre_forces(self.model, self.positions, self.time):
             forces_at_rest = {name: values[:1] for name, values in curves.items()}
-            fibre, _ = largest_stresses(segment, fibres, curves, forces_at_rest, time)
+            fibre, _ = largest_stresses(segment, fibres, curves, forces_at_rest, self.time)
             stress = abs(fibre.stress)
             used = Utilisation("outer fibre", segment.name, fibre.x, stress, fibre.utilisation)
             name = f"stress, {segment.name}"
@@ -155,7 +147,7 @@ class StaticBeam(NamedTuple):
     def foot_extremes(self, system: System) -> Iterator[StaticExtreme]:
         """Yield the extremes of the resultant force on each foot, across and along the boom."""
         for number_of, (segment, line) in enumerate(
-            zip(self.boom.segments, self.lines, strict=True)
+            zip(self.boom.segments, self.model.lines, strict=True)
         ):
             if segment.foot is None or "shear" not in line.rows:
                 continue
@@ -203,7 +195,7 @@ class StaticBeam(NamedTuple):
             yield _static_extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
 
 
-def weakest_at_rest(beam: StaticBeam) -> list[PanelBuckling]:
+def weakest_at_rest(beam: BeamStates) -> list[PanelBuckling]:
     """Return the wall of each segment with the lowest buckling factor over all static states."""
     weakest: dict[str, PanelBuckling] = {}
     for rest in beam.rests:
@@ -231,7 +223,7 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
 
     Args:
         case: a checked case.
-        boom: the boom of :meth:`StaticBeam.of`.
+        boom: the boom of :meth:`BeamStates.of`.
         extremes: the extremes of this boom.
     """
     used = [one.utilisation.value if one.utilisation else None for one in extremes]

@@ -9,11 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.damping import closed_contact_modes
-from dynamics.gap_system import GapSystem
-from dynamics.line import Line, Quantity
+from dynamics.line import Quantity
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
-from runs.pipeline.section_forces import round_values
+from runs.pipeline.section_forces import LoadedModel, round_values
 
 # Number of modes of each model.
 MODES = 8
@@ -91,18 +90,17 @@ class ModeComparison:
     matches: dict[str, list[Match | None]]
 
 
-def modes(boom: Boom, system: GapSystem, lines: Sequence[Line], rest: Array) -> list[Mode]:
+def modes(model: LoadedModel, rest: Array) -> list[Mode]:
     """Return the first modes, in ascending order of frequency.
 
     The dominant motion of a mode has the largest share of the kinetic energy, in which rotary
     inertia and point masses are neglected.
 
     Args:
-        boom: boom of the model.
-        system: system of the model.
-        lines: lines along the segments.
+        model: the model.
         rest: equilibrium (num_modes,).
     """
+    boom, system, lines = model
     omega, shapes = closed_contact_modes(system, rest)
     motions: list[Quantity] = [name for name in _MOTIONS if name in lines[0].rows]
     even = [np.linspace(line.x[0], line.x[-1], _PLACES) for line in lines]

@@ -9,14 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.line import Line, Quantity
+from dynamics.line import Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.axial import foot_thrust
-from geometry.boom import Boom
 from geometry.cylinder import forces
 from geometry.section import Direction
-from runs.pipeline.section_forces import round_values, section_forces
+from runs.pipeline.section_forces import LoadedModel, round_values
 from runs.pipeline.static_results import StaticResult, place_names
 from runs.pipeline.strength import Fibres, FibreStress, StressHistory, WallStress, largest_stresses
 
@@ -106,16 +105,14 @@ class MotionAndStatics:
     """A motion with the static states for comparison.
 
     Args:
-        boom: the boom, with the play of the model.
-        lines: lines along the segments.
+        model: the model.
         trajectory: the motion.
         positions: equilibria (num_rests, num_modes).
         rests: static states at the equilibria.
         jumps: True if section forces jump at point forces; False for a series, which is smooth.
     """
 
-    boom: Boom
-    lines: Sequence[Line]
+    model: LoadedModel
     trajectory: Trajectory
     positions: Array
     rests: Sequence[StaticResult]
@@ -127,12 +124,12 @@ def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[Stres
 
     The stress history of a segment belongs to the point where the stress varies most.
     """
-    boom, envelopes, peaks = motions.boom, [], list(_output_peaks(motions))
+    model, envelopes, peaks = motions.model, [], list(_output_peaks(motions))
     fibres, varying = [], []
     time, rest_times = motions.trajectory.time, np.array([rest.time for rest in motions.rests])
-    for number, (segment, line) in enumerate(zip(boom.segments, motions.lines, strict=True)):
-        curves = section_forces(boom, number, line, motions.trajectory.states, time)
-        forces_at_rest = section_forces(boom, number, line, motions.positions, rest_times)
+    for number, (segment, line) in enumerate(zip(model.boom.segments, model.lines, strict=True)):
+        curves = model.section_forces(number, motions.trajectory.states, time)
+        forces_at_rest = model.section_forces(number, motions.positions, rest_times)
         low, high = (
             {str(name): round_values(limit(one, axis=0)) for name, one in curves.items()}
             for limit in (np.min, np.max)
@@ -171,16 +168,17 @@ def _peak(
 def _output_peaks(motions: MotionAndStatics) -> Iterator[Peak]:
     """Yield the peaks of the outputs in the trajectory."""
     data, rests, time = motions.trajectory.data, motions.rests, motions.trajectory.time
+    boom = motions.model.boom
     tips = [rest.tip for rest in rests]
     yield _peak("deflection", "tip", "m", time, data["tip"].values, tips)
-    if motions.boom.spatial:
+    if boom.spatial:
         rest_values = [rest.tip_lateral or 0.0 for rest in rests]
         yield _peak("lateral deflection", "tip", "m", time, data["tip_lateral"].values, rest_values)
-    for number, name in enumerate(place_names(motions.boom.stations)):
+    for number, name in enumerate(place_names(boom.stations)):
         values = data["contact_force"].values[:, number]
         rest_values = [rest.stations[number].force for rest in rests]
         yield _peak("contact force", name, "N", time, values, rest_values)
-    for name in forces(motions.boom):
+    for name in forces(boom):
         rest_values = [rest.cylinders[name] for rest in rests]
         yield _peak("cylinder force", name, "N", time, data[name].values, rest_values)
     if "rope_force_peak" in data:
@@ -190,7 +188,7 @@ def _output_peaks(motions: MotionAndStatics) -> Iterator[Peak]:
 
 def _reactions(motions: MotionAndStatics, number: int) -> Iterator[Peak]:
     """Yield the peaks of the support reactions of a segment, from jumps of its section forces."""
-    segment, line = motions.boom.segments[number], motions.lines[number]
+    boom, line = motions.model.boom, motions.model.lines[number]
     states, time = (motions.trajectory.states, motions.positions), motions.trajectory.time
 
     def jump(name: Quantity, x: float) -> list[Array]:
@@ -200,6 +198,7 @@ def _reactions(motions: MotionAndStatics, number: int) -> Iterator[Peak]:
             row = line.one_sided_row(name, x, -1) - line.one_sided_row(name, x, 1)
         return [each[:, : row.size] @ row for each in states]
 
+    segment = boom.segments[number]
     for support in segment.supports:
         where, across = f"{segment.name} at {support.x:g} m", []
         for plane in _PLANES:
@@ -213,7 +212,7 @@ def _reactions(motions: MotionAndStatics, number: int) -> Iterator[Peak]:
         if "torque" in line.rows:
             yield _peak("torque at the support", where, "N m", time, *jump("torque", support.x))
         if support is segment.foot and (segment.compression or "normal" in line.rows):
-            foot = foot_thrust(motions.boom.segments, motions.boom.joints, number)
+            foot = foot_thrust(boom.segments, boom.joints, number)
             along = [foot + each for each in jump("normal", support.x)]
             yield _peak("reaction along the boom", where, "N", time, *along)
             whole = [np.linalg.norm(parts, axis=0) for parts in zip(*across, along, strict=True)]

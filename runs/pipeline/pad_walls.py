@@ -12,7 +12,7 @@ from geometry.boom import Boom, Collar, Joint, Segment
 from geometry.joint import PadSize
 from geometry.typography import join_words
 from runs.case.schema import Model
-from runs.pipeline.largest_loads import StaticBeam
+from runs.pipeline.largest_loads import BeamStates
 from runs.report.formatting import milli
 
 # Remedies are given above this share of the tip deflection, if they reduce the tip deflection to
@@ -22,7 +22,7 @@ LARGE_SHARE, HELPFUL = 0.1, 0.98
 GOVERNING_SHARE = 0.5
 
 
-def pad_wall_lines(beam: StaticBeam) -> Iterator[str]:
+def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     """Yield the share of walls under pads in the largest static deflection of the tip.
 
     Remedies follow if the share is large.

@@ -20,7 +20,7 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.combinations import CombinationState
 from runs.pipeline.fatigue import detail_damages
-from runs.pipeline.largest_loads import StaticBeam, in_units
+from runs.pipeline.largest_loads import BeamStates, in_units
 from runs.pipeline.panels import (
     WallStresses,
     nominal_wall_stresses,
@@ -173,7 +173,7 @@ def _proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
             yield one._replace(combination=name)
 
 
-def _wall_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+def _wall_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
     for rest in beam.rests:
         for wall in nominal_wall_stresses(beam.boom.segments, rest):
             strength = wall.segment.material.strength(wall.plate.thickness)
@@ -274,7 +274,7 @@ def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
 _OF_SHELLS = {"patch": "yield", "buckling": "plate"}
 
 
-def _boom_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+def _boom_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
     boom = beam.boom
     if boom.compressed and "column" in table.proofs:
         factor = estimate_critical_factor(boom)
@@ -288,7 +288,7 @@ def _boom_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Itera
         yield Proof("deflection", "tip", "tip", None, tip, permitted, "m")
 
 
-def _station_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+def _station_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
     for one in beam.extremes(case.system):
         used = one.utilisation
         if used is not None and used.part == "pad" and used.value:
@@ -306,7 +306,7 @@ def _station_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> It
             yield Proof("pin", name, f"lug of {name}", cylinder.x, force, resistance, "N")
 
 
-def _foot_proofs(beam: StaticBeam, table: CombinationTable, case: Case) -> Iterator[Proof]:
+def _foot_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
     forces = {one.name: abs(one.largest) for one in beam.foot_extremes(case.system)}
     for segment in beam.boom.segments:
         name = f"foot, {segment.name}"

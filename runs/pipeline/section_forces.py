@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
+from typing import NamedTuple, Self
 
 import numpy as np
 
@@ -37,22 +38,35 @@ def round_values(values: Array | Iterable[float]) -> list[float]:
     return [float(f"{value:.{_DIGITS}g}") for value in values]
 
 
-def with_cylinder_forces(boom: Boom, system: GapSystem, lines: Sequence[Line]) -> list[Line]:
-    """Return the lines with normal forces by the cylinders.
+class LoadedModel(NamedTuple):
+    """A model under all constant loads, with lines along its segments.
 
     Args:
-        boom: boom of the system.
-        system: system whose outputs include the cylinder forces.
-        lines: lines along the segments.
+        boom: boom with the play of the model.
+        system: gap system of the boom, whose ``load`` includes all constant loads.
+        lines: lines along the segments, with normal forces by the cylinders.
     """
-    extended = list(lines)
-    for number, cylinder in enumerate(boom.cylinders, start=1):
-        line, foot = extended[cylinder.segment], boom.segments[cylinder.segment].foot
-        x = np.repeat(0.5 * (line.x[::2] + line.x[1::2]), 2) if line.paired else line.x
-        pull = np.outer(cylinder.normal_force(x, foot), system.observers[force_name(number)].row)
-        normal = line.rows.get("normal", 0.0) + pull
-        extended[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
-    return extended
+
+    boom: Boom
+    system: GapSystem
+    lines: Sequence[Line]
+
+    @classmethod
+    def of(cls, boom: Boom, system: GapSystem, lines: Sequence[Line]) -> Self:
+        """Return a model from any system and from lines without cylinder forces."""
+        extended = list(lines)
+        for number, cylinder in enumerate(boom.cylinders, start=1):
+            line, foot = extended[cylinder.segment], boom.segments[cylinder.segment].foot
+            x = np.repeat(0.5 * (line.x[::2] + line.x[1::2]), 2) if line.paired else line.x
+            row = system.observers[force_name(number)].row
+            pull = np.outer(cylinder.normal_force(x, foot), row)
+            normal = line.rows.get("normal", 0.0) + pull
+            extended[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
+        return cls(boom, system.gather_loads(), extended)
+
+    def section_forces(self, number: int, states: Array, time: Array) -> dict[Quantity, Array]:
+        """Return deflections and section forces of a segment as :func:`section_forces`."""
+        return section_forces(self.boom, number, self.lines[number], states, time)
 
 
 def section_forces(

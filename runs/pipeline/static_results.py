@@ -19,7 +19,6 @@ from dynamics.equilibrium import equilibrium_at
 from dynamics.excitation import Excitation
 from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.gap_system import GapSystem
-from dynamics.line import Line
 from geometry.arrays import Array, Indices
 from geometry.boom import Boom
 from geometry.contact_places import contact_centres
@@ -28,7 +27,7 @@ from geometry.telescoping import station_positions, travel
 from geometry.typography import TO_MILLI
 from runs.case.drive import resolving_times
 from runs.pipeline.pads import SIGNS, loaded_pads, side_force
-from runs.pipeline.section_forces import round_values, section_forces
+from runs.pipeline.section_forces import LoadedModel, round_values
 
 # Extensions that differ by less than this fraction count as equal.
 _SAME_EXTENSION = 1.0e-12
@@ -223,21 +222,17 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
     return equilibria
 
 
-def static_result(
-    boom: Boom, system: GapSystem, lines: Sequence[Line], time: float, position: Array
-) -> StaticResult:
-    """Return the static state at an equilibrium.
+def static_result(model: LoadedModel, time: float, position: Array) -> StaticResult:
+    """Return the state of a model at an equilibrium, or at an instant of its motion.
 
     Args:
-        boom: the boom, with the play of the system.
-        system: system of the model.
-        lines: output points along each segment, with rows of deflections and section forces.
+        model: the model.
         time: time in s of the loads and of the extension.
-        position: equilibrium (num_modes,).
+        position: modal coordinates (num_modes,).
     """
-    system, diagrams = system.at_time(time), []
-    for number, line in enumerate(lines):
-        carried = section_forces(boom, number, line, position, np.array(time))
+    boom, system, diagrams = model.boom, model.system.at_time(time), []
+    for number, line in enumerate(model.lines):
+        carried = model.section_forces(number, position, np.array(time))
         curves: dict[str, list[float]] = {
             name: round_values(values) for name, values in carried.items()
         }

@@ -11,7 +11,7 @@ from there on, and no damage below the cut-off limit at 1e8 cycles.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from operator import attrgetter
@@ -24,7 +24,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.section import Section
 from runs.case.schema import LifeTable
-from runs.pipeline.section_forces import round_values
+from runs.pipeline.section_forces import LoadedModel, round_values
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -204,6 +204,18 @@ def outer_corners(section: Section) -> tuple[Array, Array]:
         beyond.append(np.maximum(*normals))
     y, z = (np.array(places) + np.sign(places) * np.array(beyond)).T
     return y, z
+
+
+def fibre_forces(
+    model: LoadedModel, states: Array, time: Array
+) -> Iterator[tuple[Segment, Fibres, dict[Quantity, Array]]]:
+    """Yield each segment with a known section, its outer fibres and its section forces.
+
+    ``states`` are modal coordinates (num_times, num_modes) at the times (num_times,) in s.
+    """
+    for number, (segment, line) in enumerate(zip(model.boom.segments, model.lines, strict=True)):
+        if (fibres := Fibres.of(segment, line)) is not None:
+            yield segment, fibres, model.section_forces(number, states, time)
 
 
 def largest_stresses(

@@ -15,7 +15,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.units import scale
-from runs.pipeline.largest_loads import StaticBeam
+from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.limits import Limit
 from runs.pipeline.pad_walls import pad_wall_lines
 from runs.pipeline.quantities import QUANTITIES
@@ -154,6 +154,6 @@ def rigid_wall_cautions(case: Case, name: str) -> list[str]:
     boom = build_boom(case)
     if model.needs_shell or statics(case, boom) is None:
         return []
-    beam = StaticBeam.of(case, boom_with_play(case, boom))
+    beam = BeamStates.of(case, boom_with_play(case, boom))
     cautions = [one for one in pad_wall_lines(beam) if one.startswith("caution")]
     return [f"{one} {name} has rigid walls: the bound is unsafe; take a shell" for one in cautions]

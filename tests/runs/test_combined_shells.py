@@ -15,9 +15,9 @@ from runs.case.kinds.model import BuildContext
 from runs.case.kinds.shell import Shell
 from runs.pipeline.combinations import CombinationState
 from runs.pipeline.combined_shells import shell_states
-from runs.pipeline.largest_loads import StaticBeam
+from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.proofs import prove
-from runs.pipeline.section_forces import with_cylinder_forces
+from runs.pipeline.section_forces import LoadedModel
 from tests.runs.case_texts import read_case
 from tests.runs.test_combinations import CASES, FACTORS, LIFT
 
@@ -64,9 +64,9 @@ def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationSta
         shell, boom = case.models[1], build_boom(case)
         joined = shell.model_boom(boom)
         built = shell.build(joined, BuildContext(MPI.COMM_WORLD))
-        system = built.system.gather_loads()
-        lines = with_cylinder_forces(joined.boom, system, shell.lines(joined.boom, built))
-        alone = StaticBeam.at_rest(joined.boom, system, lines, case.time.duration)
+        lines = shell.lines(joined.boom, built)
+        loaded = LoadedModel.of(joined.boom, built.system, lines)
+        alone = BeamStates.at_rest(loaded, case.time.duration)
         expected = {one.name: one.largest for one in alone.extremes(case.system)}
         for one in state.result.extremes:
             if one.name in expected:

@@ -20,7 +20,7 @@ from runs.case.conversion import convert_to_si
 from runs.check import print_check
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.largest_loads import (
-    StaticBeam,
+    BeamStates,
     StaticExtreme,
     overload_cautions,
     static_table,
@@ -57,7 +57,7 @@ def boom_of(loads: str, of_joint: str = PAD, more: str = "") -> str:
 
 def extremes_of(folder: Path, text: str) -> dict[str, StaticExtreme]:
     case = read_case(folder, text)
-    found = StaticBeam.of(case, boom_with_play(case, build_boom(case))).extremes(case.system)
+    found = BeamStates.of(case, boom_with_play(case, build_boom(case))).extremes(case.system)
     return {one.what: one for one in found}
 
 
@@ -167,7 +167,7 @@ def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
     assert load_table(case, boom).rows == [
         ("load[1]", "fly at 14000 mm", "z", "ramp of 0.1 s", "−2000 N", "0.1")
     ]
-    table = static_table(case, boom, StaticBeam.of(case, boom).extremes(case.system))
+    table = static_table(case, boom, BeamStates.of(case, boom).extremes(case.system))
     rows = {row[0]: row for row in table.rows}
     assert rows["pad at 6000 mm"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
     assert rows["tip"][2].endswith(" mm")

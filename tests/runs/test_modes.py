@@ -24,6 +24,7 @@ from runs.case import reading as case_file
 from runs.case.kinds import KINDS
 from runs.case.kinds.rigid import Rigid
 from runs.pipeline.modes import Mode, match_modes, modes
+from runs.pipeline.section_forces import LoadedModel
 from tests.runs.case_texts import refused
 from tests.runs.coarse_case import COARSE
 from tests.runs.test_actions import CANTILEVER
@@ -45,7 +46,7 @@ def arm(spatial_boom: Boom, steel: Material) -> Boom:
 
 def found(boom: Boom, models: list[SegmentModel]) -> list[Mode]:
     system = gap_system(boom.bonded, models)
-    return modes(boom, system, lines(boom, models), np.zeros(system.num_modes))
+    return modes(LoadedModel.of(boom, system, lines(boom, models)), np.zeros(system.num_modes))
 
 
 def test_modes_are_those_of_an_exact_beam(arm: Boom) -> None:
@@ -89,7 +90,7 @@ def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
     segment = replace(bar, supports=(Support(0.0, stiffness=1e6), Support(4.0, stiffness=1e6)))
     boom = Boom((segment,), ())
     system = gap_system(boom.bonded, [rigid_segment(segment)])
-    found = modes(boom, system, lines(boom, [rigid_segment(segment)]), np.zeros(2))
+    found = modes(LoadedModel.of(boom, system, lines(boom, [rigid_segment(segment)])), np.zeros(2))
     mass = bar.mass_per_length * 4.0
     inertia = mass * 4.0**2 / 12.0 + bar.rotary_inertia * 4.0
     expected = np.sqrt([2e6 / mass, 2e6 * 2.0**2 / inertia]) / (2.0 * np.pi)

@@ -15,7 +15,7 @@ from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
 from runs.check import check_case
-from runs.pipeline.largest_loads import StaticBeam
+from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.models import build
 from runs.pipeline.panels import normal_coefficient, panel_factor, weakest_panels
 from runs.pipeline.static_results import (
@@ -149,7 +149,7 @@ def test_check_names_plays_closed_by_walls() -> None:
     """Reference: other code, the arm's shell at rest with edges of 0.2 m."""
     checked = reading.load_checked(str(CASES / "inspection-arm.toml"))
     boom = boom_with_play(checked.case, checked.boom)
-    (rest, *_) = StaticBeam.of(checked.case, boom).rests
+    (rest, *_) = BeamStates.of(checked.case, boom).rests
     closed = [one.closed for one in rest.stations if one.direction == "y"]
     assert closed == pytest.approx([1.1985e-3, 1.8414e-3, 0.8242e-3, 1.3873e-3], rel=0.02)
     (caution,) = bulge_cautions("in the beam estimate", rest, boom)

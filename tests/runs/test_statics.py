@@ -24,6 +24,7 @@ from runs.case.schema import Case, StopTable
 from runs.check import check_case, print_check
 from runs.pipeline.design_results import DesignResults
 from runs.pipeline.models import build
+from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import (
     extended_instants,
     extended_positions,
@@ -259,11 +260,12 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     case = case.model_copy(update={"loads": (late,)})
     boom, model = build_boom(case), case.models[1]
     built = build(case, boom, model)
-    system, lines = built.system.gather_loads(), model.lines(boom, built)
+    loaded = LoadedModel.of(boom, built.system, model.lines(boom, built))
+    system = loaded.system
     found = positions(system, instants(system, case.time.duration))
     assert list(found) == [0.0, 6.0]
     assert list(extended_positions(system, case.time.duration)) == [5.0]
-    rest = static_result(boom, system, lines, 6.0, found[6.0])
+    rest = static_result(loaded, 6.0, found[6.0])
     outer = rest.diagrams[0]
     moment = np.interp(2.0, outer.x, outer.curves["moment"])
     assert abs(moment) == pytest.approx(2e3 * 17.0 + 550.7 * 12.0 + 0.5 * 83.16 * 8.0**2, rel=1e-4)
