@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import reduce
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from geometry.fields import PART, In, declared_units, fields_of
+from geometry.fields import PART, In, declared_units, fields_of, names_of
 
 
 class CaseTable(BaseModel):
@@ -25,6 +27,35 @@ class CaseTable(BaseModel):
 def is_table(value: Any) -> bool:
     """Return True if a value is a table of a case: a :class:`CaseTable`, or a part of a boom."""
     return hasattr(type(value), "__pydantic_fields__")
+
+
+def map_tables(table: Any, change: Callable[[str, Any], Mapping[str, Any]], key: str = "") -> Any:
+    """Return a table with changed values in it and in all tables within it.
+
+    Args:
+        table: a table of a case, or a part of a boom.
+        change: function of a key and its table that returns changed values by the names of fields.
+        key: key of the table, empty for a case.
+    """
+
+    def mapped(value: Any, key: str) -> Any:
+        if is_table(value):
+            return map_tables(value, change, key)
+        if isinstance(value, dict):
+            return {name: mapped(one, f"{key}.{name}") for name, one in value.items()}
+        if isinstance(value, tuple) and any(map(is_table, value)):
+            return tuple(mapped(one, f"{key}[{i}]") for i, one in enumerate(value, start=1))
+        return value
+
+    changed = dict(change(key, table))
+    for step, name in names_of(type(table)).items():
+        before = getattr(table, name)
+        after = mapped(changed.get(name, before), f"{key}.{step}" if key else step)
+        if after != before:
+            changed[name] = after
+    if isinstance(table, CaseTable):
+        return table.model_copy(update=changed) if changed else table
+    return replace(table, **changed) if changed else table
 
 
 def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:

@@ -7,9 +7,8 @@ import logging
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
@@ -26,7 +25,7 @@ from runs.case.conversion import convert_to_si
 from runs.case.drive import TravelTable
 from runs.case.history import HistoryTable
 from runs.case.kinds.shell import check_mesh_size
-from runs.case.limits import MOST_MEMBERS, units_of
+from runs.case.limits import MOST_MEMBERS, map_tables, units_of
 from runs.case.messages import BadInput
 from runs.case.sanity import check_ranges
 from runs.case.schema import Case, EnsembleTable, Model, TimeTable
@@ -38,10 +37,6 @@ from runs.case.user_files import read_text
 MOST_OUTPUTS = 10_000_000
 
 _NOTICES = logging.getLogger("protractile")
-
-History = TypeVar("History", bound=HistoryTable)
-Travel = TypeVar("Travel", bound=TravelTable)
-Law = TypeVar("Law", bound=ContactTable)
 
 # Maximum number of digits of an integer option: longer numbers are input errors.
 _WHOLE = re.compile(r"[0-9]{1,9}")
@@ -79,7 +74,7 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
     """
     try:
         means, _ = take_means(tables, path)
-        case = convert_to_si(_read_tables(Case.model_validate(means), path))
+        case = convert_to_si(_read_files(Case.model_validate(means), path))
     except ValidationError as error:
         raise BadInput.from_validation(path, error) from None
     except OverflowError:
@@ -226,74 +221,41 @@ def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
         raise BadInput(path, key, _TOO_MANY_DIGITS)
 
 
-def _read_tables(case: Case, path: str) -> Case:
+def _read_files(case: Case, path: str) -> Case:
     """Return the case with the contents of its CSV files in place of their names."""
     system = System(case.units)
 
-    def resolve_histories(key: str, histories: Sequence[History]) -> tuple[History, ...]:
-        return tuple(
-            _history(path, f"{key}[{i}]", history, system)
-            for i, history in enumerate(histories, start=1)
-        )
+    def read(key: str, table: Any) -> dict[str, Any]:
+        if isinstance(table, ContactTable):
+            return _law(path, key, table, system)
+        if isinstance(table, HistoryTable):
+            return _history(path, key, table, system)
+        return _travel(path, key, table, system) if isinstance(table, TravelTable) else {}
 
-    def contact(key: str, table: Law) -> Law:
-        _check_columns(path, f"{key}.force_columns", table.force_columns, table.force_file)
-        if table.force_file is None:
-            return table
-        key = f"{key}.force_file"
-        law = Column("penetration", system.unit("m")), Column("force", system.unit("N"))
-        points = read_pairs(path, key, table.force_file, table.force_columns, law).values
-        try:
-            table_law(points)
-        except ValueError as error:
-            raise BadInput(path, key, str(error)) from None
-        return replace(table, force_file=None, force_columns=None, force_table=points)
-
-    joints = [
-        replace(
-            contact(f"joint[{i}]", joint),
-            drive=joint.drive and _travel(path, f"joint[{i}].drive", joint.drive, system),
-        )
-        for i, joint in enumerate(case.joints, start=1)
-    ]
-    models = [
-        model
-        if model.contact is None
-        else model.model_copy(update={"contact": contact(f"model[{i}].contact", model.contact)})
-        for i, model in enumerate(case.models, start=1)
-    ]
-    load_cases = [
-        one.model_copy(
-            update={
-                key: resolve_histories(f"load_case[{i}].{file_key}", loads_of_case)
-                for key, file_key in (("loads", "load"), ("base", "base"))
-                if (loads_of_case := getattr(one, key)) is not None
-            }
-        )
-        for i, one in enumerate(case.load_cases, start=1)
-    ]
-    hoist = case.hoist and _travel(path, "hoist", case.hoist, system)
-    if hoist is not None:
-        hoist = hoist.model_copy(update={"wind": resolve_histories("hoist.wind", hoist.wind)})
-    return case.model_copy(
-        update={
-            "load_cases": tuple(load_cases),
-            "joints": tuple(joints),
-            "models": tuple(models),
-            "loads": resolve_histories("load", case.loads),
-            "base": resolve_histories("base", case.base),
-            "hoist": hoist,
-            "slew": case.slew and _travel(path, "slew", case.slew, system),
-            "luff": case.luff and _travel(path, "luff", case.luff, system),
-        }
-    )
+    whole: Case = map_tables(case, read)
+    return whole
 
 
-def _history(path: str, key: str, table: History, system: System) -> History:
-    """Return the table of a history after reading its CSV file, if any."""
+def _law(path: str, key: str, table: ContactTable, system: System) -> dict[str, Any]:
+    """Return the changed values of a contact law after reading its CSV file, if any."""
+    _check_columns(path, f"{key}.force_columns", table.force_columns, table.force_file)
+    if table.force_file is None:
+        return {}
+    key = f"{key}.force_file"
+    wanted = Column("penetration", system.unit("m")), Column("force", system.unit("N"))
+    points = read_pairs(path, key, table.force_file, table.force_columns, wanted).values
+    try:
+        table_law(points)
+    except ValueError as error:
+        raise BadInput(path, key, str(error)) from None
+    return {"force_file": None, "force_columns": None, "force_table": points}
+
+
+def _history(path: str, key: str, table: HistoryTable, system: System) -> dict[str, Any]:
+    """Return the changed values of a history after reading its CSV file, if any."""
     _check_columns(path, f"{key}.columns", table.columns, table.file)
     if table.file is None:
-        return table
+        return {}
     _check_file_alone(path, key, table.table)
     (unit,) = units_of(table, table.amount)
     wanted = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
@@ -303,19 +265,19 @@ def _history(path: str, key: str, table: History, system: System) -> History:
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
     # Without this the default value would be in SI units, not in the units of the case file.
     amount = {table.amount: getattr(table, table.amount)}
-    return table.model_copy(update={"file": None, "columns": None, "table": read.values, **amount})
+    return {"file": None, "columns": None, "table": read.values, **amount}
 
 
-def _travel(path: str, key: str, travel: Travel, system: System) -> Travel:
-    """Return the table of a drive, winch or turn after reading its CSV file, if any."""
+def _travel(path: str, key: str, travel: TravelTable, system: System) -> dict[str, Any]:
+    """Return the changed values of a drive, winch or turn after reading its CSV file, if any."""
     _check_columns(path, f"{key}.columns", travel.columns, travel.file)
     if travel.file is None:
-        return travel
+        return {}
     _check_file_alone(path, key, travel.table)
     _, unit = units_of(travel, "table")
     wanted = Column("time", system.unit("s")), Column("length", system.unit(unit))
     read = read_pairs(path, f"{key}.file", travel.file, travel.columns, wanted).values
-    return travel.model_copy(update={"file": None, "columns": None, "table": read})
+    return {"file": None, "columns": None, "table": read}
 
 
 def _check_file_alone(path: str, key: str, table: object) -> None:

@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import UnionType
 from typing import ClassVar, get_args, get_type_hints
 
@@ -17,7 +17,7 @@ from typing import ClassVar, get_args, get_type_hints
 class Metric:
     """Name, unit and display format of a result, as an annotation of its field."""
 
-    name: str  #: name in the files of sweeps; empty to omit the result there
+    name: str  #: name in the files of sweeps, "." for the field's; empty to omit the result there
     unit: str  #: SI unit in files
     title: str  #: a lower-case phrase for display
     factor: float  #: conversion factor from the SI unit to the displayed unit
@@ -45,7 +45,7 @@ def metrics(kind: type) -> dict[str, Metric]:
     """Return the metrics of a record by the names of their fields."""
     hints = get_type_hints(kind, include_extras=True)
     return {
-        name: metric
+        name: replace(metric, name=name) if metric.name == "." else metric
         for name, hint in hints.items()
         for metric in getattr(hint, "__metadata__", ())
         if isinstance(metric, Metric)

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -37,9 +36,9 @@ _SMALL = 0.2
 _SHAPED, _SHARE = 2, 0.05
 
 
-_moment = partial(Metric, unit="N m", factor=TO_KILO, shown_unit="kN m", form=".3g")
-_power = partial(Metric, unit="W", factor=TO_KILO, shown_unit="kW", form=".3g")
-_work = partial(Metric, unit="J", factor=TO_KILO, shown_unit="kJ", form=".3g")
+def _kilo(unit: str, title: str, heading: str) -> Metric:
+    """Return the metric of a result in an SI unit, which is displayed in thousands of it."""
+    return Metric(".", unit, title, TO_KILO, f"k{unit}", heading=heading, form=".3g")
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,30 +54,14 @@ class CraneDrives(Record):
         "foot move a rigid boom with its load on the rope.",
     )
 
-    winch_power: Annotated[
-        float | None, _power("winch_power", title="power of the winch", heading="winch:\npower")
-    ] = None
-    winch_work: Annotated[
-        float | None, _work("winch_work", title="work of the winch", heading="work")
-    ] = None
-    slew_moment: Annotated[
-        float | None, _moment("slew_moment", title="slewing moment", heading="slewing:\nmoment")
-    ] = None
-    slew_power: Annotated[
-        float | None, _power("slew_power", title="slewing power", heading="power")
-    ] = None
-    slew_work: Annotated[
-        float | None, _work("slew_work", title="work of slewing", heading="work")
-    ] = None
-    luff_moment: Annotated[
-        float | None, _moment("luff_moment", title="luffing moment", heading="luffing:\nmoment")
-    ] = None
-    luff_power: Annotated[
-        float | None, _power("luff_power", title="luffing power", heading="power")
-    ] = None
-    luff_work: Annotated[
-        float | None, _work("luff_work", title="work of luffing", heading="work")
-    ] = None
+    winch_power: Annotated[float | None, _kilo("W", "power of the winch", "winch:\npower")] = None
+    winch_work: Annotated[float | None, _kilo("J", "work of the winch", "work")] = None
+    slew_moment: Annotated[float | None, _kilo("N m", "slewing moment", "slewing:\nmoment")] = None
+    slew_power: Annotated[float | None, _kilo("W", "slewing power", "power")] = None
+    slew_work: Annotated[float | None, _kilo("J", "work of slewing", "work")] = None
+    luff_moment: Annotated[float | None, _kilo("N m", "luffing moment", "luffing:\nmoment")] = None
+    luff_power: Annotated[float | None, _kilo("W", "luffing power", "power")] = None
+    luff_work: Annotated[float | None, _kilo("J", "work of luffing", "work")] = None
 
 
 def _laws(case: Case) -> Iterator[tuple[str, str, MotionLaw]]:
