@@ -271,18 +271,3 @@ class GapSystem:
             travels=[travel.transform(shapes) for travel in self.travels],
             geometric_stiffness=np.zeros((0, 0)),
         )
-
-    def static_response(self, force: Array) -> Array:
-        """Return the static position (num_modes,) under a modal force, without contact.
-
-        Args:
-            force: modal force (num_modes,) in N/√kg.
-
-        Raises:
-            ValueError: the system has rigid modes.
-        """
-        if (self.omega2 <= 0.0).any():
-            raise ValueError("a system with rigid modes has no static response")
-        if self.geometric_stiffness.size:
-            return np.asarray(np.linalg.solve(self.stiffness, force))
-        return force / self.omega2

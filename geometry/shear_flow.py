@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.section import COMPONENT, Direction, Offset, Plate
+from geometry.section import COMPONENT, Direction, Plate
 
 # Gauss points and weights on a plate, exact for q².
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
@@ -81,16 +81,6 @@ class ShearFlow:
     def moment(self) -> float:
         """The moment about the axis in N·m per N, the lever arm of the force in m."""
         return float(self.arms @ self.forces)
-
-
-def shear_centre(plates: Sequence[Plate]) -> Offset:
-    """Return the shear centre (y, z) in m from the axis; forces through it cause no twist.
-
-    >>> box = pt.BoxSection(0.6, 0.4, flange=0.02, web=0.02, left_web=0.01)
-    >>> print(f"{1e3 * shear_centre(box.plates)[0]:.1f} mm to the thicker web's side")
-    50.0 mm to the thicker web's side
-    """
-    return ShearFlow.from_plates(plates, "z").moment, -ShearFlow.from_plates(plates, "y").moment
 
 
 def shear_plates(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:

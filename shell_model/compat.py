@@ -77,27 +77,27 @@ _ASSEMBLE_DIAGONAL = (
 )
 
 
-def create_triangle_mesh(comm: MPI.Comm, points: Array, triangles: Indices) -> Any:
-    """Create a distributed mesh of flat triangles in three dimensions, up to three on an edge.
+def create_mesh(comm: MPI.Comm, points: Array, cells: Indices) -> Any:
+    """Create a distributed mesh in three dimensions.
 
     Args:
         comm: the ranks that share the mesh.
         points: (num_points, 3) on rank 0, (0, 3) elsewhere, in m.
-        triangles: (num_triangles, 3) on rank 0, (0, 3) elsewhere.
+        cells: (num_cells, 3) flat triangles, up to three on an edge, or (num_cells, 8) hexahedra
+            with straight edges, whose points are ordered along the first axis, then the second,
+            then the third; on rank 0, none elsewhere.
     """
+    triangles = cells.shape[1] == 3
+    kind = "triangle" if triangles else "hexahedron"
     if _HAS_BASIX_UFL:
-        element = basix.ufl.element("Lagrange", "triangle", 1, shape=(3,))
-        return mesh.create_mesh(
-            comm,
-            cells=triangles,
-            x=points,
-            e=ufl.Mesh(element),
-            **_edge_arguments(comm, points, triangles),
-        )
-    cell = ufl.Cell("triangle", geometric_dimension=3)
-    domain = ufl.Mesh(ufl.VectorElement("Lagrange", cell, 1))
-    # Version 0.5 gives each rank all cells across its edges.
-    return mesh.create_mesh(comm, _adjacency_list(triangles), points, domain)
+        element = basix.ufl.element("Lagrange", kind, 1, shape=(3,))
+        joined = _edge_arguments(comm, points, cells) if triangles else {}
+        return mesh.create_mesh(comm, cells=cells, x=points, e=ufl.Mesh(element), **joined)
+    cell = ufl.Cell(kind, geometric_dimension=3)
+    domain = ufl.Mesh(ufl.VectorElement("Lagrange" if triangles else "Q", cell, 1))
+    # Version 0.5 gives each rank all cells across its edges, and does not accept arrays.
+    connected = cpp.graph.AdjacencyList_int64(cells.astype(np.int64))
+    return mesh.create_mesh(comm, connected, points, domain)
 
 
 def _edge_arguments(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[str, Any]:
@@ -132,28 +132,6 @@ def _edge_arguments(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[s
     return {"partitioner": lambda *_: destinations}
 
 
-def create_hexahedron_mesh(comm: MPI.Comm, points: Array, hexahedra: Indices) -> Any:
-    """Create a distributed mesh of hexahedra with straight edges.
-
-    Args:
-        comm: the ranks that share the mesh.
-        points: (num_points, 3) on rank 0, (0, 3) elsewhere, in m.
-        hexahedra: (num_hexahedra, 8) on rank 0, (0, 8) elsewhere; the points of a cell are ordered
-            along its first axis, then its second, then its third.
-    """
-    if _HAS_BASIX_UFL:
-        element = basix.ufl.element("Lagrange", "hexahedron", 1, shape=(3,))
-        return mesh.create_mesh(comm, cells=hexahedra, x=points, e=ufl.Mesh(element))
-    cell = ufl.Cell("hexahedron", geometric_dimension=3)
-    domain = ufl.Mesh(ufl.VectorElement("Q", cell, 1))
-    return mesh.create_mesh(comm, _adjacency_list(hexahedra), points, domain)
-
-
-def _adjacency_list(cells: Indices) -> Any:
-    """Return connectivity in the type that DOLFINx 0.5 expects; it does not accept arrays."""
-    return cpp.graph.AdjacencyList_int64(cells.astype(np.int64))
-
-
 def solid_space(domain: Any) -> Any:
     """Return the space of quadratic displacements with three components."""
     if _HAS_BASIX_UFL:
@@ -181,7 +159,7 @@ def cellwise_space(domain: Any) -> Any:
 def cellwise_function(domain: Any, values: Array) -> Any:
     """Return a function that is constant on each cell of a mesh.
 
-    ``values`` (num_cells,) are in the order of the cells in :func:`create_triangle_mesh`, and the
+    ``values`` (num_cells,) are in the order of the cells in :func:`create_mesh`, and the
     same on every rank.
     """
     function = fem.Function(cellwise_space(domain))

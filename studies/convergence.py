@@ -29,8 +29,8 @@ from runs.report import theme
 from runs.report.figure_context import Figure
 from runs.report.formatting import fixed, number
 from runs.report.pages import page
-from runs.report.tables import Table, wide_console, write
-from studies.study import Plot, Study, Verification
+from runs.report.tables import Table, write
+from studies.study import Plot, Study, Verification, wide_console
 
 
 def draw(plot: Plot, folder: Path) -> Figure:

@@ -23,6 +23,7 @@ from geometry.load import Load
 from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import reduce_boom
+from studies.reference_models.statics import static_response
 from studies.study import Progress, Verification, define_study
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
@@ -172,7 +173,7 @@ def _berry(name: str, model: Model) -> Verification:
     for pressed in (0.0, force):
         system, _ = model.of(column((CLAMP,), pressed, point=LENGTH))
         (load,) = system.excitations
-        tips.append(float(system.observers["tip"].row @ system.static_response(load.load)))
+        tips.append(float(system.observers["tip"].row @ static_response(system, load.load)))
     what = f"tip deflection of a cantilever under {SHARE:g} P_cr over that without, {name}"
     source = "3 (tan u − u)/u³, Berry 1919, shear by Engesser 1891"
     return Verification(what, tips[1] / tips[0], reference, "", "analytic", source, model.allowed)

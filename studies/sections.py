@@ -20,13 +20,13 @@ from geometry.contact_places import ContactInterval
 from geometry.polygon import PolygonSection
 from geometry.profiles import hexagon, octagon, u_section
 from geometry.section import Direction, Section
-from geometry.shear_flow import shear_centre
 from runs.report.tables import Table
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduced_shell import reduce_boom
 from studies.reference_models.plates import STEEL
 from studies.reference_models.single_segment import compliances, shell_alone
+from studies.reference_models.statics import shear_centre
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0)

@@ -27,9 +27,10 @@ from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryC
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.shell import Shell
-from shell_model.segment.solver import ShiftedSolver, quadratic_form, times
+from shell_model.segment.solver import ShiftedSolver, times
 from studies.motions import SLOW
 from studies.reference_models.plates import STEEL
+from studies.reference_models.shell_readings import flange_deflection, quadratic_form
 from studies.reference_models.single_segment import natural_frequencies, shell_alone
 from studies.reference_models.solid import SolidFamily, assemble_solid, mesh_quarter
 from studies.refined import Refined, refined_table
@@ -65,7 +66,7 @@ def pad_squeeze(outline: SectionNodes) -> Row:
     """Return the row of the distance of the flanges at pads in the corners, in m."""
     half = 0.5 * outline.section.size("y")
     rows = (
-        side * weight * outline.flange_deflection(side, y)
+        side * weight * flange_deflection(outline, side, y)
         for side in (1.0, -1.0)
         for y, weight in zip(*gauss(half - PAD_WIDTH, half, 4), strict=True)
     )

@@ -21,8 +21,8 @@ from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.report.tables import Cell, Table
 from shell_model.segment.cross_section import Row, SectionNodes
-from shell_model.segment.solver import quadratic_form
 from studies.motions import friction_case
+from studies.reference_models.shell_readings import flange_deflection, quadratic_form
 from studies.reference_models.single_segment import compliances, natural_frequencies, shell_alone
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 
@@ -93,7 +93,7 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
     tops, bottoms = (
         # Above its webs, where pads near the webs press.
         [
-            outline.flange_deflection(side, 0.5 * outline.section.size("y"))
+            flange_deflection(outline, side, 0.5 * outline.section.size("y"))
             for outline in map(standing.outline, stations)
         ]
         for side in (1.0, -1.0)
@@ -164,7 +164,7 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
     shell = shell_alone(ring, size, (0.5 * length,))
     across = ((0.0, 1.0 / 6.0), (0.5 * length, 4.0 / 6.0), (length, 1.0 / 6.0))
     forces = (
-        weight * side * shell.outline(x).flange_deflection(side, 0.0)
+        weight * side * flange_deflection(shell.outline(x), side, 0.0)
         for x, weight in across
         for side in (1.0, -1.0)
     )

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from functools import wraps
 from typing import Literal, ParamSpec
 
-from runs.report.tables import Plain, Table
+from rich.console import Console
+
+from runs.report.tables import WIDE, Plain, Table
 
 # Callback with the next step of a study.
 Progress = Callable[[str], None]
@@ -73,6 +75,12 @@ class Study:
     def data(self) -> dict[str, list[dict[str, Plain]]]:
         """Numbers of each table by its name, as JSON."""
         return {table.name: table.data for table in self.tables}
+
+
+def wide_console() -> Console:
+    """Return the console for tables. Without a terminal its width does not limit them."""
+    console = Console()
+    return console if console.is_terminal else Console(width=WIDE)
 
 
 Piece = Table | Verification | Plot

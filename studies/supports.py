@@ -23,6 +23,7 @@ from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, Cylinder, Joint, Load, Segment, Support
 from geometry.section import BoxSection
+from studies.reference_models.statics import static_response
 from studies.second_order import STEEL
 from studies.study import Criterion, Progress, Verification, define_study
 
@@ -114,7 +115,7 @@ def _luffed(progress: Progress) -> Iterator[Verification]:
     ):
         progress(f"a luffed boom of {name}")
         system = _MODELS[name](boom).gather_loads()
-        at_rest = system.static_response(system.load)
+        at_rest = static_response(system, system.load)
         force, tip = (
             float(system.observers[one].row @ at_rest) for one in ("cylinder_force", "tip")
         )

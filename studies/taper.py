@@ -19,6 +19,7 @@ from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Segment
 from geometry.load import Load
 from geometry.section import BoxSection
+from studies.reference_models.statics import static_response
 from studies.second_order import (
     BOX,
     CLAMP,
@@ -104,7 +105,7 @@ def study(progress: Progress) -> Iterator[Verification]:
         progress(name)
         source = "∫ (L − x)²/(E J) dx" + (" + ∫ dx/(G A_s)" if model.in_shear else "")
         system, _ = model.of(arm())
-        found = system.observers["tip"].row @ system.static_response(system.excitations[0].load)
+        found = system.observers["tip"].row @ static_response(system, system.excitations[0].load)
         criterion: Criterion = ("analytic", source, OF_SHELL if name == "shell" else CLOSE)
         what, bent = f"tip of a tapered cantilever, {name}", tip(model.in_shear)
         yield Verification(what, 1e6 * float(found), 1e6 * bent, "1e-6 m/N", *criterion)

@@ -40,12 +40,6 @@ Cell = str | float | list[float] | None
 Plain = str | float | list[float | None] | None
 
 
-def wide_console() -> Console:
-    """Return the console for tables. Without a terminal its width does not limit them."""
-    console = Console()
-    return console if console.is_terminal else Console(width=WIDE)
-
-
 @dataclass(frozen=True, slots=True)
 class Column:
     """Column of a table.

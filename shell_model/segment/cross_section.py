@@ -153,21 +153,6 @@ class SectionNodes:
             turn += plate.length / (2.0 * self.section.enclosed_area) * self._slide(plate)
         return turn
 
-    def flange_deflection(self, side: float, y: float) -> Row:
-        """Return the row of the mean u_z in m at both ±y, on the top (side 1) or bottom (−1)."""
-        face = self.section.face("z", side)
-        nodes, along = self._along(self.section.plates[face.plate])
-        rows = []
-        for place in (y, -y):
-            # Nodes 2k, 2k+1, 2k+2 are the ends and the middle of edge k.
-            edge = int(np.clip(np.searchsorted(along[::2], place) - 1, 0, nodes.size // 2 - 1))
-            left, _, right = along[2 * edge : 2 * edge + 3]
-            shapes = quadratic(np.asarray((place - left) / (right - left)))
-            rows.append(
-                Row.from_weights(self.dofs[nodes[2 * edge : 2 * edge + 3], COMPONENT["z"]], shapes)
-            )
-        return 0.5 * rows[0] + 0.5 * rows[1]
-
     def _slide(self, plate: Plate) -> Row:
         """Return the row of the mean displacement along the tangent of a plate in m."""
         slopes = zip(COMPONENT, plate.tangent.tolist(), strict=True)
@@ -179,7 +164,7 @@ class SectionNodes:
         nodes, lengths = self._simpson(plate)
         return Row.from_weights(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
-    def _along(self, plate: Plate) -> tuple[Indices, Array]:
+    def along(self, plate: Plate) -> tuple[Indices, Array]:
         """Return the nodes of a plate, alternately ends and midpoints, and their positions in m.
 
         They are in the order of y, or of z if the plate is steep.
@@ -192,7 +177,7 @@ class SectionNodes:
 
     def _simpson(self, plate: Plate) -> tuple[Indices, Array]:
         """Return the nodes of a plate, and their weights in m by Simpson's rule."""
-        nodes, along = self._along(plate)
+        nodes, along = self.along(plate)
         lengths = along[2::2] - along[:-2:2]
         weights = np.zeros(nodes.size)
         weights[:-2:2] += lengths / 6.0

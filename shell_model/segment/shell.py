@@ -208,7 +208,7 @@ def assemble_plates(
         # Collars do not carry the axial force, so that it is the same in all sections.
         pressed = segment.compression(mesh.along) / segment.area * mesh.load_weight
         points, triangles, of_cells = mesh.points, mesh.triangles, (mesh.thickness, pressed)
-    domain = compat.create_triangle_mesh(comm, points, triangles)
+    domain = compat.create_mesh(comm, points, triangles)
     thickness, compression = (
         compat.cellwise_function(domain, values) for values in comm.bcast(of_cells)
     )

@@ -29,17 +29,6 @@ def times(matrix: PETSc.Mat, block: Array) -> Array:
     return product
 
 
-def quadratic_form(matrix: PETSc.Mat, vector: Array) -> float:
-    """Return uᵀ A u of a vector (num_owned,), for example twice an energy in J. Collective."""
-    right, left = matrix.createVecs()
-    right.array[:] = vector
-    matrix.mult(right, left)
-    form = float(right.dot(left))
-    right.destroy()
-    left.destroy()
-    return form
-
-
 def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
     """Return leftᵀ right (num_left, num_right), the same on every rank. Collective."""
     product = np.ascontiguousarray(left.T @ right)

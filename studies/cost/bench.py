@@ -32,7 +32,7 @@ from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.process.terminal import show_notices
-from runs.report.tables import Table, wide_console
+from runs.report.tables import Table
 from studies.cost import scaling
 from studies.cost.generic_solvers import (
     TOLERANCES,
@@ -44,6 +44,7 @@ from studies.cost.other_programs import PROBLEMS, other_programs
 from studies.cost.telescoping import MODELS, telescoping
 from studies.cost.timing import NOISE, time_in_turns, write_tables
 from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of
+from studies.study import wide_console
 
 PAPER = CASES / "paper.toml"
 OUT = Path("runs/out/bench")

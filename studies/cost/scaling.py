@@ -30,8 +30,9 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.process.terminal import show_notices
-from runs.report.tables import Table, wide_console
+from runs.report.tables import Table
 from studies.cost.timing import write_tables
+from studies.study import wide_console
 
 SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
 OUT = Path("runs/out/scaling")

@@ -16,6 +16,7 @@ from shell_model.segment.cross_section import SectionNodes
 from shell_model.segment.forms import DRILLING
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.plates import STEEL
+from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
 
@@ -172,6 +173,6 @@ class PlainBox:
         at = shell.at(X, x)
         outline = SectionNodes(x, shell.nodes[at], shell.node_dofs[at], self.section)
         force = np.zeros(shell.num_dofs)
-        for dof, weight in outline.flange_deflection(1.0, y).items():
+        for dof, weight in flange_deflection(outline, 1.0, y).items():
             force[dof] = weight
         return float(force @ shell.solve(held, force))

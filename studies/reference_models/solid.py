@@ -247,7 +247,7 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
     ):
         raise ValueError(f"{segment.name!r} as a solid takes rigid supports alone")
     comm = MPI.COMM_SELF
-    space = compat.solid_space(compat.create_hexahedron_mesh(comm, mesh.points, mesh.hexahedra))
+    space = compat.solid_space(compat.create_mesh(comm, mesh.points, mesh.hexahedra))
     plates = _SolidPlates(space, solid_forms(space, segment.material), [], copies=4.0)
     nodes, _ = plates.nodes[0]
     free = np.ones(nodes.shape, dtype=bool)

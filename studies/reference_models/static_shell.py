@@ -59,7 +59,7 @@ class StaticShell:
         drilling: float = DRILLING,
         shear_correction: float = SHEAR_CORRECTION,
     ) -> None:
-        domain = compat.create_triangle_mesh(MPI.COMM_SELF, points, triangles)
+        domain = compat.create_mesh(MPI.COMM_SELF, points, triangles)
         space = compat.shell_space(domain)
         walls = compat.cellwise_function(
             domain, np.broadcast_to(np.asarray(thickness, dtype=float), len(triangles))

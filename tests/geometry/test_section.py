@@ -25,8 +25,9 @@ from geometry.section import (
     infer_inner_section,
     infer_outer_section,
 )
-from geometry.shear_flow import ShearFlow, shear_centre
+from geometry.shear_flow import ShearFlow
 from geometry.walls import free_room
+from studies.reference_models.statics import shear_centre
 from tests.geometry.test_polygon import ALL, HEXAGON, OCTAGON, TRAPEZOID, U
 
 PAPER_AREAS = (83.16 / 7850.0, 55.07 / 7850.0)

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from geometry.polygon import PolygonSection
-from geometry.shear_flow import shear_centre
 from geometry.walls import trapezoids
+from studies.reference_models.statics import shear_centre
 from tests.geometry.test_polygon import ALL
 from tests.other_codes import INSTALLED, run_elsewhere
 

@@ -29,6 +29,7 @@ from runs.pipeline.load_table import load_table
 from runs.pipeline.section_forces import section_forces
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import Fibres, outer_corners
+from studies.reference_models.statics import static_response
 from tests.runs.case_texts import box, joint, read_case
 from tests.runs.summaries import answers_of, printed
 
@@ -307,7 +308,7 @@ def test_fibres_of_a_taper_are_those_of_the_local_section() -> None:
     system = gap_system(boom, models).gather_loads()
     (line,) = lines(boom, models)
     fibres = Fibres.of(arm, line)
-    state = system.static_response(system.load)
+    state = static_response(system, system.load)
     for x, height in ((4.0, 0.3), (2.0, 0.35)):
         box, at = BoxSection(height, 0.2, 0.01, 0.008), int(np.argmax(line.x == x))
         assert fibres.of_normal[at] == pytest.approx(1.0 / box.area, rel=1e-12)

@@ -14,6 +14,7 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.case.schema import Case
 from runs.pipeline.models import build
+from studies.reference_models.statics import static_response
 from tests.runs.case_texts import read_case, refusal
 from tests.runs.test_actions import BENDING, CANTILEVER, ELEMENTS
 
@@ -29,7 +30,7 @@ def tip_at_rest(case: Case) -> float:
     tools = BuildContext(MPI.COMM_SELF)
     system = build(case, build_boom(case), case.models[0], tools).system
     load = system.load + np.sum([x.load for x in system.excitations], axis=0)
-    return float(system.observers["tip"].row @ system.static_response(load))
+    return float(system.observers["tip"].row @ static_response(system, load))
 
 
 def under_part(bending: float) -> float:

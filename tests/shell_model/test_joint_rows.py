@@ -15,6 +15,7 @@ from dynamics.motion import Motion
 from geometry.boom import Boom, Load, Stop
 from geometry.contact_places import ContactLine
 from shell_model.segment.cross_section import Operator, Row
+from studies.reference_models.statics import static_response
 from tests.shell_model.booms import LAW, flat_boom, three_segments
 from tests.shell_model.models import assert_rests_as_beams, bonded_beams, pressed_rest, reduced
 from tests.touching import touching
@@ -141,7 +142,7 @@ def test_a_bonded_joint_has_no_play() -> None:
     assert system.rows.shape == (0, system.num_modes)
     assert not (system.omega2 == 0.0).any()
     assert system.frequencies[0] == pytest.approx(beams.frequencies[0], rel=2.0e-3)
-    rest, expected = (one.static_response(one.load) for one in (system, beams))
+    rest, expected = (static_response(one, one.load) for one in (system, beams))
     tip = system.observers["tip"].row @ rest
     assert tip == pytest.approx(beams.observers["tip"].row @ expected, rel=2.0e-3)
     # The pictures' modes are those of the coordinates.

@@ -17,6 +17,7 @@ from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, 
 from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.segment.solver import times
+from studies.reference_models.shell_readings import flange_deflection
 from tests.shell_model.booms import HELD, box_segment
 from tests.shell_model.conftest import BOX, UNEQUAL
 
@@ -113,7 +114,7 @@ def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Sectio
 def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) -> None:
     """A load along z bends along z; a push at one flange breathes as well."""
     shell = box_shell(0.5, supports=HELD)
-    push = shell.row(shell.outline(10.0).flange_deflection(1.0, 0.1))
+    push = shell.row(flange_deflection(shell.outline(10.0), 1.0, 0.1))
     for force, expected in (
         (shell.unit_loads["z"], [ALONG_Z]),
         (shell.unit_loads["y"], [ALONG_Y]),

@@ -19,6 +19,7 @@ from shell_model.reduction.segment import ReducedSegment, reduce_segment
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver, times
+from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD
 
@@ -27,7 +28,7 @@ Shells = Callable[..., SegmentShell]
 
 def _inputs(shell: SegmentShell) -> np.ndarray:
     rows = [
-        shell.row(shell.outline(x).flange_deflection(side, 0.5 * shell.section.width))
+        shell.row(flange_deflection(shell.outline(x), side, 0.5 * shell.section.width))
         for x in (2.0, 10.0)
         for side in (1.0, -1.0)
     ]

@@ -21,6 +21,7 @@ from geometry.section import BoxSection
 from shell_model.boom_shell import ShellOptions, segment_mesh
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.segment.segment_shell import assemble_segment
+from studies.reference_models.statics import static_response
 from tests.shell_model.booms import STEEL
 from tests.touching import touching
 
@@ -91,7 +92,7 @@ def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
     reduced = reduce_boom(boom, OPTIONS, MPI.COMM_SELF)
     assert reduced.critical_factor == pytest.approx(2.5, rel=5e-3)
     system = reduced.system
-    found = system.observers["tip"].row @ system.static_response(system.load)
+    found = system.observers["tip"].row @ static_response(system, system.load)
     row = full.row(full.outline(8.0).mean_deflection())
     stiffness = sparse(full.stiffness) - sparse(full.geometric)
     moved = spsolve(stiffness.tocsc(), full.own_load(("z",)))

@@ -18,6 +18,7 @@ from shell_model.reduction.segment import reduce_segment
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import times
+from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD, STEEL, box_segment
 from tests.shell_model.conftest import BOX, compliance
@@ -90,8 +91,8 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
     lifted = 0.03 + 0.002 * 5.0
     rows = (
         outline.mean_deflection(), outline.wall_deflection("z"), outline.rotation(),
-        outline.distortion(), outline.flange_deflection(1.0, 0.1),
-        outline.flange_deflection(-1.0, 0.5 * BOX.width), outline.twist(),
+        outline.distortion(), flange_deflection(outline, 1.0, 0.1),
+        flange_deflection(outline, -1.0, 0.5 * BOX.width), outline.twist(),
     )  # fmt: skip
     readings = [shell.row(row) @ shell.rigid_motions() @ in_plane for row in rows]
     expected = [lifted, lifted, 0.002, 0.0, lifted, lifted, 0.0]

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from studies.reference_models.shell_readings import quadratic_form
+
 pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
 
 import pytest
@@ -23,7 +25,7 @@ from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, 
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import SectionNodes
 from shell_model.segment.segment_shell import assemble_segment
-from shell_model.segment.solver import ShiftedSolver, quadratic_form, times
+from shell_model.segment.solver import ShiftedSolver, times
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.solid import SolidFamily, SolidMesh, assemble_solid, mesh_quarter
 from tests.shell_model.booms import STEEL, box_segment

@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Static quantities that serve proofs alone."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from dynamics.gap_system import GapSystem
+from geometry.arrays import Array
+from geometry.section import Offset, Plate
+from geometry.shear_flow import ShearFlow
+
+
+def static_response(system: GapSystem, force: Array) -> Array:
+    """Return the static position (num_modes,) of a system under a modal force, without contact.
+
+    Args:
+        system: the system.
+        force: modal force (num_modes,) in N/√kg.
+
+    Raises:
+        ValueError: the system has rigid modes.
+    """
+    if (system.omega2 <= 0.0).any():
+        raise ValueError("a system with rigid modes has no static response")
+    if system.geometric_stiffness.size:
+        return np.asarray(np.linalg.solve(system.stiffness, force))
+    return force / system.omega2
+
+
+def shear_centre(plates: Sequence[Plate]) -> Offset:
+    """Return the shear centre (y, z) in m from the axis; forces through it cause no twist."""
+    return ShearFlow.from_plates(plates, "z").moment, -ShearFlow.from_plates(plates, "y").moment
