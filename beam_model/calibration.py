@@ -68,15 +68,15 @@ class Calibration:
     segments: Sequence[Stiffness]
     residual: Array
 
-    def beam(self, boom: Boom, segments: Callable[[Boom], Sequence[SegmentModel]]) -> GapSystem:
+    def beam(self, stiff: Boom, segments: Sequence[SegmentModel]) -> GapSystem:
         """Return the gap system of a calibrated beam.
 
         Args:
-            boom: boom with the sections, joints and pads of the shell; masses and loads may differ.
-            segments: function that returns the beams of a boom.
+            stiff: boom of :func:`with_stiffnesses` with the sections, joints and pads of the shell;
+                masses and loads may differ.
+            segments: beams of this boom.
         """
-        stiff = with_stiffnesses(boom, self.segments)
-        return with_springs(gap_system(stiff, segments(stiff), EACH_SIDE), self.residual)
+        return with_springs(gap_system(stiff, segments, EACH_SIDE), self.residual)
 
     def spring(self, row: int) -> float | None:
         """Return the stiffness in N/m in series with a contact row; None if it is rigid."""

@@ -21,14 +21,15 @@ from rich.console import Console
 from beam_model.statics import StaticState
 from dynamics.damping import closed_contact_damping, closed_contact_modes
 from dynamics.failure import NUMERICAL_ERRORS
+from dynamics.gap_system import GapSystem
 from dynamics.motion import constant_load_equilibrium
+from geometry.arrays import Array
 from geometry.axial import axial_force, moving_force_places
 from geometry.boom import Boom, Direction, Joint
 from geometry.fit import room
 from geometry.section import Section
 from runs.case import actions
 from runs.case.checked_case import CheckedCase
-from runs.case.kinds.model import ModelTable
 from runs.case.schema import Case, Model
 from runs.case.units import System
 from runs.pipeline.combinations import combination_results, combination_tables
@@ -38,17 +39,16 @@ from runs.pipeline.drives import (
     stick_slip_estimates,
     stick_slip_lines,
 )
-from runs.pipeline.estimates import Preview, preview_cost
+from runs.pipeline.estimates import Preview, run_cost
 from runs.pipeline.largest_loads import (
     BeamStates,
     beam_note,
     overload_cautions,
     static_table,
-    weakest_at_rest,
 )
 from runs.pipeline.load_table import load_table
 from runs.pipeline.pad_walls import pad_wall_lines, rigid_wall_note
-from runs.pipeline.panels import panel_cautions, panel_table
+from runs.pipeline.panels import panel_cautions, panel_table, weakest_panels
 from runs.pipeline.proportions import (
     buckling_cautions,
     period_cautions,
@@ -132,7 +132,7 @@ def check_case(declared: CheckedCase) -> Check:
     boom_with_laws = boom if static is None else static.with_play.boom
     beam = None if static is None else BeamStates.of(case, boom_with_laws)
     extremes = [] if beam is None else beam.extremes(case.system)
-    panels = [] if beam is None else weakest_at_rest(beam)
+    panels = [] if beam is None else weakest_panels(beam.boom.segments, *beam.rests)
     tables = [
         _segments(case, boom),
         _stiffeners(boom, case.system),
@@ -164,7 +164,7 @@ def check_case(declared: CheckedCase) -> Check:
         *panel_cautions(panels, case.system),
         *stick_slip_cautions(drives, case.system),
     ]
-    lines.append(f"A run may take {preview_cost(preview)}.")
+    lines.append(f"A run may take {run_cost(case, preview)}.")
     return Check(case.title, [table for table in tables if table.rows], lines)
 
 
@@ -383,22 +383,17 @@ def _damping_ratios(preview: Preview) -> Table:
     coefficients += [support.dashpot for segment in boom.segments for support in segment.supports]
     rows: list[tuple[str, ...]] = []
     for model in case.models if any(coefficients) else ():
-        beam = model.surrogate(boom).beam if model.needs_shell else model.coarsen(boom)
         # Some booms have fewer modes.
-        cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model, beam), fillvalue="")
+        cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model), fillvalue="")
         rows.append((_beam_name(model), *(cell for _, cell in [*cells][:SHOWN_MODES])))
     headings = ("model", *(f"mode {number}" for number in range(1, SHOWN_MODES + 1)))
     return Table.of_rows("", "Damping ratios, joints in contact", headings, rows)
 
 
-def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
+def _ratios(preview: Preview, model: Model) -> list[str]:
     try:
         with np.errstate(all="ignore"):
-            motion = preview.motion(model, beam)
-            rest = constant_load_equilibrium(
-                motion.system, preview.checked.case.start.at_rest, motion.position
-            )
-            damping = closed_contact_damping(motion.system, rest)
+            damping = closed_contact_damping(*_at_rest(preview, model))
     except NUMERICAL_ERRORS:
         return ["cannot be computed"]
     # Dashpots between open stations contribute only round-off.
@@ -408,17 +403,19 @@ def _ratios(preview: Preview, model: Model, beam: ModelTable) -> list[str]:
     ]
 
 
+def _at_rest(preview: Preview, model: Model) -> tuple[GapSystem, Array | None]:
+    """Return the system of the beam that replaces a model, and its equilibrium (num_modes,)."""
+    motion, at_rest = preview.motion(model), preview.checked.case.start.at_rest
+    return motion.system, constant_load_equilibrium(motion.system, at_rest, motion.position)
+
+
 def _shaper_lines(preview: Preview) -> Iterator[str]:
     """Yield the shapers that leave no vibration after slewing and luffing, by the first model."""
     case, (model, *_) = preview.checked.case, preview.checked.case.models
     if case.slew is None and case.luff is None:
         return
-    boom = preview.checked.boom
-    beam = model.surrogate(boom).beam if model.needs_shell else model.coarsen(boom)
     with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
-        motion = preview.motion(model, beam)
-        rest = constant_load_equilibrium(motion.system, case.start.at_rest, motion.position)
-        yield from shaper_lines(case, motion.system, rest)
+        yield from shaper_lines(case, *_at_rest(preview, model))
 
 
 def _reactions(state: StaticState, system: System) -> Table:

@@ -67,7 +67,8 @@ def build_boom(case: Case) -> Boom:
         _segment(case, number, section, ends[number]) for number, section in enumerate(sections)
     )
     along = 0.0 if case.gravity is None else case.gravity.along
-    hanging = 0.0 if case.hoist is None else case.hoist.initial_mass
+    hoist = case.hoist
+    hanging = hoist.mass if hoist and hoist.hanging and not hoist.dropped else 0.0
     rope = Thrust(len(segments) - 1, segments[-1].end, hanging * along)
     thrusts = (*actions.thrusts(case, segments), rope)
     segments = with_compression(segments, joints, thrusts, along)
@@ -103,7 +104,11 @@ def check_ensemble_data(case: Case, boom: Boom) -> None:
     if case.ensemble is None or all(model.bonded for model in case.models):
         return
     vary = case.ensemble.vary
-    if vary == "load" and not _has_lasting_load(boom):
+    passing = ReleasedLoad | InitialImpulse
+    amounts = [load.magnitude for load in boom.loads if not isinstance(load.history, passing)]
+    for segment in boom.segments:
+        amounts += [segment.load, segment.lateral.load if segment.lateral else 0.0]
+    if vary == "load" and not any(amounts):
         raise BoomError(
             "ensemble.vary",
             "no load acts from t = 0 on, of which members change a part; give vary = 'clearance', "
@@ -116,16 +121,6 @@ def check_ensemble_data(case: Case, boom: Boom) -> None:
             "there is no play, of which members change a part; give vary = 'load', or leave the "
             "ensemble out",
         )
-
-
-def _has_lasting_load(boom: Boom) -> bool:
-    """Return True if a load acts from t = 0 on."""
-    weights = [segment.load for segment in boom.segments]
-    weights += [segment.lateral.load for segment in boom.segments if segment.lateral is not None]
-    lasting = [
-        load for load in boom.loads if not isinstance(load.history, ReleasedLoad | InitialImpulse)
-    ]
-    return any(weights) or any(load.magnitude for load in lasting)
 
 
 def _check_observations(case: Case) -> None:

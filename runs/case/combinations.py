@@ -26,7 +26,7 @@ from runs.case.load_tables import (
     LoadTable,
     PayloadTable,
 )
-from runs.case.schema import Case, GravityTable
+from runs.case.schema import Case
 
 # Factors by group of loads, and factors 1 for a load case without combination.
 Factors = Mapping[Group, float]
@@ -74,6 +74,14 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
             given as payload.
     """
     table = table or _PLAIN
+    gravity, payload = case.gravity, case.payload
+    if table.angle is not None:
+        if gravity is None:
+            raise BoomError("angle", "the case has no table gravity, whose angle it replaces")
+        gravity = gravity.model_copy(update={"angle": table.angle})
+    if table.payload:
+        mass = table.payload + (payload.mass if payload else 0.0)
+        payload = (payload or PayloadTable(mass=mass)).model_copy(update={"mass": mass})
     replacements: Mapping[str, Any] = {
         key: getattr(case if getattr(table, key) is None else table, key)
         for key in ("loads", "axial", "base")
@@ -81,8 +89,8 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
     plain = case.model_copy(
         update={
             **replacements,
-            "gravity": _gravity(case, table),
-            "payload": _payload(case, table),
+            "gravity": gravity,
+            "payload": payload,
             "joints": _joints(case, table),
             "cylinders": tuple(_luffed_cylinders(case, table)),
             **dict.fromkeys(("hoist", "slew", "luff")),
@@ -114,7 +122,6 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
         one.model_copy(update={"acceleration": factors[one.group] * one.acceleration})
         for one in plain.base
     ]
-    gravity, payload = plain.gravity, plain.payload
     # Factor by which the model already multiplies the weight of the mass at the tip.
     weight_factor = 0.0
     acceleration = STANDARD_GRAVITY
@@ -144,22 +151,6 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
             "payload": payload,
         }
     )
-
-
-def _gravity(case: Case, table: LoadCaseTable) -> GravityTable | None:
-    if table.angle is None:
-        return case.gravity
-    if case.gravity is None:
-        raise BoomError("angle", "the case has no table gravity, whose angle it replaces")
-    return case.gravity.model_copy(update={"angle": table.angle})
-
-
-def _payload(case: Case, table: LoadCaseTable) -> PayloadTable | None:
-    if not table.payload:
-        return case.payload
-    payload = case.payload or PayloadTable(mass=table.payload)
-    mass = table.payload + (case.payload.mass if case.payload else 0.0)
-    return payload.model_copy(update={"mass": mass})
 
 
 def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:

@@ -87,11 +87,6 @@ class HoistTable(TravelTable):
         return self.falls * self.modulus * self.area / self.length
 
     @property
-    def initial_mass(self) -> float:
-        """The mass in kg that hangs on the rope from t = 0 on."""
-        return self.mass if self.hanging and not self.dropped else 0.0
-
-    @property
     def factor_by_class(self) -> float | None:
         """The factor φ₂ of the hoisting class; None without its constants."""
         if self.phi_2_min is None or self.beta_2 is None:

@@ -21,12 +21,6 @@ from runs.case.load_tables import AxialTable
 from runs.case.sections import SHAPES
 from runs.process.terminal import shorten
 
-# Keys of the case that are arrays of tables.
-_ARRAYS = (
-    "segment", "joint", "stop", "cylinder", "load", "axial", "base", "observe", "model",
-    "load_case", "combination", "spectrum",
-)  # fmt: skip
-
 # Key of each attribute of a boom.
 _PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}
 _PARTS["observations"] = "observe"
@@ -102,12 +96,6 @@ class BadInput(Exception):
         return cls(file, re.sub(r"\.start$", ".span", key), error.what)
 
 
-def first_error(error: ValidationError) -> str:
-    """Return path and description of the first error in a file that the program wrote."""
-    fault = error.errors(include_url=False)[0]
-    return "".join(f"{step}: " for step in fault["loc"]) + fault["msg"]
-
-
 def _explain(
     fault: str, location: tuple[int | str, ...], value: Any, context: Mapping[str, Any] | None
 ) -> tuple[str, str]:
@@ -139,7 +127,7 @@ def _explain(
         must = "made of letters, digits, blanks and . _ + -, starting with one of the first"
     elif fault == "string_pattern_mismatch":
         must = "a line of printable characters"
-    elif fault == "tuple_type" and key in _ARRAYS:
+    elif fault == "tuple_type" and key in names_of(schema.Case):
         must = f"an array of tables, each headed [[{key}]]"
     elif fault.startswith(("model_", "dict_", "dataclass_")):
         must = "a table"

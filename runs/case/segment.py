@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Self
+from typing import Annotated, Self
 
 from pydantic import BeforeValidator, model_validator
 
@@ -15,14 +15,13 @@ from geometry.support import Support
 from runs.case.limits import CaseTable, error_at, superfluous_error
 from runs.case.sections import AnySection
 
-
-def _support(value: Any) -> Any:
-    """Return a plain x as the table of a pinned support at x."""
-    return {"x": value} if isinstance(value, str) or is_number(value) else value
-
-
+# A plain x is a pinned support at x.
 _Support = Annotated[
-    Support, BeforeValidator(_support, json_schema_input_type=Number | End | Support)
+    Support,
+    BeforeValidator(
+        lambda value: {"x": value} if isinstance(value, str) or is_number(value) else value,
+        json_schema_input_type=Number | End | Support,
+    ),
 ]
 
 

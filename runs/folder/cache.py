@@ -177,7 +177,7 @@ class Cache:
 
 
 def load_or_compute(
-    cache: Cache,
+    cache: Cache | None,
     content: Sequence[Any],
     comm: MPI.Comm,
     compute: Callable[[], ReducedShell],
@@ -188,11 +188,13 @@ def load_or_compute(
     cannot be read or written causes a notice.
 
     Args:
-        cache: cache of the user.
+        cache: cache of the user; None to compute the shell.
         content: all inputs of the shell.
         comm: ranks that share the work; the first one reads and writes.
         compute: function that computes the shell. Collective.
     """
+    if cache is None:
+        return compute()
     from shell_model.reduced_shell import ReducedShell
 
     start = perf_counter()

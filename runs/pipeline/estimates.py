@@ -83,16 +83,13 @@ class Preview:
     checked: CheckedCase
     _motions: list[tuple[ModelTable, Motion]] = field(default_factory=list, init=False, repr=False)
 
-    def motion(self, model: Model, beam: ModelTable) -> Motion:
-        """Return the initial motion of a model.
-
-        Args:
-            model: a model of the case.
-            beam: the model itself, or its surrogate.
+    def motion(self, model: Model) -> Motion:
+        """Return the initial motion of the beam that replaces a model of the case.
 
         Raises:
             NumericsError: there is no equilibrium to start from.
         """
+        beam = model.surrogate(self.checked.boom).beam
         for earlier_beam, motion in self._motions:
             if earlier_beam == beam:
                 return motion
@@ -102,15 +99,11 @@ class Preview:
         return motion
 
 
-def run_cost(case: Case) -> Cost:
-    """Return the cost of a run of a checked case."""
-    return preview_cost(Preview(CheckedCase(case)))
-
-
-def preview_cost(preview: Preview) -> Cost:
-    """Return the cost of a run, from the motions of its preview."""
-    shell = any(model.needs_shell for model in preview.checked.case.models)
-    return models_cost(preview) + Cost(0.0, _SHELL_REPORT if shell else _REPORT)
+def run_cost(case: Case, preview: Preview | None = None) -> Cost:
+    """Return the cost of a run of a checked case, from the motions of its preview."""
+    shell = any(model.needs_shell for model in case.models)
+    report = Cost(0.0, _SHELL_REPORT if shell else _REPORT)
+    return models_cost(preview or Preview(CheckedCase(case))) + report
 
 
 def models_cost(preview: Preview) -> Cost:
@@ -153,7 +146,7 @@ def _model_cost(preview: Preview, model: Model) -> Cost:
     case, surrogate = preview.checked.case, model.surrogate(preview.checked.boom)
     before = Cost(surrogate.memory, _RESULTS + surrogate.seconds)
     try:
-        motion = preview.motion(model, surrogate.beam)
+        motion = preview.motion(model)
     except NUMERICAL_ERRORS:
         # The run will fail with the same error and report it.
         return before

@@ -19,7 +19,6 @@ from geometry.axial import foot_thrust
 from geometry.boom import Boom
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.panels import PanelBuckling, weakest_panels
 from runs.pipeline.proportions import tip_cautions
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
@@ -193,16 +192,6 @@ class BeamStates(NamedTuple):
                 for load in loads
             ]
             yield _static_extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
-
-
-def weakest_at_rest(beam: BeamStates) -> list[PanelBuckling]:
-    """Return the wall of each segment with the lowest buckling factor over all static states."""
-    weakest: dict[str, PanelBuckling] = {}
-    for rest in beam.rests:
-        for one in weakest_panels(beam.boom.segments, rest):
-            if one.segment not in weakest or one.factor < weakest[one.segment].factor:
-                weakest[one.segment] = one
-    return [*weakest.values()]
 
 
 def _static_extreme(

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -120,10 +121,10 @@ def panel_factor(
     return np.asarray(np.divide(1.0, part, out=np.full_like(part, np.inf), where=part > 0.0))
 
 
-def weakest_panels(segments: Sequence[Segment], rest: StaticResult) -> list[PanelBuckling]:
-    """Return the first wall to buckle in a static state, for each segment with a known section."""
+def weakest_panels(segments: Sequence[Segment], *rests: StaticResult) -> list[PanelBuckling]:
+    """Return the first wall to buckle in static states, for each segment with a known section."""
     weakest: dict[str, PanelBuckling] = {}
-    for wall in nominal_wall_stresses(segments, rest):
+    for wall in chain.from_iterable(nominal_wall_stresses(segments, rest) for rest in rests):
         name = wall.segment.name
         factors = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
         least = int(factors.argmin())

@@ -16,6 +16,8 @@ from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from geometry.load import Load
 from runs.case.actions import STANDARD_GRAVITY
+from runs.case.kinds.model import select_kind
+from runs.case.kinds.shell import Shell
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
 
@@ -207,11 +209,10 @@ def _meshes(case: Case, boom: Boom) -> Iterator[str]:
     sections = [segment.section_at(x) for segment in with_section for x in segment.ends]
     walls = (plate.length for section in sections for plate in section.plates)
     narrowest = min(walls, default=np.inf)
-    for model in case.models:
-        edge = model.longest_edge
-        if edge > narrowest:
+    for model in select_kind(Shell, case.models):
+        if model.mesh_size > narrowest:
             yield (
-                f"the mesh size of {model.name!r}, {edge:g} m, is larger than a wall of "
+                f"the mesh size of {model.name!r}, {model.mesh_size:g} m, is larger than a wall of "
                 f"{narrowest:.3g} m"
             )
 

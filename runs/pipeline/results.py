@@ -21,7 +21,7 @@ from geometry.observation import KINDS
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.messages import BadInput, first_error
+from runs.case.messages import BadInput
 from runs.case.schema import Case, Model
 from runs.case.user_files import check_not_working_folder, check_regular
 from runs.folder.files import (
@@ -325,7 +325,9 @@ def _read(path: Path, how: Callable[[Path], Any]) -> Any:
     except FileNotFoundError:
         what = "missing; give the folder of a run that has finished"
     except ValidationError as error:
-        what = f"{first_error(error)}; is damaged or of another version; run the case again"
+        fault = error.errors(include_url=False)[0]
+        where = "".join(f"{step}: " for step in fault["loc"])
+        what = f"{where}{fault['msg']}; is damaged or of another version; run the case again"
     except (OSError, ValueError, TypeError, KeyError) as error:
         what = f"cannot be understood ({error}); run the case again"
     raise BadInput(str(path.parent), path.name, what)

@@ -133,7 +133,7 @@ def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, mo
     model = plain.models[0].model_copy(update={"bonded_joints": bonded})
     plain = plain.model_copy(update={"models": (model,)})
     preview = Preview(CheckedCase(plain))
-    motion = preview.motion(model, model)
+    motion = preview.motion(model)
     line, *others = shaper_lines(plain, motion.system, motion.position)
     assert not others
     offered = re.fullmatch(

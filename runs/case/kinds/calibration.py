@@ -7,7 +7,7 @@ from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import replace
 from time import perf_counter
-from typing import TYPE_CHECKING, Annotated, Any, Self
+from typing import TYPE_CHECKING, Annotated, Self
 
 import numpy as np
 from pydantic import Discriminator, Tag
@@ -35,14 +35,10 @@ if TYPE_CHECKING:
 OF_MOTION = ("contact", "step")
 
 
-def _named_or_table(value: Any) -> str:
-    return "name" if isinstance(value, str) else "shell"
-
-
 # The tag of the table is its kind, which error paths contain.
 _Shell = Annotated[
     Annotated[Name, Tag("name")] | Annotated[Shell, Tag("shell")],
-    Discriminator(_named_or_table),
+    Discriminator(lambda value: "name" if isinstance(value, str) else "shell"),
 ]
 
 
@@ -131,9 +127,9 @@ class CalibratedTable(BeamTable):
         from beam_model.calibration import with_stiffnesses
         from beam_model.lines import lines
 
-        system = calibration.beam(model_boom.boom, self.segments)
         stiff = with_stiffnesses(model_boom.boom, calibration.segments)
-        along = lines(stiff, self.segments(stiff))
+        segments = self.segments(stiff)
+        system, along = calibration.beam(stiff, segments), lines(stiff, segments)
         # The coordinates of the springs come after the coordinates of the beam, and do not affect
         # its lines.
         num_coordinates = along[0].rows["deflection"].shape[1]

@@ -98,16 +98,6 @@ class BuildContext:
     cache: Cache | None = None
     helper: Executor | None = None
 
-    def cached_shell(
-        self, content: Sequence[Any], compute: Callable[[], ReducedShell]
-    ) -> ReducedShell:
-        """Return the reduced shell for this content from the cache, or compute it. Collective."""
-        from runs.folder.cache import load_or_compute
-
-        if self.cache is None:
-            return compute()
-        return load_or_compute(self.cache, content, self.comm, compute)
-
 
 @dataclass(frozen=True, slots=True)
 class BuiltModel:
@@ -171,11 +161,6 @@ class ModelTable(CaseTable):
 
     # True if section forces are smooth at point loads, as with a series of smooth functions.
     smooth: ClassVar[bool] = False
-
-    @property
-    def longest_edge(self) -> float:
-        """The longest edge of the mesh in m; 0 without a mesh."""
-        return 0.0
 
     @property
     def needs_shell(self) -> bool:

@@ -98,6 +98,7 @@ class Shell(ModelTable):
         return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"
 
     def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
+        from runs.folder.cache import load_or_compute
         from shell_model.reduced_shell import reduce_boom
         from shell_model.standard import with_plays_and_loads
 
@@ -105,10 +106,8 @@ class Shell(ModelTable):
         boom, options = self.content(model_boom.boom)
         # A small shell does not repay the seconds that a second process takes to load FEniCSx.
         helper = context.helper if self.estimate_dofs(boom) > _SMALL else None
-        standard_shell = context.cached_shell(
-            (boom, options),
-            partial(reduce_boom, boom, options, context.comm, context.progress, helper),
-        )
+        compute = partial(reduce_boom, boom, options, context.comm, context.progress, helper)
+        standard_shell = load_or_compute(context.cache, (boom, options), context.comm, compute)
         shell = with_plays_and_loads(standard_shell, model_boom.boom)
         factor = shell.critical_factor
         if (boom.driven or model_boom.boom.axial_changes) and factor is not None:
@@ -147,10 +146,6 @@ class Shell(ModelTable):
         assert built.shell is not None
         assert built.shell.fields is not None
         return lines(built.shell.fields, boom)
-
-    @property
-    def longest_edge(self) -> float:
-        return self.mesh_size
 
     def critical_factor(self, model_boom: ModelBoom) -> float | None:
         from beam_model.statics import estimate_critical_factor
