@@ -37,17 +37,11 @@ _PLAIN = LoadCaseTable.model_validate({"name": "case"})
 
 
 class CombinedCase(NamedTuple):
-    """The case of a combination in a load case, with the names of both.
+    """The case of a combination in a load case, with the names of both."""
 
-    Args:
-        name: names of combination and load case, as far as the case gives them; else ``case``.
-        case: the case with the loads of the combination.
-        combination: the combination; a default one if the case gives none.
-    """
-
-    name: str
-    case: Case
-    combination: CombinationTable
+    name: str  #: names of combination and load case, as far as the case gives them; else ``case``
+    case: Case  #: the case with the loads of the combination
+    combination: CombinationTable  #: the combination; a default one if the case gives none
 
 
 def combined_cases(case: Case) -> Iterator[CombinedCase]:

@@ -29,25 +29,15 @@ _HEIGHT_OVER_GYRATION = 2.5
 
 
 class UsualRange(NamedTuple):
-    """A number of a case with its usual range.
+    """A number of a case with its usual range."""
 
-    Args:
-        key: key in the case file.
-        what: description in messages, for example ``the height of 'fly'``.
-        value: value in SI units.
-        unit: SI unit, ``1`` for none.
-        least: smallest usual value.
-        most: largest usual value.
-        margin: factor beyond these limits at which a value is impossible.
-    """
-
-    key: str
-    what: str
-    value: float
-    unit: str
-    least: float
-    most: float
-    margin: float
+    key: str  #: key in the case file
+    what: str  #: description in messages, for example ``the height of 'fly'``
+    value: float  #: value in SI units
+    unit: str  #: SI unit, ``1`` for none
+    least: float  #: smallest usual value
+    most: float  #: largest usual value
+    margin: float  #: factor beyond these limits at which a value is impossible
 
     @property
     def unusual(self) -> bool:

@@ -11,17 +11,11 @@ from runs.case.messages import BadInput
 
 
 class Spread(NamedTuple):
-    """Normal distribution of one number of a case file, in the units of the file.
+    """Normal distribution of one number of a case file, in the units of the file."""
 
-    Args:
-        steps: path of keys and indices to the number.
-        mean: mean value, which runs and checks take.
-        sd: standard deviation.
-    """
-
-    steps: tuple[str | int, ...]
-    mean: float
-    sd: float
+    steps: tuple[str | int, ...]  #: path of keys and indices to the number
+    mean: float  #: mean value, which runs and checks take
+    sd: float  #: standard deviation
 
 
 def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, object], list[Spread]]:

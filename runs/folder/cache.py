@@ -60,13 +60,9 @@ def key(*content: Any) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Cache:
-    """Cache of entries by their keys.
+    """Cache of entries by their keys."""
 
-    Args:
-        folder: folder of the entries, which is created with the first entry.
-    """
-
-    folder: Path
+    folder: Path  #: folder of the entries, which is created with the first entry
 
     @classmethod
     def of_user(cls) -> Cache | None:

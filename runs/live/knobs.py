@@ -69,40 +69,24 @@ _WITHOUT = (
 
 @dataclass(frozen=True, slots=True)
 class Knob:
-    """A number of a case, or several equal ones, with a range.
+    """A number of a case, or several equal ones, with a range."""
 
-    Args:
-        key: key in the case file, ``joint[1].play``, or ``joint.play`` for all joints.
-        keys: keys of its numbers.
-        label: label of the slider.
-        help: description of the key.
-        value: value in the unit.
-        unit: unit in the case's system; empty for dimensionless numbers.
-        range: lower and upper end of the slider; None without a range.
-    """
-
-    key: str
-    keys: Sequence[str]
-    label: str
-    help: str
-    value: float
-    unit: str
-    range: tuple[float, float] | None
+    key: str  #: key in the case file, ``joint[1].play``, or ``joint.play`` for all joints
+    keys: Sequence[str]  #: keys of its numbers
+    label: str  #: label of the slider
+    help: str  #: description of the key
+    value: float  #: value in the unit
+    unit: str  #: unit in the case's system; empty for dimensionless numbers
+    range: tuple[float, float] | None  #: lower and upper end of the slider; None without a range
 
 
 @dataclass(frozen=True)
 class Draft:
-    """Case with editable numeric values; inferred plates stay as in the file.
+    """Case with editable numeric values; inferred plates stay as in the file."""
 
-    Args:
-        file: file of the case.
-        case: checked case, with inferred plates as given ones.
-        boom: boom of the file.
-    """
-
-    file: str
-    case: Case
-    boom: Boom
+    file: str  #: file of the case
+    case: Case  #: checked case, with inferred plates as given ones
+    boom: Boom  #: boom of the file
 
     @classmethod
     def load(cls, file: str) -> Draft:

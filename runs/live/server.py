@@ -44,17 +44,11 @@ class Superseded(Exception):
 
 @dataclass
 class LivePage:
-    """Live page of a case, for any number of tabs.
+    """Live page of a case, for any number of tabs."""
 
-    Args:
-        draft: case with editable values.
-        token: first part of the path of each address.
-        shells: runs of the shell models of the case.
-    """
-
-    draft: Draft
-    token: str = field(default_factory=token_urlsafe)
-    shells: ShellRuns = field(default_factory=ShellRuns)
+    draft: Draft  #: case with editable values
+    token: str = field(default_factory=token_urlsafe)  #: first part of the path of each address
+    shells: ShellRuns = field(default_factory=ShellRuns)  #: runs of the shell models of the case
     _newest: dict[str, int] = field(default_factory=dict)
     _computing: Lock = field(default_factory=Lock)
 

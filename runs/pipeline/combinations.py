@@ -56,18 +56,12 @@ class CombinationResult:
 
 
 class CombinationState(NamedTuple):
-    """Static states of a combination in a load case.
+    """Static states of a combination in a load case."""
 
-    Args:
-        combined: the case of the combination.
-        beam: the static states; None without an equilibrium.
-        walls: largest wall stresses of each segment of a shell.
-        buckling: buckling of the segments of a shell; None if it is not computed.
-    """
-
-    combined: CombinedCase
-    beam: BeamStates | None
-    walls: Sequence[WallStress] = ()
+    combined: CombinedCase  #: the case of the combination
+    beam: BeamStates | None  #: the static states; None without an equilibrium
+    walls: Sequence[WallStress] = ()  #: largest wall stresses of each segment of a shell
+    #: buckling of the segments of a shell; None if it is not computed
     buckling: Sequence[WallBuckling] = ()
 
     @property

@@ -21,13 +21,6 @@ class PeakDifferences:
 
     A combined spread is the sum of the spreads of both ensembles. If a difference exceeds it, the
     peak differs between all members of the two models.
-
-    Args:
-        time: differences of the times in s.
-        time_spread: combined spreads of the times in s.
-        height: differences of the heights, in the unit of the signal.
-        height_spread: combined spreads of the heights, in the unit of the signal.
-        explained: true where neither difference exceeds its combined spread.
     """
 
     scope: ClassVar[str] = (
@@ -35,11 +28,11 @@ class PeakDifferences:
         "does not show differences of fast vibration, or of peaks that only some members have."
     )
 
-    time: Numbers
-    time_spread: Numbers
-    height: Numbers
-    height_spread: Numbers
-    explained: list[bool]
+    time: Numbers  #: differences of the times in s
+    time_spread: Numbers  #: combined spreads of the times in s
+    height: Numbers  #: differences of the heights, in the unit of the signal
+    height_spread: Numbers  #: combined spreads of the heights, in the unit of the signal
+    explained: list[bool]  #: true where neither difference exceeds its combined spread
 
     @classmethod
     def of(cls, one: SlowPeaks, other: SlowPeaks) -> PeakDifferences:
@@ -60,15 +53,6 @@ class Distributions:
     """Distributions of the values of two ensembles after both horizons.
 
     The statistics of each model are NaN if a model stays predictable.
-
-    Args:
-        since: later of both horizons of the largest differences, in s.
-        range: range of each model, in the unit of the signal.
-        mean: mean of each model, in the unit of the signal.
-        deviation: standard deviation of each model, in the unit of the signal.
-        distance: Kolmogorov-Smirnov distance, the largest difference of the cumulative
-            distributions, 0 to 1. It is no test of significance, since successive values are
-            correlated.
     """
 
     scope: ClassVar[str] = (
@@ -76,10 +60,12 @@ class Distributions:
         "does not show differences of time and order."
     )
 
-    since: Number
-    range: tuple[Number, Number]
-    mean: tuple[Number, Number]
-    deviation: tuple[Number, Number]
+    since: Number  #: later of both horizons of the largest differences, in s
+    range: tuple[Number, Number]  #: range of each model, in the unit of the signal
+    mean: tuple[Number, Number]  #: mean of each model, in the unit of the signal
+    deviation: tuple[Number, Number]  #: standard deviation of each model, in the unit of the signal
+    #: Kolmogorov-Smirnov distance, the largest difference of the cumulative distributions, 0 to 1.
+    #: It is no test of significance, since successive values are correlated.
     distance: Number
 
     @classmethod

@@ -22,22 +22,17 @@ def ignore_progress(model: str, stage: str, part: float) -> None:
 
 @dataclass(frozen=True, slots=True)
 class RunContext:
-    """Ranks, progress reporter, caches and helper process of a run.
+    """Ranks, progress reporter, caches and helper process of a run."""
 
-    Args:
-        comm: ranks that share the shells and the ensembles; None for a case without shells.
-        progress: callback that receives model, stage and completed fraction.
-        cache: cache of reduced shells.
-        motions: cache of completed motions.
-        helper: second process for shells and pictures if there is only one rank.
-        renderers: modules for pictures, which the helper imports after it has reduced a shell.
-    """
-
+    #: ranks that share the shells and the ensembles; None for a case without shells
     comm: MPI.Intracomm | None = None
+    #: callback that receives model, stage and completed fraction
     progress: Progress = ignore_progress
-    cache: Cache | None = None
-    motions: Cache | None = None
+    cache: Cache | None = None  #: cache of reduced shells
+    motions: Cache | None = None  #: cache of completed motions
+    #: second process for shells and pictures if there is only one rank
     helper: Executor | None = None
+    #: modules for pictures, which the helper imports after it has reduced a shell
     renderers: Sequence[str] = ()
 
     @property

@@ -23,44 +23,37 @@ from runs.pipeline.wall_buckling import WallBuckling
 
 @dataclass(frozen=True, slots=True)
 class ModelDesignResults:
-    """Design results of one model.
+    """Design results of one model."""
 
-    Args:
-        static: static states under the loads at t = 0 and, if loads vary, under their extreme
-            values; empty without an equilibrium.
-        static_extended: static states at the largest and smallest extension, under the loads at the
-            time of this extension and the extreme loads while it lasts.
-        static_bonded: static states without play, at times with the initial extension.
-        modes: the first modes about the equilibrium under the loads at t = 0; empty without an
-            equilibrium.
-        modes_bonded: modes of the boom without play; their shapes are not stored.
-        motion: extreme values of the motion.
-        motion_bonded: extreme values without play, except wall stresses of shells; None for a model
-            without play, or if they cannot be computed.
-        life: fatigue damage of each segment with a known section.
-        life_bonded: fatigue damage without play.
-        buckling: buckling of the walls of each segment of a shell, in the static state with the
-            largest tip deflection; empty for beams and without the table ``buckling``.
-        panels: estimates of the lowest buckling factors by panel formulas, in the same state.
-        residual_vibration: residual vibration of telescoping; None without telescoping, without an
-            equilibrium, or if the run ends before the drives stop.
-        hoisting: extreme values of a load on a rope; None without a hoist.
-        drives: demand on the drives of hoisting, slewing and luffing; None without them.
-    """
-
+    #: static states under the loads at t = 0 and, if loads vary, under their extreme values; empty
+    #: without an equilibrium
     static: list[StaticResult] = field(default_factory=list)
+    #: static states at the largest and smallest extension, under the loads at the time of this
+    #: extension and the extreme loads while it lasts
     static_extended: list[StaticResult] = field(default_factory=list)
+    #: static states without play, at times with the initial extension
     static_bonded: list[StaticResult] = field(default_factory=list)
+    #: the first modes about the equilibrium under the loads at t = 0; empty without an equilibrium
     modes: list[Mode] = field(default_factory=list)
+    #: modes of the boom without play; their shapes are not stored
     modes_bonded: list[Mode] = field(default_factory=list)
-    motion: MotionResult | None = None
+    motion: MotionResult | None = None  #: extreme values of the motion
+    #: extreme values without play, except wall stresses of shells; None for a model without play,
+    #: or if they cannot be computed
     motion_bonded: MotionResult | None = None
+    #: fatigue damage of each segment with a known section
     life: list[Life] = field(default_factory=list)
-    life_bonded: list[Life] = field(default_factory=list)
+    life_bonded: list[Life] = field(default_factory=list)  #: fatigue damage without play
+    #: buckling of the walls of each segment of a shell, in the static state with the largest tip
+    #: deflection; empty for beams and without the table ``buckling``
     buckling: list[WallBuckling] = field(default_factory=list)
+    #: estimates of the lowest buckling factors by panel formulas, in the same state
     panels: list[PanelBuckling] = field(default_factory=list)
+    #: residual vibration of telescoping; None without telescoping, without an equilibrium, or if
+    #: the run ends before the drives stop
     residual_vibration: ResidualVibration | None = None
-    hoisting: Hoisting | None = None
+    hoisting: Hoisting | None = None  #: extreme values of a load on a rope; None without a hoist
+    #: demand on the drives of hoisting, slewing and luffing; None without them
     drives: CraneDrives | None = None
 
     @property
@@ -73,22 +66,15 @@ class ModelDesignResults:
 
 @dataclass(frozen=True, slots=True)
 class PlayDifference:
-    """Effect of play on one result.
+    """Effect of play on one result."""
 
-    Args:
-        what: name of the result, as in :class:`Peak`, or ``deflection at rest``, ``first
-            frequency``, ``stress``.
-        where: location of the result; empty for the whole boom.
-        unit: SI unit.
-        with_play: absolute value of the result with play.
-        bonded: absolute value of the result without play.
-    """
-
+    #: name of the result, as in :class:`Peak`, or ``deflection at rest``, ``first frequency``,
+    #: ``stress``
     what: str
-    where: str
-    unit: str
-    with_play: float
-    bonded: float
+    where: str  #: location of the result; empty for the whole boom
+    unit: str  #: SI unit
+    with_play: float  #: absolute value of the result with play
+    bonded: float  #: absolute value of the result without play
 
     @property
     def increase(self) -> float:
@@ -103,54 +89,38 @@ class PlayDifference:
 
 @dataclass(frozen=True, slots=True)
 class PlayEffect:
-    """Effect of play on the results of one model.
+    """Effect of play on the results of one model."""
 
-    Args:
-        model: name of the model with play.
-        numbers: static, modal and dynamic results, with and without play.
-    """
-
-    model: str
-    numbers: list[PlayDifference]
+    model: str  #: name of the model with play
+    numbers: list[PlayDifference]  #: static, modal and dynamic results, with and without play
 
 
 @dataclass(frozen=True, slots=True)
 class QualityNote:
-    """Note on the accuracy of the results.
+    """Note on the accuracy of the results."""
 
-    Args:
-        what: subject: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``.
-        line: text of the note.
-    """
-
+    #: subject: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``
     what: str
-    line: str
+    line: str  #: text of the note
 
 
 @dataclass(frozen=True, slots=True)
 class DesignResults:
-    """Design results of a run.
+    """Design results of a run."""
 
-    Args:
-        models: design results of each model, by its name.
-        reactions: static support reactions under the loads at t = 0, of beam elements as in
-            ``check``; empty without an equilibrium.
-        reactions_bonded: static support reactions without play.
-        modes: comparison of the modes of all models; None if fewer than two models have modes.
-        play: effect of play in each model with play.
-        quality_notes: notes on the accuracy.
-        combinations: statics of all load cases and combinations, as beam elements.
-        proofs: their proofs; None without load cases and combinations.
-    """
-
-    models: dict[str, ModelDesignResults]
+    models: dict[str, ModelDesignResults]  #: design results of each model, by its name
+    #: static support reactions under the loads at t = 0, of beam elements as in ``check``; empty
+    #: without an equilibrium
     reactions: list[Reaction] = field(default_factory=list)
+    #: static support reactions without play
     reactions_bonded: list[Reaction] = field(default_factory=list)
+    #: comparison of the modes of all models; None if fewer than two models have modes
     modes: ModeComparison | None = None
-    play: list[PlayEffect] = field(default_factory=list)
-    quality_notes: list[QualityNote] = field(default_factory=list)
+    play: list[PlayEffect] = field(default_factory=list)  #: effect of play in each model with play
+    quality_notes: list[QualityNote] = field(default_factory=list)  #: notes on the accuracy
+    #: statics of all load cases and combinations, as beam elements
     combinations: list[CombinationResult] = field(default_factory=list)
-    proofs: Proofs | None = None
+    proofs: Proofs | None = None  #: their proofs; None without load cases and combinations
 
 
 def play_effects(models: list[Model], design: Mapping[str, ModelDesignResults]) -> list[PlayEffect]:

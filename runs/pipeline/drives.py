@@ -58,19 +58,12 @@ def drive_lines(boom: Boom, system: System) -> Iterator[str]:
 
 @dataclass(frozen=True, slots=True)
 class StickSlipEstimate:
-    """Data of an elastic drive from which its stick-slip is predicted.
+    """Data of an elastic drive from which its stick-slip is predicted."""
 
-    Args:
-        inner: name of the inner segment.
-        elastic: data of the elastic drive.
-        friction: largest sliding friction R in the static states, in N.
-        max_speed: largest commanded speed in m/s.
-    """
-
-    inner: str
-    elastic: ElasticDrive
-    friction: float
-    max_speed: float
+    inner: str  #: name of the inner segment
+    elastic: ElasticDrive  #: data of the elastic drive
+    friction: float  #: largest sliding friction R in the static states, in N
+    max_speed: float  #: largest commanded speed in m/s
 
     @property
     def critical_speed(self) -> float:

@@ -89,19 +89,12 @@ def with_motion(
 
 @dataclass(frozen=True)
 class ModelEvaluation:
-    """Evaluation of one model after its run, on the first rank.
+    """Evaluation of one model after its run, on the first rank."""
 
-    Args:
-        boom: boom of the case.
-        case: the case of the model.
-        model: a model of the case.
-        built: the model before time integration.
-    """
-
-    boom: Boom
-    case: Case
-    model: Model
-    built: BuiltModel
+    boom: Boom  #: boom of the case
+    case: Case  #: the case of the model
+    model: Model  #: a model of the case
+    built: BuiltModel  #: the model before time integration
 
     @cached_property
     def _played(self) -> LoadedModel:

@@ -32,41 +32,25 @@ _ELEMENTS = 20
 
 
 class StaticExtreme(NamedTuple):
-    """A static result at t = 0, and its extreme value under the loads of other times.
+    """A static result at t = 0, and its extreme value under the loads of other times."""
 
-    Args:
-        name: name of the result, with the part of the boom.
-        what: name of the result, with its location.
-        unit: SI unit.
-        initial: value at t = 0.
-        largest: value with the largest magnitude.
-        time: time of the loads of this value in s.
-        utilisation: utilisation of a strength by the largest value; None without a strength.
-    """
-
-    name: str
-    what: str
-    unit: str
-    initial: float
-    largest: float
-    time: float
+    name: str  #: name of the result, with the part of the boom
+    what: str  #: name of the result, with its location
+    unit: str  #: SI unit
+    initial: float  #: value at t = 0
+    largest: float  #: value with the largest magnitude
+    time: float  #: time of the loads of this value in s
+    #: utilisation of a strength by the largest value; None without a strength
     utilisation: Utilisation | None = None
 
 
 class BeamStates(NamedTuple):
-    """States of a boom without drives under the loads at several times, at rest or in motion.
+    """States of a boom without drives under the loads at several times, at rest or in motion."""
 
-    Args:
-        model: the model of the boom.
-        time: (num_states,) in s.
-        positions: modal coordinates (num_states, num_modes).
-        rests: result of each state; empty for a whole motion.
-    """
-
-    model: LoadedModel
-    time: Array
-    positions: Array
-    rests: Sequence[StaticResult] = ()
+    model: LoadedModel  #: the model of the boom
+    time: Array  #: (num_states,) in s
+    positions: Array  #: modal coordinates (num_states, num_modes)
+    rests: Sequence[StaticResult] = ()  #: result of each state; empty for a whole motion
 
     @property
     def boom(self) -> Boom:

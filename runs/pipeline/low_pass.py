@@ -99,22 +99,14 @@ class SlowPeaks:
     """Peaks of the slow motion that all members of an ensemble have, as means over the members.
 
     A spread is half the difference between the largest and the smallest member.
-
-    Args:
-        time: times (num_peaks,) in s.
-        time_spread: spreads (num_peaks,) of the times in s.
-        height: heights (num_peaks,) in the signal's unit.
-        height_spread: spreads (num_peaks,) of the heights in the signal's unit.
-        period: mean time between successive peaks in s; NaN for fewer than two peaks.
-        period_spread: spread of the period in s; NaN for fewer than two peaks.
     """
 
-    time: Numbers
-    time_spread: Numbers
-    height: Numbers
-    height_spread: Numbers
-    period: Number
-    period_spread: Number
+    time: Numbers  #: times (num_peaks,) in s
+    time_spread: Numbers  #: spreads (num_peaks,) of the times in s
+    height: Numbers  #: heights (num_peaks,) in the signal's unit
+    height_spread: Numbers  #: spreads (num_peaks,) of the heights in the signal's unit
+    period: Number  #: mean time between successive peaks in s; NaN for fewer than two peaks
+    period_spread: Number  #: spread of the period in s; NaN for fewer than two peaks
 
     @classmethod
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:

@@ -38,23 +38,17 @@ FRAMES = 61
 
 @dataclass(frozen=True, slots=True)
 class ShellOutput:
-    """Output of a shell, which has files of its own.
+    """Output of a shell, which has files of its own."""
 
-    Args:
-        fields: points, triangles, segment, modes and stresses of the mesh, ``state`` (time,
-            mode), and ``contact_mode_shape`` (contact_mode in Hz, mode) of the boom
-            with closed contacts.
-        stresses: von Mises stresses near stations and supports over time.
-        largest: largest of these stresses, with the section forces of the walls at that time.
-        meshes: mesh of each segment, by name.
-        buckling: buckling of the walls; its shapes are in ``fields``, too. None without the table
-            ``buckling``.
-    """
-
+    #: points, triangles, segment, modes and stresses of the mesh, ``state`` (time, mode), and
+    #: ``contact_mode_shape`` (contact_mode in Hz, mode) of the boom with closed contacts
     fields: xr.Dataset
-    stresses: xr.Dataset
+    stresses: xr.Dataset  #: von Mises stresses near stations and supports over time
+    #: largest of these stresses, with the section forces of the walls at that time
     largest: StressSummary
-    meshes: dict[str, PlatedMesh]
+    meshes: dict[str, PlatedMesh]  #: mesh of each segment, by name
+    #: buckling of the walls; its shapes are in ``fields``, too. None without the table
+    #: ``buckling``.
     buckling: BuckledShell | None = None
 
     @property

@@ -107,17 +107,12 @@ def initial_motion(system: GapSystem, case: Case) -> Motion:
 
 @dataclass(frozen=True, slots=True)
 class MotionPlan:
-    """Motion of a model of a case, and its integrator.
+    """Motion of a model of a case, and its integrator."""
 
-    Args:
-        motion: motion of the system under the loads from t = 0 on.
-        integrator: integrator with the step of the model or the case, or with error control.
-        load: hoisted load; None for none.
-    """
-
-    motion: Motion
+    motion: Motion  #: motion of the system under the loads from t = 0 on
+    #: integrator with the step of the model or the case, or with error control
     integrator: FixedStep | AdaptiveStep
-    load: HangingLoad | None
+    load: HangingLoad | None  #: hoisted load; None for none
 
     @classmethod
     def of(cls, system: GapSystem, case: Case, model: ModelTable) -> MotionPlan:

@@ -42,51 +42,33 @@ class Shape:
 
 @dataclass(frozen=True, slots=True)
 class Mode:
-    """Mode of the boom with the contacts that are closed in the static state.
+    """Mode of the boom with the contacts that are closed in the static state."""
 
-    Args:
-        frequency: frequency in Hz.
-        motion: dominant motion: ``bending in z``, ``bending in y`` or ``twist``.
-        number: number among the modes of the model with this dominant motion, from 1 on.
-        share: fraction of the kinetic energy in the dominant motion, from 0 to 1.
-        shapes: mode shapes of each segment; the dominant motion has a maximum of 1 m or 1 rad.
-    """
-
-    frequency: float
-    motion: str
-    number: int
-    share: float
+    frequency: float  #: frequency in Hz
+    motion: str  #: dominant motion: ``bending in z``, ``bending in y`` or ``twist``
+    number: int  #: number among the modes of the model with this dominant motion, from 1 on
+    share: float  #: fraction of the kinetic energy in the dominant motion, from 0 to 1
+    #: mode shapes of each segment; the dominant motion has a maximum of 1 m or 1 rad
     shapes: list[Shape]
 
 
 @dataclass(frozen=True, slots=True)
 class Match:
-    """Mode of another model that matches a mode of the reference.
+    """Mode of another model that matches a mode of the reference."""
 
-    Args:
-        number: number of the mode in the other model, from 1 on.
-        frequency: frequency in Hz.
-        off: relative difference from the frequency of the reference.
-        alike: modal assurance criterion of both shapes, from 0 to 1.
-    """
-
-    number: int
-    frequency: float
-    off: float
-    alike: float
+    number: int  #: number of the mode in the other model, from 1 on
+    frequency: float  #: frequency in Hz
+    off: float  #: relative difference from the frequency of the reference
+    alike: float  #: modal assurance criterion of both shapes, from 0 to 1
 
 
 @dataclass(frozen=True, slots=True)
 class ModeComparison:
-    """Comparison of the modes of all models with the modes of a reference.
+    """Comparison of the modes of all models with the modes of a reference."""
 
-    Args:
-        reference: name of the reference model.
-        matches: for each other model with play, the mode that matches each mode of the reference;
-            None without a match.
-    """
-
-    reference: str
+    reference: str  #: name of the reference model
+    #: for each other model with play, the mode that matches each mode of the reference; None
+    #: without a match
     matches: dict[str, list[Match | None]]
 
 

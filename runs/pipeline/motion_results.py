@@ -22,44 +22,30 @@ from runs.pipeline.strength import Fibres, FibreStress, StressHistory, WallStres
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
-    """Envelope of a segment: minimum and maximum of every curve of a diagram.
+    """Envelope of a segment: minimum and maximum of every curve of a diagram."""
 
-    Args:
-        segment: name of the segment.
-        x: positions (num_places) in m; a position with a jump occurs twice.
-        low: minimum of each curve over the run, named as in :class:`Diagram`.
-        high: maximum of each curve over the run.
-    """
-
-    segment: str
-    x: list[float]
-    low: dict[str, list[float]]
-    high: dict[str, list[float]]
+    segment: str  #: name of the segment
+    x: list[float]  #: positions (num_places) in m; a position with a jump occurs twice
+    low: dict[str, list[float]]  #: minimum of each curve over the run, named as in :class:`Diagram`
+    high: dict[str, list[float]]  #: maximum of each curve over the run
 
 
 @dataclass(frozen=True, slots=True)
 class Peak:
-    """Largest magnitude of a quantity in motion, and its static value.
+    """Largest magnitude of a quantity in motion, and its static value."""
 
-    Args:
-        what: name of the quantity: ``deflection``, ``contact force``, ``cylinder force``,
-            ``rope force``, ``reaction``, with axial loads also ``reaction along the boom`` and
-            ``reaction, across and along``, ``moment at the support``, ``bending moment``; in space
-            also ``torque at the support``, and the same names with ``lateral`` for y.
-        where: location in the results or the case.
-        unit: SI unit.
-        largest: maximum of the motion; for contacts the maximum of the means over output intervals,
-            which is the design load of a pad, not the peak of an impact.
-        time: time of the maximum in s.
-        at_rest: static maximum under the extreme loads, at any extension; None without an
-            equilibrium.
-    """
-
+    #: name of the quantity: ``deflection``, ``contact force``, ``cylinder force``, ``rope force``,
+    #: ``reaction``, with axial loads also ``reaction along the boom`` and ``reaction, across and
+    #: along``, ``moment at the support``, ``bending moment``; in space also ``torque at the
+    #: support``, and the same names with ``lateral`` for y
     what: str
-    where: str
-    unit: str
+    where: str  #: location in the results or the case
+    unit: str  #: SI unit
+    #: maximum of the motion; for contacts the maximum of the means over output intervals, which is
+    #: the design load of a pad, not the peak of an impact
     largest: float
-    time: float
+    time: float  #: time of the maximum in s
+    #: static maximum under the extreme loads, at any extension; None without an equilibrium
     at_rest: float | None
 
     @property
@@ -70,19 +56,12 @@ class Peak:
 
 @dataclass(frozen=True, slots=True)
 class MotionResult:
-    """Extreme values of the motion of a model.
+    """Extreme values of the motion of a model."""
 
-    Args:
-        envelopes: envelope of each segment.
-        peaks: maxima of all quantities, with their static values.
-        fibres: largest stress of each elastic segment with a known section.
-        walls: largest wall stresses of a shell.
-    """
-
-    envelopes: list[Envelope]
-    peaks: list[Peak]
-    fibres: list[FibreStress]
-    walls: list[WallStress]
+    envelopes: list[Envelope]  #: envelope of each segment
+    peaks: list[Peak]  #: maxima of all quantities, with their static values
+    fibres: list[FibreStress]  #: largest stress of each elastic segment with a known section
+    walls: list[WallStress]  #: largest wall stresses of a shell
 
 
 class _Plane(NamedTuple):
@@ -102,21 +81,13 @@ _PLANES = (
 
 @dataclass(frozen=True, slots=True)
 class MotionAndStatics:
-    """A motion with the static states for comparison.
+    """A motion with the static states for comparison."""
 
-    Args:
-        model: the model.
-        trajectory: the motion.
-        positions: equilibria (num_rests, num_modes).
-        rests: static states at the equilibria.
-        jumps: True if section forces jump at point forces; False for a series, which is smooth.
-    """
-
-    model: LoadedModel
-    trajectory: Trajectory
-    positions: Array
-    rests: Sequence[StaticResult]
-    jumps: bool
+    model: LoadedModel  #: the model
+    trajectory: Trajectory  #: the motion
+    positions: Array  #: equilibria (num_rests, num_modes)
+    rests: Sequence[StaticResult]  #: static states at the equilibria
+    jumps: bool  #: True if section forces jump at point forces; False for a series, which is smooth
 
 
 def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[StressHistory]]:

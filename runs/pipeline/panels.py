@@ -30,39 +30,24 @@ SHEAR = 5.34
 
 @dataclass(frozen=True, slots=True)
 class PanelBuckling:
-    """Wall of a segment with the lowest buckling factor by panel formulas.
+    """Wall of a segment with the lowest buckling factor by panel formulas."""
 
-    Args:
-        segment: name of the segment.
-        wall: name of the wall.
-        x: x of the cross-section in m.
-        factor: buckling factor of the section forces.
-    """
-
-    segment: str
-    wall: str
-    x: float
-    factor: float
+    segment: str  #: name of the segment
+    wall: str  #: name of the wall
+    x: float  #: x of the cross-section in m
+    factor: float  #: buckling factor of the section forces
 
 
 class WallStresses(NamedTuple):
-    """Stresses of a wall in a static state.
+    """Stresses of a wall in a static state."""
 
-    Args:
-        segment: the segment.
-        plate: the wall.
-        x: (num_places,) x of the cross-sections in m.
-        edges: (2, num_places) axial stress at the ends of the mid-line in Pa, positive in tension.
-        fibres: (2, num_places) axial stress at the outer corners.
-        shear: (num_places,) mean shear stress in Pa, not negative.
-    """
-
-    segment: Segment
-    plate: Plate
-    x: Array
+    segment: Segment  #: the segment
+    plate: Plate  #: the wall
+    x: Array  #: (num_places,) x of the cross-sections in m
+    #: (2, num_places) axial stress at the ends of the mid-line in Pa, positive in tension
     edges: Array
-    fibres: Array
-    shear: Array
+    fibres: Array  #: (2, num_places) axial stress at the outer corners
+    shear: Array  #: (num_places,) mean shear stress in Pa, not negative
 
     @property
     def slenderness(self) -> float:

@@ -37,16 +37,7 @@ _level = partial(_metres, charted=False)
 
 @dataclass(frozen=True, slots=True)
 class ResidualVibration(Record):
-    """Residual vibration of the tip during and after telescoping.
-
-    Args:
-        tip: largest distance of the tip from equilibrium in m.
-        time: time of this distance in s.
-        initial: largest distance in m at constant initial extension, under the same loads; None if
-            it cannot be computed.
-        final: largest distance in m at constant final extension, likewise.
-        speed: mean speed in m/s of the fastest drive while it moves.
-    """
+    """Residual vibration of the tip during and after telescoping."""
 
     title = "Residual vibration during telescoping"
     notes = (
@@ -54,17 +45,22 @@ class ResidualVibration(Record):
         "the current loads; beside it the same distance for the boom without telescoping.",
     )
 
+    #: largest distance of the tip from equilibrium in m
     tip: Annotated[
         float,
         _metres("residual_vibration", title="residual vibration", heading="residual\nvibration"),
     ]
+    #: time of this distance in s
     time: Annotated[
         float,
         Metric("", "s", "time of the residual vibration", 1.0, "s", heading="at", form=".3f"),
     ]
+    #: mean speed in m/s of the fastest drive while it moves
     speed: Annotated[
         float, Metric("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False)
     ]
+    #: largest distance in m at constant initial extension, under the same loads; None if it cannot
+    #: be computed
     initial: Annotated[
         float | None,
         _level(
@@ -73,6 +69,7 @@ class ResidualVibration(Record):
             heading="at initial\nextension",
         ),
     ]
+    #: largest distance in m at constant final extension, likewise
     final: Annotated[
         float | None,
         _level(

@@ -39,17 +39,11 @@ def round_values(values: Array | Iterable[float]) -> list[float]:
 
 
 class LoadedModel(NamedTuple):
-    """A model under all constant loads, with lines along its segments.
+    """A model under all constant loads, with lines along its segments."""
 
-    Args:
-        boom: boom with the play of the model.
-        system: gap system of the boom, whose ``load`` includes all constant loads.
-        lines: lines along the segments, with normal forces by the cylinders.
-    """
-
-    boom: Boom
-    system: GapSystem
-    lines: Sequence[Line]
+    boom: Boom  #: boom with the play of the model
+    system: GapSystem  #: gap system of the boom, whose ``load`` includes all constant loads
+    lines: Sequence[Line]  #: lines along the segments, with normal forces by the cylinders
 
     @classmethod
     def of(cls, boom: Boom, system: GapSystem, lines: Sequence[Line]) -> Self:

@@ -37,91 +37,61 @@ BULGED = 0.1
 
 @dataclass(frozen=True, slots=True)
 class Diagram:
-    """Static section forces and deflections of a segment, from its start to its end.
+    """Static section forces and deflections of a segment, from its start to its end."""
 
-    Args:
-        segment: name of the segment.
-        x: positions (num_places) in m; a position with a jump occurs twice.
-        normal: normal force in N.
-        curves: other available quantities of :data:`dynamics.line.Quantity`: ``deflection`` in m,
-            ``shear`` in N, ``moment`` in N·m; in space ``lateral`` in m, ``twist`` in rad,
-            ``lateral_shear``, ``lateral_moment``, ``torque``.
-    """
-
-    segment: str
-    x: list[float]
-    normal: list[float]
+    segment: str  #: name of the segment
+    x: list[float]  #: positions (num_places) in m; a position with a jump occurs twice
+    normal: list[float]  #: normal force in N
+    #: other available quantities of :data:`dynamics.line.Quantity`: ``deflection`` in m, ``shear``
+    #: in N, ``moment`` in N·m; in space ``lateral`` in m, ``twist`` in rad, ``lateral_shear``,
+    #: ``lateral_moment``, ``torque``
     curves: dict[str, list[float]]
 
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """Rotation of a joint by its play and the compression of its contacts.
+    """Rotation of a joint by its play and the compression of its contacts."""
 
-    Args:
-        inner: name of the inner segment.
-        outer: name of the outer segment.
-        rotation: rotation in rad of the inner segment in the outer one, positive for a larger
-            slope.
-        tip: tip displacement in m by this rotation.
-    """
-
-    inner: str
-    outer: str
+    inner: str  #: name of the inner segment
+    outer: str  #: name of the outer segment
+    #: rotation in rad of the inner segment in the outer one, positive for a larger slope
     rotation: float
-    tip: float
+    tip: float  #: tip displacement in m by this rotation
 
 
 @dataclass(frozen=True, slots=True)
 class StationLoad:
-    """Static contact force and compression of a station.
+    """Static contact force and compression of a station."""
 
-    Args:
-        place: name of the station in trajectories.
-        x: position in m.
-        direction: z or y.
-        force: force in N, positive if the inner segment presses up (along y: towards larger y).
-        pad: largest force on a pad of the station in N, not negative; stiffness and shims determine
-            the distribution over the pads of a side. None without pads.
-        depth: largest compression of a contact of the station in m.
-        pressure: largest pressure on a pad of the station in Pa; None without pads.
-        utilisation: largest utilisation of the allowable pressure; None without such a pressure.
-        closed: part of the lateral play in m that bulging walls close, negative if they open it;
-            0 along z, and for beams.
-    """
-
-    place: str
-    x: float
-    direction: str
+    place: str  #: name of the station in trajectories
+    x: float  #: position in m
+    direction: str  #: z or y
+    #: force in N, positive if the inner segment presses up (along y: towards larger y)
     force: float
+    #: largest force on a pad of the station in N, not negative; stiffness and shims determine the
+    #: distribution over the pads of a side. None without pads.
     pad: float | None
-    depth: float
+    depth: float  #: largest compression of a contact of the station in m
+    #: largest pressure on a pad of the station in Pa; None without pads
     pressure: float | None = None
+    #: largest utilisation of the allowable pressure; None without such a pressure
     utilisation: float | None = None
+    #: part of the lateral play in m that bulging walls close, negative if they open it; 0 along z,
+    #: and for beams
     closed: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class StaticResult:
-    """Static state of a model.
+    """Static state of a model."""
 
-    Args:
-        time: time in s of the loads and of the extension.
-        tip: tip deflection in m.
-        tip_lateral: tip deflection along y in m, in space.
-        diagrams: diagram of each segment.
-        tilts: rotations of the joints with play and at least two stations.
-        stations: loads of stations with play, and of stops.
-        cylinders: axial forces of cylinders in N, by their names in the results.
-    """
-
-    time: float
-    tip: float
-    tip_lateral: float | None
-    diagrams: list[Diagram]
-    tilts: list[Tilt]
-    stations: list[StationLoad]
-    cylinders: dict[str, float]
+    time: float  #: time in s of the loads and of the extension
+    tip: float  #: tip deflection in m
+    tip_lateral: float | None  #: tip deflection along y in m, in space
+    diagrams: list[Diagram]  #: diagram of each segment
+    tilts: list[Tilt]  #: rotations of the joints with play and at least two stations
+    stations: list[StationLoad]  #: loads of stations with play, and of stops
+    cylinders: dict[str, float]  #: axial forces of cylinders in N, by their names in the results
 
 
 def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:

@@ -24,23 +24,14 @@ ROUND_OFF = 1.0e-9
 
 @dataclass(frozen=True, slots=True)
 class Reaction:
-    """Reaction of a support, a cylinder or a stop on a segment.
+    """Reaction of a support, a cylinder or a stop on a segment."""
 
-    Args:
-        segment: name of the segment.
-        x: position in m.
-        force: force along z in N.
-        moment: moment in N·m, positive towards a larger slope.
-        depth: compression of a stop in m; None for other reactions.
-        along: axial force towards the tip in N.
-    """
-
-    segment: str
-    x: float
-    force: float
-    moment: float
-    depth: float | None
-    along: float = 0.0
+    segment: str  #: name of the segment
+    x: float  #: position in m
+    force: float  #: force along z in N
+    moment: float  #: moment in N·m, positive towards a larger slope
+    depth: float | None  #: compression of a stop in m; None for other reactions
+    along: float = 0.0  #: axial force towards the tip in N
 
 
 class Statics(NamedTuple):

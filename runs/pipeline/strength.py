@@ -45,79 +45,49 @@ _CLASSES = 20
 
 @dataclass(frozen=True, slots=True)
 class FibreStress:
-    """Largest axial stress in an outer fibre of a segment, from section forces.
+    """Largest axial stress in an outer fibre of a segment, from section forces."""
 
-    Args:
-        segment: name of the segment.
-        x: position along the boom in m.
-        y: lateral position in m, 0 for a planar boom.
-        z: vertical position in m.
-        stress: stress in Pa, positive in tension.
-        time: time of the stress in s.
-        utilisation: utilisation of the yield strength; None if the case has no yield strength.
-        at_rest: largest |stress| in Pa of the segment in the static states; None without an
-            equilibrium.
-    """
-
-    segment: str
-    x: float
-    y: float
-    z: float
-    stress: float
-    time: float
+    segment: str  #: name of the segment
+    x: float  #: position along the boom in m
+    y: float  #: lateral position in m, 0 for a planar boom
+    z: float  #: vertical position in m
+    stress: float  #: stress in Pa, positive in tension
+    time: float  #: time of the stress in s
+    #: utilisation of the yield strength; None if the case has no yield strength
     utilisation: float | None
+    #: largest |stress| in Pa of the segment in the static states; None without an equilibrium
     at_rest: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class WallStress:
-    """Largest von Mises stresses of a segment of a shell near stations and supports.
+    """Largest von Mises stresses of a segment of a shell near stations and supports."""
 
-    Args:
-        segment: name of the segment.
-        x: position in m of the station or support near the patch.
-        patch: largest mean over a patch of a wall in Pa; it converges with mesh refinement.
-        time: time of this mean in s.
-        triangle: largest stress of a triangle in Pa; it may grow with mesh refinement.
-        utilisation: utilisation of the yield strength by the mean over the patch, or None.
-    """
-
-    segment: str
-    x: float
-    patch: float
-    time: float
-    triangle: float
+    segment: str  #: name of the segment
+    x: float  #: position in m of the station or support near the patch
+    patch: float  #: largest mean over a patch of a wall in Pa; it converges with mesh refinement
+    time: float  #: time of this mean in s
+    triangle: float  #: largest stress of a triangle in Pa; it may grow with mesh refinement
+    #: utilisation of the yield strength by the mean over the patch, or None
     utilisation: float | None
 
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """Fatigue damage of a detail at the outer fibre of a segment whose stress varies most.
+    """Fatigue damage of a detail at the outer fibre of a segment whose stress varies most."""
 
-    Args:
-        segment: name of the segment.
-        x: position along the boom in m.
-        y: lateral position in m.
-        z: vertical position in m.
-        cycles: number of cycles in the run.
-        largest: largest stress range in Pa.
-        equivalent: stress range in Pa of a single cycle with the same damage at slope 3.
-        ranges: centres (num_classes) of the classes of stress ranges in Pa, ascending.
-        counts: number of cycles in each class.
-        damage: damage of the run for the detail category of the case; None without a category.
-        life_damage: damage of all repetitions in the service life; None without a category.
-    """
-
-    segment: str
-    x: float
-    y: float
-    z: float
-    cycles: float
-    largest: float
-    equivalent: float
-    ranges: list[float]
-    counts: list[float]
+    segment: str  #: name of the segment
+    x: float  #: position along the boom in m
+    y: float  #: lateral position in m
+    z: float  #: vertical position in m
+    cycles: float  #: number of cycles in the run
+    largest: float  #: largest stress range in Pa
+    equivalent: float  #: stress range in Pa of a single cycle with the same damage at slope 3
+    ranges: list[float]  #: centres (num_classes) of the classes of stress ranges in Pa, ascending
+    counts: list[float]  #: number of cycles in each class
+    #: damage of the run for the detail category of the case; None without a category
     damage: float | None
+    #: damage of all repetitions in the service life; None without a category
     life_damage: float | None
 
 
@@ -131,23 +101,14 @@ class StressHistory(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Fibres:
-    """Outer fibres of a segment, and their stresses under unit section forces.
+    """Outer fibres of a segment, and their stresses under unit section forces."""
 
-    Args:
-        x: positions along the boom (num_places,) in m.
-        y: lateral positions (num_fibres, num_places) in m.
-        z: vertical positions (num_fibres, num_places) in m.
-        of_moment: stress (num_fibres, num_places) in Pa for a vertical moment of 1 N·m.
-        of_lateral: stress (num_fibres, num_places) in Pa for a lateral moment of 1 N·m.
-        of_normal: stress (num_places,) in Pa for a normal force of 1 N.
-    """
-
-    x: Array
-    y: Array
-    z: Array
-    of_moment: Array
-    of_lateral: Array
-    of_normal: Array
+    x: Array  #: positions along the boom (num_places,) in m
+    y: Array  #: lateral positions (num_fibres, num_places) in m
+    z: Array  #: vertical positions (num_fibres, num_places) in m
+    of_moment: Array  #: stress (num_fibres, num_places) in Pa for a vertical moment of 1 N·m
+    of_lateral: Array  #: stress (num_fibres, num_places) in Pa for a lateral moment of 1 N·m
+    of_normal: Array  #: stress (num_places,) in Pa for a normal force of 1 N
 
     @classmethod
     def of(cls, segment: Segment, line: Line) -> Fibres | None:

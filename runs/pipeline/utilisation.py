@@ -19,21 +19,13 @@ LIMITS: Mapping[str, str] = {
 
 
 class Utilisation(NamedTuple):
-    """Largest load of a kind of part, compared with its strength.
+    """Largest load of a kind of part, compared with its strength."""
 
-    Args:
-        part: kind of the part, a key of :data:`LIMITS`; plates are walls of shells near pads.
-        segment: name of the segment.
-        x: position in m.
-        load: stress or pressure in Pa, or fatigue damage.
-        value: utilisation; None if the case gives no strength.
-    """
-
-    part: str
-    segment: str
-    x: float
-    load: float
-    value: float | None
+    part: str  #: kind of the part, a key of :data:`LIMITS`; plates are walls of shells near pads
+    segment: str  #: name of the segment
+    x: float  #: position in m
+    load: float  #: stress or pressure in Pa, or fatigue damage
+    value: float | None  #: utilisation; None if the case gives no strength
 
     def __str__(self) -> str:
         """Return value, location and comparison with 100 % as text; the value is not None."""

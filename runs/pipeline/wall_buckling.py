@@ -30,36 +30,25 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class WallBuckling:
-    """Lowest buckling factors of the walls of a segment of a shell.
+    """Lowest buckling factors of the walls of a segment of a shell."""
 
-    Args:
-        segment: name of the segment.
-        factors: buckling factors of all loads, ascending; empty if no wall is in compression.
-        mesh_errors: estimated relative discretisation error of each factor.
-        walls: wall with the largest displacement in each mode.
-        x: position of this displacement in m.
-    """
-
-    segment: str
+    segment: str  #: name of the segment
+    #: buckling factors of all loads, ascending; empty if no wall is in compression
     factors: list[float]
-    mesh_errors: list[float]
-    walls: list[str]
-    x: list[float]
+    mesh_errors: list[float]  #: estimated relative discretisation error of each factor
+    walls: list[str]  #: wall with the largest displacement in each mode
+    x: list[float]  #: position of this displacement in m
 
 
 @dataclass(frozen=True, slots=True)
 class BuckledShell:
-    """Buckling of the segments of a shell.
+    """Buckling of the segments of a shell."""
 
-    Args:
-        segments: buckling factors of each segment.
-        shapes: first mode of each segment with a factor: ``buckling_points`` (buckling_point,
-            component) in m and their ``buckling_shape``, whose largest magnitude in a segment is
-            about 1; ``buckling_triangles`` (buckling_triangle, corner) with their
-            ``buckling_segment``; ``buckling_factor`` (buckled). None if no segment has a factor.
-    """
-
-    segments: list[WallBuckling]
+    segments: list[WallBuckling]  #: buckling factors of each segment
+    #: first mode of each segment with a factor: ``buckling_points`` (buckling_point, component) in
+    #: m and their ``buckling_shape``, whose largest magnitude in a segment is about 1;
+    #: ``buckling_triangles`` (buckling_triangle, corner) with their ``buckling_segment``;
+    #: ``buckling_factor`` (buckled). None if no segment has a factor.
     shapes: xr.Dataset | None
 
 

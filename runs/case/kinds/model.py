@@ -84,18 +84,13 @@ class ModelBoom:
 
 @dataclass(frozen=True, slots=True)
 class BuildContext:
-    """Ranks, progress reporter and cache for building a meshed model.
+    """Ranks, progress reporter and cache for building a meshed model."""
 
-    Args:
-        comm: the ranks that share the work.
-        progress: callback that receives the stage and its completed fraction.
-        cache: cache of reduced shells; without one, every shell is computed.
-        helper: second process that shares the reduction if there is only one rank.
-    """
-
-    comm: MPI.Comm
+    comm: MPI.Comm  #: the ranks that share the work
+    #: callback that receives the stage and its completed fraction
     progress: Callable[[str, float], None] = lambda *_: None
-    cache: Cache | None = None
+    cache: Cache | None = None  #: cache of reduced shells; without one, every shell is computed
+    #: second process that shares the reduction if there is only one rank
     helper: Executor | None = None
 
 
