@@ -20,12 +20,12 @@ from runs.live.calibrated import build_beam
 from runs.live.knobs import Draft
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
-from runs.pipeline.limits import check_limits
 from runs.pipeline.model_run import summarise_motion
 from runs.pipeline.models import MotionPlan
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.pads import pad_loads
 from runs.pipeline.proportions import proportion_cautions
+from runs.pipeline.quantities import check_limits
 from runs.pipeline.results import Results, label
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import extended_positions, instants, positions

@@ -85,9 +85,7 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
         try:
             with np.errstate(all="ignore"):
                 if moving and combined.combination.motion:
-                    from runs.pipeline.combined_motion import beam_in_motion
-
-                    beam = beam_in_motion(combined.case)
+                    beam = BeamStates.in_motion(combined.case).at_extremes()
                 else:
                     beam = BeamStates.of(combined.case, boom)
         except NUMERICAL_ERRORS:

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 
 from runs.case.schema import Model
 from runs.pipeline.combinations import CombinationResult
-from runs.pipeline.hoisting import Hoisting
 from runs.pipeline.modes import Mode, ModeComparison
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.panels import PanelBuckling
@@ -17,7 +16,7 @@ from runs.pipeline.residual_vibration import ResidualVibration
 from runs.pipeline.static_results import StaticResult
 from runs.pipeline.statics import Reaction
 from runs.pipeline.strength import Life
-from runs.pipeline.turning import CraneDrives
+from runs.pipeline.turning import CraneDrives, Hoisting
 from runs.pipeline.wall_buckling import WallBuckling
 
 

@@ -22,7 +22,6 @@ from runs.case.schema import Case, Model
 from runs.pipeline.bonded import bonded_system
 from runs.pipeline.combinations import combination_states
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
-from runs.pipeline.hoisting import hoisting
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import MotionPlan, complete_system
@@ -41,7 +40,7 @@ from runs.pipeline.static_results import (
 from runs.pipeline.statics import reactions, statics
 from runs.pipeline.strength import HAS_RAINFLOW, life, wall_stresses
 from runs.pipeline.summary import Summary
-from runs.pipeline.turning import crane_drives
+from runs.pipeline.turning import crane_drives, hoisting
 
 
 def loaded_model(boom: Boom, model: Model, built: BuiltModel) -> LoadedModel:

@@ -83,9 +83,7 @@ def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
     for name, moving in named:
         plain = combine(case, tables[name])
         if moving:
-            from runs.pipeline.combined_motion import beam_motion
-
-            beams[name, moving] = beam_motion(plain)
+            beams[name, moving] = BeamStates.in_motion(plain)
         else:
             beams[name, moving] = BeamStates.of(plain, boom_with_play(plain, build_boom(plain)))
     boom = build_boom(case)

@@ -7,6 +7,7 @@ The model has beam elements and the compliance of walls under pads, at the initi
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,8 +18,12 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from geometry.axial import foot_thrust
 from geometry.boom import Boom
+from runs.case.build import build_boom
+from runs.case.kinds.finite_element import BeamElements
+from runs.case.kinds.model import select_kind
 from runs.case.schema import Case
 from runs.case.units import System
+from runs.pipeline.models import MotionPlan, build_on
 from runs.pipeline.proportions import tip_cautions
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
@@ -98,6 +103,41 @@ class BeamStates(NamedTuple):
             raise NumericsError("the boom has no static equilibrium under the loads at t = 0")
         states = cls(model, np.array([*equilibria]), np.array([*equilibria.values()]))
         return states.with_results()
+
+    @classmethod
+    def in_motion(cls, case: Case) -> BeamStates:
+        """Return the motion of the first model of beam elements with play, or of Timoshenko's.
+
+        Args:
+            case: case of a combination.
+
+        Raises:
+            NumericsError: the motion cannot be computed.
+        """
+        beams = [one for one in select_kind(BeamElements, case.models) if not one.bonded]
+        model = beams[0] if beams else BeamElements(name="beam")
+        joints = tuple(replace(joint, drive=None) for joint in case.joints)
+        case = case.model_copy(update={"joints": joints, "ensemble": None, "models": (model,)})
+        joined = model.model_boom(build_boom(case))
+        built = build_on(joined, case, model)
+        trajectory = MotionPlan.of(built.system, case, model).trajectory()
+        loaded = LoadedModel.of(joined.boom, built.system, model.lines(joined.boom, built))
+        return cls(loaded, trajectory.time, trajectory.states)
+
+    def at_extremes(self) -> BeamStates:
+        """Return the states of a motion at which tip, contacts, cylinders or stresses are extreme.
+
+        The results include those of each of these states.
+        """
+        states, system = self.positions, self.model.system
+        rows = [system.rows, *(one.row[None] for one in system.observers.values())]
+        curves = [states @ np.vstack(rows).T]
+        for _, fibres, forces in fibre_forces(self.model, states, self.time):
+            stresses = (fibres.stress(fibre, forces) for fibre in range(len(fibres.z)))
+            curves += [np.abs(one).max(axis=1, keepdims=True) for one in stresses]
+        every = np.hstack(curves)
+        steps = np.unique([0, *every.argmax(axis=0), *every.argmin(axis=0)])
+        return BeamStates(self.model, self.time[steps], states[steps]).with_results()
 
     def extremes(self, system: System) -> list[StaticExtreme]:
         """Return the extremes of tip, stresses, pads, contacts and cylinders.

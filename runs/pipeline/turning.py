@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Descriptions of slewing and luffing, the limits of their loads, and the demand on the drives."""
+"""Slewing and luffing with their drives, and hoisting with rope force and swing of the load."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -13,6 +14,7 @@ from dynamics.arrays import Array
 from dynamics.damping import closed_contact_damping, closed_contact_modes
 from dynamics.excitation import HistorySum, MotionLaw, Shaped
 from dynamics.gap_system import GapSystem
+from dynamics.trajectory import Trajectory
 from geometry.axial import lumped_masses
 from geometry.boom import Boom
 from geometry.telescoping import drives_of
@@ -34,6 +36,9 @@ _SMALL = 0.2
 
 # Number of modes that shapers suppress, and minimum part of the deflection of each of them.
 _SHAPED, _SHARE = 2, 0.05
+
+
+_metres = partial(Metric, unit="m", factor=1.0, shown_unit="m", form=".3g")
 
 
 def _kilo(unit: str, title: str, heading: str) -> Metric:
@@ -62,6 +67,61 @@ class CraneDrives(Record):
     luff_moment: Annotated[float | None, _kilo("N m", "luffing moment", "luffing:\nmoment")] = None
     luff_power: Annotated[float | None, _kilo("W", "luffing power", "power")] = None
     luff_work: Annotated[float | None, _kilo("J", "work of luffing", "work")] = None
+
+
+@dataclass(frozen=True, slots=True)
+class Hoisting(Record):
+    """Extreme values of a load on a rope.
+
+    Args:
+        lift_off: time in s at which the rope force first reaches the weight of a load on the
+            ground; None if it does not, or if the load hangs at t = 0.
+        force: largest force of all falls in N.
+        factor: this force over the weight of the load.
+        by_class: factor φ₂,min + β₂ v of the hoisting class; None without its constants.
+        swing_out, swing_aside: largest distances in m of the load from the tip, in the plane of the
+            boom and aside; None without a swing in this direction.
+    """
+
+    title = "Hoisting"
+    notes = (
+        "At lift-off the force of all falls reaches the weight of the load. φ₂ is their largest "
+        "force over this weight. Swing is the largest distance of the load from the tip.",
+    )
+
+    lift_off: Annotated[
+        float | None,
+        Metric(
+            "lift_off", "s", "lift-off", 1.0, "s", charted=False, heading="lift-off", form=".3f"
+        ),
+    ]
+    force: Annotated[
+        float,
+        Metric(
+            "rope_force", "N", "force of the rope", TO_KILO, "kN",
+            heading="rope force,\nmaximum", form=".3g",
+        ),
+    ]  # fmt: skip
+    factor: Annotated[
+        float,
+        Metric(
+            "rope_factor", "1", "factor φ₂ of the rope", 1.0, "–", heading="factor φ₂", form=".3f"
+        ),
+    ]
+    by_class: Annotated[
+        float | None,
+        Metric(
+            "rope_factor_by_class", "1", "factor φ₂ of the hoisting class", 1.0, "–",
+            heading="φ₂ of the\nclass", form=".3f",
+        ),
+    ]  # fmt: skip
+    swing_out: Annotated[
+        float | None,
+        _metres("swing_out", title="swing in the plane of the boom", heading="swing\nin plane"),
+    ]
+    swing_aside: Annotated[
+        float | None, _metres("swing_aside", title="swing aside", heading="swing\naside")
+    ]
 
 
 def _laws(case: Case) -> Iterator[tuple[str, str, MotionLaw]]:
@@ -173,6 +233,22 @@ def crane_drives(case: Case, boom: Boom, data: xr.Dataset) -> CraneDrives | None
         results[f"{key}_power"] = power.max()
         results[f"{key}_work"] = 0.5 * (power[1:] + power[:-1]) @ steps
     return CraneDrives(**{key: float(value) for key, value in results.items()}) if results else None
+
+
+def hoisting(case: Case, boom: Boom, trajectory: Trajectory) -> Hoisting | None:
+    """Return the extreme values of the hoisted load in a motion; None without a hoist."""
+    load, data = hanging_load(case, boom), trajectory.data
+    if case.hoist is None or load is None:
+        return None
+    raised = np.flatnonzero(data["rope_force"].values >= load.weight)
+    force = float(data["rope_force_peak"].values.max())
+    swings = (
+        float(np.abs(data[name].values).max()) if name in data else None
+        for name in ("swing_out", "swing_aside")
+    )
+    lift_off = float(trajectory.time[raised[0]]) if load.slack is not None and raised.size else None
+    by_class = case.hoist.factor_by_class
+    return Hoisting(lift_off, force, force / load.weight, by_class, *swings)
 
 
 def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from runs.pipeline.limits import check_limits
+from runs.pipeline.quantities import check_limits
 from runs.pipeline.results import Results
 from runs.report.tables import Column, Table
 

@@ -27,7 +27,7 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
-from runs.pipeline.limits import Limit, case_limits
+from runs.pipeline.quantities import Limit, case_limits
 from runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of
 
 Setting = tuple[Variation, float]

@@ -16,9 +16,8 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.units import scale
 from runs.pipeline.largest_loads import BeamStates
-from runs.pipeline.limits import Limit
 from runs.pipeline.pad_walls import pad_wall_lines
-from runs.pipeline.quantities import QUANTITIES
+from runs.pipeline.quantities import QUANTITIES, Limit
 from runs.pipeline.statics import boom_with_play, statics
 from runs.report.tables import Table
 from runs.sweep.points import Plan

@@ -11,8 +11,7 @@ from rich.console import Console
 from protractile.cases import run_case
 from runs import cli
 from runs.case import reading
-from runs.pipeline.limits import Limit, case_limits, check_limits
-from runs.pipeline.quantities import decay_time, measure
+from runs.pipeline.quantities import Limit, case_limits, check_limits, decay_time, measure
 from runs.report.limits import limit_faults, limit_table
 from runs.sweep import output
 from runs.sweep.points import plan
