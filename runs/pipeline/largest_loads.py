@@ -27,8 +27,7 @@ from runs.pipeline.models import MotionPlan, build_on
 from runs.pipeline.proportions import tip_cautions
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
-from runs.pipeline.strength import fibre_forces, largest_stresses
-from runs.pipeline.utilisation import Utilisation
+from runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
 from runs.report.formatting import amount, number
 from runs.report.tables import Column, Table
 

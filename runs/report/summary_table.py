@@ -17,7 +17,7 @@ from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.pads import PadLoad
 from runs.pipeline.quantities import decay_time
 from runs.pipeline.results import Results
-from runs.pipeline.utilisation import Utilisation, utilisations
+from runs.pipeline.strength import Utilisation, utilisations
 from runs.report.figure_context import farthest, tip_directions
 from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.result_tables import is_negligible, times

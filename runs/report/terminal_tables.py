@@ -11,7 +11,7 @@ from runs.client import show
 from runs.pipeline.combinations import combination_tables
 from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.results import Results
-from runs.pipeline.utilisation import utilisations
+from runs.pipeline.strength import utilisations
 from runs.process.terminal import Terminal, message, say, shorten
 from runs.report.figure_context import farthest
 from runs.report.formatting import number, percent
