@@ -142,18 +142,14 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
         BoomError: a segment is unknown, a point is outside its segment, a rope has no payload, or a
             force is given twice or not at all.
     """
-    return tuple(
-        _thrust(f"axial[{number}]", table, case, segments)
-        for number, table in enumerate(case.axial, start=1)
-    )
-
-
-def _thrust(where: str, table: AxialTable, case: Case, segments: Sequence[Segment]) -> Thrust:
-    name: Any = segments[-1].name if table.segment is None else table.segment
-    place: Any = Distance(head=0.0) if table.x is None else table.x
-    thrust = resolve_segments(Thrust(name, place, axial_force(where, table, case)), where, segments)
-    segments[thrust.segment].check_place(f"{where}.x", thrust.x)
-    return thrust
+    resolved = []
+    for where, table in ((f"axial[{i}]", one) for i, one in enumerate(case.axial, start=1)):
+        name: Any = segments[-1].name if table.segment is None else table.segment
+        place: Any = Distance(head=0.0) if table.x is None else table.x
+        thrust = Thrust(name, place, axial_force(where, table, case))
+        resolved.append(resolve_segments(thrust, where, segments))
+        segments[resolved[-1].segment].check_place(f"{where}.x", resolved[-1].x)
+    return tuple(resolved)
 
 
 def axial_force(where: str, table: AxialTable, case: Case) -> float:
@@ -195,7 +191,14 @@ def _payload_gravity(payload: PayloadTable | None) -> float:
 
 
 def _load(where: str, table: LoadTable) -> Load:
-    acts = table.segment, table.direction, table.magnitude, table.x, _load_history(where, table)
+    history: History | ReleasedLoad = build_history(where, table)
+    if table.released and not isinstance(history, Step):
+        raise BoomError(
+            f"{where}.released",
+            "a load that is let go has acted for ever, without a history; leave one of them out",
+        )
+    history = ReleasedLoad() if table.released else history
+    acts = table.segment, table.direction, table.magnitude, table.x, history
     if table.moment and table.x is None:
         raise BoomError(f"{where}.x", "missing; it is the x in m at which the moment acts")
     for key, bound in (("from", table.start), ("to", table.end)):
@@ -269,13 +272,3 @@ def segment_index(where: str, name: str, segments: Sequence[Segment | SegmentTab
     if name not in names:
         raise BoomError(where, f"{name!r} is no segment; give {choices(names)}")
     return names.index(name)
-
-
-def _load_history(where: str, table: LoadTable) -> History | ReleasedLoad:
-    history = build_history(where, table)
-    if table.released and not isinstance(history, Step):
-        raise BoomError(
-            f"{where}.released",
-            "a load that is let go has acted for ever, without a history; leave one of them out",
-        )
-    return ReleasedLoad() if table.released else history

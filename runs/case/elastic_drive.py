@@ -8,7 +8,6 @@ from dataclasses import replace
 from math import pi
 
 from dynamics.drive.stick_slip import ElasticDrive
-from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, BoomError
 from geometry.telescoping import drives_below, telescoping_stations
@@ -48,11 +47,11 @@ def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     """Return the gap system of a model with the data of its elastic drives."""
     drives = elastic_drives(case, boom)
     suffixes = {group.suffix: drives.get(group.joints[0]) for group in telescoping_stations(boom)}
-
-    def with_elasticity(travel: Travel) -> Travel:
-        return replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])
-
-    return replace(system, travels=[with_elasticity(travel) for travel in system.travels])
+    travels = [
+        replace(one, elastic=None if one.suffix is None else suffixes[one.suffix])
+        for one in system.travels
+    ]
+    return replace(system, travels=travels)
 
 
 def check_elastic_drives(case: Case, boom: Boom) -> None:

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from math import prod
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import BeforeValidator, Field
 
@@ -113,17 +113,15 @@ class LoadCaseTable(CaseTable):
     """the accelerations of the ground in place of all [[base]] of the case; those unless given"""
 
 
-def _factor(value: Any) -> Any:
-    """Return a plain number as a tuple of one factor."""
-    return (value,) if is_number(value) else value
-
-
 # The numbers whose product is the factor.
 Factor = Annotated[
     tuple[NotNegative, ...],
     In("1"),
     Field(min_length=1, max_length=9),
-    BeforeValidator(_factor, json_schema_input_type=NotNegative | tuple[NotNegative, ...]),
+    BeforeValidator(
+        lambda value: (value,) if is_number(value) else value,
+        json_schema_input_type=NotNegative | tuple[NotNegative, ...],
+    ),
 ]
 
 

@@ -34,6 +34,7 @@ from geometry.support import Support
 from runs.case.contact import JointTable
 from runs.case.hoist import HoistTable
 from runs.case.kinds import KINDS
+from runs.case.kinds.calibration import CalibratedTable
 from runs.case.kinds.model import ModelTable
 from runs.case.limits import (
     MOST_MEMBERS,
@@ -133,13 +134,13 @@ class VelocityTable(CaseTable):
     """the x in m of the point with these velocities; the segment's start unless given"""
 
 
-def _velocity(value: Any) -> Any:
-    """Return a plain number as the velocity along z."""
-    return {"z": float(value)} if is_number(value) else value
-
-
+# A plain number is the velocity along z.
 Velocity = Annotated[
-    VelocityTable, BeforeValidator(_velocity, json_schema_input_type=Number | VelocityTable)
+    VelocityTable,
+    BeforeValidator(
+        lambda value: {"z": float(value)} if is_number(value) else value,
+        json_schema_input_type=Number | VelocityTable,
+    ),
 ]
 
 
@@ -328,7 +329,10 @@ class Case(CaseKeys, CaseHeading):
     def _calibrators(self) -> Case:
         """Replace the names of calibrating shells by their tables."""
         by_name = {model.name: model for model in self.models}
-        resolved = tuple(model.resolve_shell(by_name) for model in self.models)
+        resolved = tuple(
+            model.resolve_shell(by_name) if isinstance(model, CalibratedTable) else model
+            for model in self.models
+        )
         if any(new is not old for new, old in zip(resolved, self.models, strict=True)):
             object.__setattr__(self, "models", resolved)
         return self

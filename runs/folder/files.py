@@ -126,7 +126,11 @@ def scratch_folder(path: Path) -> Iterator[Path]:
     try:
         if not path.parent.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
-        _remove_leftovers(path)
+        # A locked folder belongs to a running process, others to killed ones.
+        for left in path.parent.glob(f"{escape(_hidden(path))}*"):
+            with suppress(OSError), (left / MANIFEST).open("r+", encoding="utf-8") as manifest:
+                fcntl.flock(manifest, fcntl.LOCK_EX | fcntl.LOCK_NB)
+                shutil.rmtree(left, ignore_errors=True)
         with ExitStack() as stack:
             for scratch in (unlocked, part):
                 remove = partial(shutil.rmtree, scratch, ignore_errors=True)
@@ -168,15 +172,6 @@ def _hidden(path: Path) -> str:
 def _exchange_path(path: Path) -> Path:
     """Return the temporary path of the old folder in an exchange in two steps."""
     return path.with_name(f".{path.name[:50]}.away")
-
-
-def _remove_leftovers(path: Path) -> None:
-    """Remove the hidden folders of killed processes beside a path."""
-    for left in path.parent.glob(f"{escape(_hidden(path))}*"):
-        # A locked folder belongs to a running process.
-        with suppress(OSError), (left / MANIFEST).open("r+", encoding="utf-8") as manifest:
-            fcntl.flock(manifest, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            shutil.rmtree(left, ignore_errors=True)
 
 
 def _move_to_final_path(part: Path, folder: Path, file_names: Iterable[str]) -> None:

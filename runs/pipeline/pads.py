@@ -70,7 +70,11 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
                         largest = max(largest_pushes, key=abs)
                         force = abs(float(largest))
                         if not model.needs_shell:
-                            force = _larger_side_force(force, law)
+                            # A beam has the net force of both sides. Without preload by shims,
+                            # one side carries it alone.
+                            sides = [law.one_sided(side) for side in SIGNS]
+                            preloads = [float(abs(one.force(np.zeros(())))) for one in sides if one]
+                            force = max(force, max(preloads) + 0.5 * force)
                         side = _SIDE_NAMES[direction, 1 if largest > 0.0 else -1]
                         yield _pad_load(model, table, table.pad, x, side, force)
                     forces = _pair_forces(joint, direction, law, largest_pushes)
@@ -134,16 +138,6 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Ar
             reach *= 2.0
         largest = np.maximum(largest, np.abs(force(brentq(excess, -reach, reach, args=(push,)))))
     return [float(most) for most in largest]
-
-
-def _larger_side_force(both: float, law: ContactLaw) -> float:
-    """Return the force in N on the more loaded side of a beam's station.
-
-    ``both`` is the net force of both sides. Without preload by shims, one side carries it alone.
-    """
-    sides = (law.one_sided(side) for side in (1, -1))
-    at_rest = max(float(abs(law.force(np.zeros(())))) for law in sides if law is not None)
-    return max(both, at_rest + 0.5 * both)
 
 
 def loaded_pads(

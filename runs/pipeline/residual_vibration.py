@@ -122,7 +122,10 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     changes = [x.history for x in system.excitations] + [x.history for x in system.travels]
     times = resolving_times(changes, float(time[-1]))
     values = np.array([change(times) for change in changes]).reshape(len(changes), times.size)
-    passed = _accumulated_change(values)
+    # The accumulated relative change of all values.
+    sizes = np.abs(values).max(axis=1, keepdims=True)
+    ways = np.abs(np.diff(values, axis=1)) / np.where(sizes > 0.0, sizes, 1.0)
+    passed = np.concatenate([[0.0], np.cumsum(ways.sum(axis=0))])
     steps = _equilibrium_steps(values, passed)
     rests = [equilibrium_at(system, t) for t in times[steps].tolist()]
     off = np.zeros(time.size)
@@ -167,13 +170,6 @@ def _speed(travel: Travel) -> float:
     times = resolving_times([travel.history], max(travel.history.kinks))
     ways = np.abs(np.diff(travel.history(times)))
     return float(ways.sum() / np.diff(times)[ways > 0.0].sum())
-
-
-def _accumulated_change(values: Array) -> Array:
-    """Return the accumulated relative change (num_times,) of values (num_changes, num_times)."""
-    sizes = np.abs(values).max(axis=1, keepdims=True)
-    ways = np.abs(np.diff(values, axis=1)) / np.where(sizes > 0.0, sizes, 1.0)
-    return np.concatenate([[0.0], np.cumsum(ways.sum(axis=0))])
 
 
 def _vibration_at_constant_extension(system: GapSystem, case: Case, model: Model) -> float | None:

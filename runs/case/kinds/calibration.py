@@ -72,7 +72,7 @@ class CalibratedTable(BeamTable):
         return self.model_copy(update={"calibrated_by": self.calibrated_by.with_shells(update)})
 
     def resolve_shell(self, models: Mapping[str, ModelTable]) -> Self:
-        """Return the model with the table of its shell in place of the shell's name."""
+        """Return the model with the table of its shell in place of a name of these models."""
         shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
         if not isinstance(shell, Shell):
             return self

@@ -176,14 +176,6 @@ class ModelTable(CaseTable):
         """Return the model with changed keys of its shell, or of the shell that calibrates it."""
         return self.model_copy(update=update) if self.meshed else self
 
-    def resolve_shell(self, models: Mapping[str, ModelTable]) -> Self:
-        """Return the model with the table of its calibrating shell in place of the name.
-
-        Args:
-            models: models of the case, by their names.
-        """
-        return self
-
     def coarsen(self, boom: Boom) -> Self:
         """Return a model that is coarse enough for fast checks; the model itself if it is.
 
