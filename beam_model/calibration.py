@@ -42,30 +42,20 @@ _ELEMENTS = 20
 
 @dataclass(frozen=True, slots=True)
 class Stiffness:
-    """Effective stiffness of a segment as a beam.
+    """Effective stiffness of a segment as a beam."""
 
-    Args:
-        bending: E J in N·m² for z, in three-dimensional booms also for y.
-        shear: G A_s in N for z, in three-dimensional booms also for y.
-        torsion: G J_t in N·m² of three-dimensional booms.
-    """
-
-    bending: tuple[float, ...]
-    shear: tuple[float, ...]
-    torsion: float | None = None
+    bending: tuple[float, ...]  #: E J in N·m² for z, in three-dimensional booms also for y
+    shear: tuple[float, ...]  #: G A_s in N for z, in three-dimensional booms also for y
+    torsion: float | None = None  #: G J_t in N·m² of three-dimensional booms
 
 
 @dataclass(frozen=True, slots=True)
 class Calibration:
-    """Calibration of a beam by the shell of its boom.
+    """Calibration of a beam by the shell of its boom."""
 
-    Args:
-        segments: stiffness of each segment.
-        residual: residual compliance (num_rows, num_rows) in m/N of the rows of contacts, friction
-            and dashpots.
-    """
-
-    segments: Sequence[Stiffness]
+    segments: Sequence[Stiffness]  #: stiffness of each segment
+    #: residual compliance (num_rows, num_rows) in m/N of the rows of contacts, friction and
+    #: dashpots
     residual: Array
 
     def beam(self, stiff: Boom, segments: Sequence[SegmentModel]) -> GapSystem:

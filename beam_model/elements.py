@@ -54,17 +54,11 @@ def element(segment: Segment, theory: Theory, start: float, h: float) -> Element
 
 @dataclass(frozen=True, slots=True)
 class PrismaticElement:
-    """Prismatic element.
+    """Prismatic element."""
 
-    Args:
-        h: length in m.
-        bending_stiffness: E J in N·m².
-        phi: Φ, zero for an Euler–Bernoulli beam.
-    """
-
-    h: float
-    bending_stiffness: float
-    phi: float
+    h: float  #: length in m
+    bending_stiffness: float  #: E J in N·m²
+    phi: float  #: Φ, zero for an Euler–Bernoulli beam
 
     def deflection(self, xi: Array) -> Array:
         h, phi, (one, square, cube) = self.h, self.phi, _powers(xi)
@@ -130,16 +124,11 @@ class TaperedElement:
 
     The moments 1 and ξ cause the curvatures f and ξ f and the shear strains 0 and −g/h.
     Integration gives θ and w.
-
-    Args:
-        h: length in m.
-        bending: f = 1/(E J) as a function of ξ in 1/(N·m²).
-        shear: g = 1/(G A_s) as a function of ξ in 1/N, zero for an Euler–Bernoulli beam.
     """
 
-    h: float
-    bending: Polynomial
-    shear: Polynomial
+    h: float  #: length in m
+    bending: Polynomial  #: f = 1/(E J) as a function of ξ in 1/(N·m²)
+    shear: Polynomial  #: g = 1/(G A_s) as a function of ξ in 1/N, zero for an Euler–Bernoulli beam
 
     def deflection(self, xi: Array) -> Array:
         return self._shapes((1.0, self.h * xi), self._of_moments[2], xi)

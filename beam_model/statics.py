@@ -42,19 +42,12 @@ class NodeReaction(NamedTuple):
 
 
 class StaticState(NamedTuple):
-    """Static state of a boom.
+    """Static state of a boom."""
 
-    Args:
-        boom: the boom.
-        system: gap system of its beams.
-        position: modal coordinates (num_modes,) in √kg·m.
-        reactions: reactions on each segment, from its start to its end.
-    """
-
-    boom: Boom
-    system: GapSystem
-    position: Array
-    reactions: list[NodeReaction]
+    boom: Boom  #: the boom
+    system: GapSystem  #: gap system of its beams
+    position: Array  #: modal coordinates (num_modes,) in √kg·m
+    reactions: list[NodeReaction]  #: reactions on each segment, from its start to its end
 
     @property
     def tip(self) -> float:
@@ -64,15 +57,11 @@ class StaticState(NamedTuple):
 
 @dataclass(frozen=True)
 class Elements:
-    """Segments of a boom, with elements that are exact in statics.
+    """Segments of a boom, with elements that are exact in statics."""
 
-    Args:
-        boom: boom with joints bonded or with play.
-        count: minimum number of elements of the longest segment. Section forces need more than
-            one, since they are interpolated between elements.
-    """
-
-    boom: Boom
+    boom: Boom  #: boom with joints bonded or with play
+    #: minimum number of elements of the longest segment. Section forces need more than one, since
+    #: they are interpolated between elements.
     count: int = 1
 
     @cached_property

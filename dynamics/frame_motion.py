@@ -29,23 +29,15 @@ _RESTING = HistorySum(())
 
 @dataclass(frozen=True, slots=True)
 class FrameMotion:
-    """Slewing and luffing of a boom.
+    """Slewing and luffing of a boom."""
 
-    Args:
-        slew: angle ψ in degrees over time, positive towards +y.
-        luff: change of the luffing angle in degrees over time.
-        angle: luffing angle at t = 0 in degrees.
-        foot: x of the foot in m.
-        radius: horizontal distance r in m of the foot from the slewing axis, positive outwards.
-        gravity: acceleration of gravity in m/s²; 0 without weight.
-    """
-
-    slew: MotionLaw = _RESTING
-    luff: MotionLaw = _RESTING
-    angle: float = 0.0
-    foot: float = 0.0
+    slew: MotionLaw = _RESTING  #: angle ψ in degrees over time, positive towards +y
+    luff: MotionLaw = _RESTING  #: change of the luffing angle in degrees over time
+    angle: float = 0.0  #: luffing angle at t = 0 in degrees
+    foot: float = 0.0  #: x of the foot in m
+    #: horizontal distance r in m of the foot from the slewing axis, positive outwards
     radius: float = 0.0
-    gravity: float = 0.0
+    gravity: float = 0.0  #: acceleration of gravity in m/s²; 0 without weight
 
     def slew_angle(self, time: Array, order: int = 0) -> Array:
         """Return ψ in rad, or its first or second derivative, at times in s."""
@@ -100,18 +92,12 @@ class FrameAcceleration:
 
     It includes the change of gravity across the boom, g (cos α − cos α₀) along z, and along the
     boom, g (sin α − sin α₀) along x.
-
-    Args:
-        frame: slewing and luffing of the boom.
-        direction: component of the acceleration.
-        x: position in m; None for the increase of the acceleration per m of x.
-        extension: travel of the segment with the point.
     """
 
-    frame: FrameMotion
-    direction: Literal["x", "y", "z"]
-    x: float | None = None
-    extension: MotionLaw = _RESTING
+    frame: FrameMotion  #: slewing and luffing of the boom
+    direction: Literal["x", "y", "z"]  #: component of the acceleration
+    x: float | None = None  #: position in m; None for the increase of the acceleration per m of x
+    extension: MotionLaw = _RESTING  #: travel of the segment with the point
 
     @property
     def kinks(self) -> tuple[float, ...]:

@@ -63,16 +63,12 @@ class Integrator(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class StepSchedule:
-    """Integrator with a prescribed number of steps in each window of the motion.
+    """Integrator with a prescribed number of steps in each window of the motion."""
 
-    Args:
-        substeps: number of steps per output interval in each window; the last number applies to
-            all further windows.
-        window: number of output intervals of a window.
-    """
-
+    #: number of steps per output interval in each window; the last number applies to all further
+    #: windows
     substeps: tuple[int, ...]
-    window: int
+    window: int  #: number of output intervals of a window
 
     @classmethod
     def from_trajectory(cls, trajectory: Trajectory) -> StepSchedule:
@@ -105,12 +101,9 @@ class FixedStep:
     >>> motion = FixedStep(1e-5)(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.energy_residual < 1e-11
     True
-
-    Args:
-        step: step in s; it is reduced so that the output step is a multiple.
     """
 
-    step: float
+    step: float  #: step in s; it is reduced so that the output step is a multiple
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
         substeps = max(1, int(np.ceil(motion.output_step / self.step * (1.0 - 1e-12))))

@@ -30,17 +30,12 @@ Quantity = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Line:
-    """Rows of quantities along one segment.
+    """Rows of quantities along one segment."""
 
-    Args:
-        x: positions (num_places,) in m, ascending; a position with a possible jump occurs twice.
-        rows: rows (num_places, num_modes) of each available quantity.
-        paired: True if positions are both ends of each element, False if they are midpoints.
-    """
-
+    #: positions (num_places,) in m, ascending; a position with a possible jump occurs twice
     x: Array
-    rows: Mapping[Quantity, Array]
-    paired: bool
+    rows: Mapping[Quantity, Array]  #: rows (num_places, num_modes) of each available quantity
+    paired: bool  #: True if positions are both ends of each element, False if they are midpoints
 
     @property
     def deflections(self) -> Iterator[tuple[Literal["y", "z"], tuple[Array, Array]]]:

@@ -50,17 +50,11 @@ _WEIGHTS = np.array([5.0, 8.0, 5.0]) / 18.0
 
 @dataclass(frozen=True, eq=False)
 class Integration:
-    """Time integration of a motion in progress.
+    """Time integration of a motion in progress."""
 
-    Args:
-        motion: motion with all constant loads in the ``load`` of its system.
-        output: output at all times, beginning with the initial state.
-        state: state after the last computed output.
-    """
-
-    motion: Motion
-    output: Output
-    state: State
+    motion: Motion  #: motion with all constant loads in the ``load`` of its system
+    output: Output  #: output at all times, beginning with the initial state
+    state: State  #: state after the last computed output
     _tables: dict[int, tuple[Flow, Array]] = field(default_factory=dict)
 
     @classmethod

@@ -96,18 +96,12 @@ class MovingForce:
 
     At an extension s > 0, P increases by the force between x and x + direction · s; at s < 0 it
     decreases.
-
-    Args:
-        segment: index of the segment.
-        x: initial position in m.
-        direction: 1 towards the head, −1 towards the tail.
-        force: force in N.
     """
 
-    segment: int
-    x: float
-    direction: int
-    force: float
+    segment: int  #: index of the segment
+    x: float  #: initial position in m
+    direction: int  #: 1 towards the head, −1 towards the tail
+    force: float  #: force in N
 
     def change(self, x: Array, extension: Array) -> Array:
         """Return the change of P (..., num_places) in N at x in m, at extensions (...) in m."""
@@ -189,18 +183,14 @@ class AxialChange:
     """Change of the stiffness across the boom by axial and centrifugal forces.
 
     At the value h of the history, it reduces the strain energy by ½ h (∫ P w′² dx + Σ m w²).
-
-    Args:
-        history: factor h over time, see :mod:`dynamics.excitation`.
-        compressions: axial force P of each segment in N at the factor 1; none unless given.
-        masses: point masses m of each segment in kg; none unless given.
-        direction: direction of the deflection w of the masses.
     """
 
-    history: Any
+    history: Any  #: factor h over time, see :mod:`dynamics.excitation`
+    #: axial force P of each segment in N at the factor 1; none unless given
     compressions: Sequence[Compression] = ()
+    #: point masses m of each segment in kg; none unless given
     masses: Sequence[Sequence[PointMass]] = ()
-    direction: Direction = "z"
+    direction: Direction = "z"  #: direction of the deflection w of the masses
 
     @property
     def times(self) -> Array:

@@ -17,15 +17,12 @@ class Compression:
     >>> column = Compression(places=(0.0, 4.0, 10.0), ends=((9e3, 7e3), (2e3, 2e3)))
     >>> column(np.array([1.0, 5.0]))
     array([8500., 2000.])
-
-    Args:
-        places: ascending x in m of the ends of the pieces; empty if P is 0 everywhere.
-        ends: P in N at both ends of each piece.
-        transferred: total axial force in N, which acts at the lock or foot of the segment.
     """
 
+    #: ascending x in m of the ends of the pieces; empty if P is 0 everywhere
     places: tuple[float, ...] = ()
-    ends: tuple[tuple[float, float], ...] = ()
+    ends: tuple[tuple[float, float], ...] = ()  #: P in N at both ends of each piece
+    #: total axial force in N, which acts at the lock or foot of the segment
     transferred: float = 0.0
 
     def __bool__(self) -> bool:

@@ -296,19 +296,12 @@ _OF_HEIGHT = 0.2
 
 @dataclass(frozen=True, slots=True)
 class StopPatch:
-    """Contact of a stop with the corners of a segment.
+    """Contact of a stop with the corners of a segment."""
 
-    Args:
-        station: index in ``Boom.stations``.
-        stop: the stop.
-        interval: interval of the corners on which the force acts.
-        reach: range of the travel of the segment in m.
-    """
-
-    station: int
-    stop: Stop
-    interval: ContactInterval
-    reach: tuple[float, float]
+    station: int  #: index in ``Boom.stations``
+    stop: Stop  #: the stop
+    interval: ContactInterval  #: interval of the corners on which the force acts
+    reach: tuple[float, float]  #: range of the travel of the segment in m
 
     def at_extension(self, boom: Boom, extension: float) -> StopPatch:
         """Return the contact at a travel of the segment by ``extension`` in m."""

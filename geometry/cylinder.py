@@ -138,21 +138,13 @@ class Cylinder:
 
 
 class GroundLine(NamedTuple):
-    """Spring and dashpot between a segment and the ground, in addition to its supports.
+    """Spring and dashpot between a segment and the ground, in addition to its supports."""
 
-    Args:
-        segment: index in ``Boom.segments``.
-        push: load vector (num_dofs,) of 1 N along the line, also the row of its elongation.
-        stiffness: stiffness in N/m.
-        dashpot: dashpot in N·s/m.
-        force: name of the spring force in results, positive in compression; empty if it is not a
-            result.
-    """
-
-    segment: int
-    push: Array
-    stiffness: float
-    dashpot: float
+    segment: int  #: index in ``Boom.segments``
+    push: Array  #: load vector (num_dofs,) of 1 N along the line, also the row of its elongation
+    stiffness: float  #: stiffness in N/m
+    dashpot: float  #: dashpot in N·s/m
+    #: name of the spring force in results, positive in compression; empty if it is not a result
     force: str = ""
 
 

@@ -34,22 +34,16 @@ _ROUND_OFF = 1.0e-12
 
 @dataclass(frozen=True, slots=True)
 class SegmentMesh:
-    """Mid-surface mesh of one segment.
+    """Mid-surface mesh of one segment."""
 
-    Args:
-        points: positions (num_points, 3) in m, with x along the boom and the axis at y = z = 0.
-        triangles: point numbers (num_triangles, 3).
-        plates: names of the section's plates.
-        walls: index (num_triangles,) of each triangle's wall in ``plates``; ``len(plates)`` + k for
-            diaphragm k.
-        lines: point numbers (num_edges, 2) of the edges of outlines, by name.
-    """
-
+    #: positions (num_points, 3) in m, with x along the boom and the axis at y = z = 0
     points: Array
-    triangles: Indices
-    plates: tuple[str, ...]
+    triangles: Indices  #: point numbers (num_triangles, 3)
+    plates: tuple[str, ...]  #: names of the section's plates
+    #: index (num_triangles,) of each triangle's wall in ``plates``; ``len(plates)`` + k for
+    #: diaphragm k
     walls: npt.NDArray[np.int32]
-    lines: Mapping[str, Indices]
+    lines: Mapping[str, Indices]  #: point numbers (num_edges, 2) of the edges of outlines, by name
 
     @property
     def on_walls(self) -> Mask:

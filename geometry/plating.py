@@ -19,17 +19,12 @@ _DIGITS = 9
 
 @dataclass(frozen=True, slots=True)
 class PlatedMesh(SegmentMesh):
-    """Mesh with the thickness of each triangle.
+    """Mesh with the thickness of each triangle."""
 
-    Args:
-        thickness: thickness (num_triangles,) in m.
-        plain: thickness (num_triangles,) in m without collars, 0 on diaphragms.
-        load_weight: weight (num_triangles,) in m that distributes a uniform line load over the
-            walls: ``plain``, divided by the relative area of the section if the segment tapers.
-    """
-
-    thickness: Array
-    plain: Array
+    thickness: Array  #: thickness (num_triangles,) in m
+    plain: Array  #: thickness (num_triangles,) in m without collars, 0 on diaphragms
+    #: weight (num_triangles,) in m that distributes a uniform line load over the walls: ``plain``,
+    #: divided by the relative area of the section if the segment tapers
     load_weight: Array
 
     @property

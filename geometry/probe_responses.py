@@ -22,15 +22,12 @@ PROBE_FREQUENCY = 2.0
 
 @dataclass(frozen=True, slots=True)
 class ProbeResponses:
-    """Dynamic compliance of a segment to unit forces and moments (probes).
+    """Dynamic compliance of a segment to unit forces and moments (probes)."""
 
-    Args:
-        places: ascending x in m of forces and torques. Moments act at the first and the last x.
-        compliance: matrices (num_probes, num_probes) in m/N, rad/N and rad/(N·m) at
-            ``PROBE_FREQUENCY``, keyed by motion; for bending, forces come before moments.
-    """
-
+    #: ascending x in m of forces and torques. Moments act at the first and the last x.
     places: tuple[float, ...]
+    #: matrices (num_probes, num_probes) in m/N, rad/N and rad/(N·m) at ``PROBE_FREQUENCY``, keyed
+    #: by motion; for bending, forces come before moments
     compliance: Mapping[ProbedMotion, Array]
 
 

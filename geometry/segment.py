@@ -56,20 +56,13 @@ class Lateral:
 
     >>> print(f"{boom.segments[0].lateral.torsion_constant:.1e} m⁴")
     2.8e-04 m⁴
-
-    Args:
-        second_moment_of_area: second moment for bending in the plane x-y in m⁴.
-        rotary_inertia: rotary inertia for bending in the plane x-y in kg·m.
-        torsion_constant: J_t of the torsional stiffness G J_t in m⁴.
-        polar_inertia: mass moment of inertia per length about x in kg·m.
-        load: uniform load along y in N/m, constant from t = 0 on.
     """
 
-    second_moment_of_area: float
-    rotary_inertia: float
-    torsion_constant: float
-    polar_inertia: float
-    load: float = 0.0
+    second_moment_of_area: float  #: second moment for bending in the plane x-y in m⁴
+    rotary_inertia: float  #: rotary inertia for bending in the plane x-y in kg·m
+    torsion_constant: float  #: J_t of the torsional stiffness G J_t in m⁴
+    polar_inertia: float  #: mass moment of inertia per length about x in kg·m
+    load: float = 0.0  #: uniform load along y in N/m, constant from t = 0 on
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,17 +24,12 @@ _SAMPLES = 9
 
 @dataclass(frozen=True, slots=True)
 class TelescopingStations:
-    """Stations that move with the same drives.
+    """Stations that move with the same drives."""
 
-    Args:
-        joints: indices of the joints of the drives in ``Boom.joints``, from the base.
-        drives: drives of these joints.
-        stations: indices of the stations in ``Boom.stations``.
-    """
-
+    #: indices of the joints of the drives in ``Boom.joints``, from the base
     joints: tuple[int, ...]
-    drives: tuple[Drive, ...]
-    stations: tuple[int, ...]
+    drives: tuple[Drive, ...]  #: drives of these joints
+    stations: tuple[int, ...]  #: indices of the stations in ``Boom.stations``
 
     @property
     def reach(self) -> tuple[float, float]:

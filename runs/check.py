@@ -83,17 +83,11 @@ _BEAMS = "in the beam estimate"
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Check:
-    """Tables of a checked case, and sentences on its static state.
+    """Tables of a checked case, and sentences on its static state."""
 
-    Args:
-        title: title of the case.
-        tables: tables with at least one row.
-        lines: sentences, cautions among them.
-    """
-
-    title: str
-    tables: Sequence[Table]
-    lines: Sequence[str]
+    title: str  #: title of the case
+    tables: Sequence[Table]  #: tables with at least one row
+    lines: Sequence[str]  #: sentences, cautions among them
 
     @property
     def frames(self) -> dict[str, pd.DataFrame]:

@@ -34,25 +34,18 @@ from shell_model.stages import Stages
 
 @dataclass(frozen=True, slots=True)
 class ShellOptions:
-    """Options of the shell model.
+    """Options of the shell model."""
 
-    Args:
-        mesh_size: edge length in m; in a graded mesh, the length far from contacts and supports.
-        contact_line: position of contact. ``near webs``: forces act between the webs of both
-            segments, like forces of pads in the corners. ``across``: forces act over the width of
-            the inner flanges, which bend, in a flat boom. ``surface``: contact is possible over the
-            whole overlap.
-        surface: options of surface contact.
-        krylov: options of the reduction.
-        contact_tolerance: permitted relative error of the local compliance at contacts, for a
-            graded mesh (:mod:`geometry.refinement`). Without it, and for surface contact, the mesh
-            is uniform.
-    """
-
+    #: edge length in m; in a graded mesh, the length far from contacts and supports
     mesh_size: float = 0.1
+    #: position of contact. ``near webs``: forces act between the webs of both segments, like forces
+    #: of pads in the corners. ``across``: forces act over the width of the inner flanges, which
+    #: bend, in a flat boom. ``surface``: contact is possible over the whole overlap.
     contact_line: ContactLine = "near webs"
-    surface: SurfaceOptions = field(default_factory=SurfaceOptions)
-    krylov: KrylovOptions = field(default_factory=KrylovOptions)
+    surface: SurfaceOptions = field(default_factory=SurfaceOptions)  #: options of surface contact
+    krylov: KrylovOptions = field(default_factory=KrylovOptions)  #: options of the reduction
+    #: permitted relative error of the local compliance at contacts, for a graded mesh
+    #: (:mod:`geometry.refinement`). Without it, and for surface contact, the mesh is uniform.
     contact_tolerance: float | None = None
 
     @property
@@ -73,35 +66,23 @@ class ShellOptions:
 
 @dataclass(frozen=True)
 class BoomShell:
-    """Distributed shell model of a boom with all degrees of freedom.
+    """Distributed shell model of a boom with all degrees of freedom."""
 
-    Args:
-        comm: ranks that share the model.
-        shells: shell of each segment.
-        stations: x in m and direction of each station.
-        touching: possible contacts, friction and dashpots at any extension.
-        rows: rows of contacts, friction and dashpots at t = 0.
-        ties: displacement operators that bonded joints constrain to zero.
-        own_loads: uniform load vector (num_owned,) of each segment in N, constant from t = 0 on.
-        loads: loads with a history, and their load vectors (num_owned,).
-        observed: outputs of a motion.
-        lines: springs and dashpots to the ground.
-        pin_moments: (segment, load vector), see :func:`geometry.axial.pin_moments`.
-        helper: second process for the reduction.
-    """
-
-    comm: MPI.Comm
-    shells: Sequence[SegmentShell]
-    stations: Sequence[tuple[float, Direction]]
-    touching: ShellContacts
-    rows: GapBuilder[Operator]
-    ties: Sequence[Operator]
+    comm: MPI.Comm  #: ranks that share the model
+    shells: Sequence[SegmentShell]  #: shell of each segment
+    stations: Sequence[tuple[float, Direction]]  #: x in m and direction of each station
+    touching: ShellContacts  #: possible contacts, friction and dashpots at any extension
+    rows: GapBuilder[Operator]  #: rows of contacts, friction and dashpots at t = 0
+    ties: Sequence[Operator]  #: displacement operators that bonded joints constrain to zero
+    #: uniform load vector (num_owned,) of each segment in N, constant from t = 0 on
     own_loads: Sequence[Array]
+    #: loads with a history, and their load vectors (num_owned,)
     loads: Sequence[tuple[Load, Array]]
-    observed: Mapping[str, OutputOperator[Operator]]
-    lines: Sequence[GroundLine] = ()
+    observed: Mapping[str, OutputOperator[Operator]]  #: outputs of a motion
+    lines: Sequence[GroundLine] = ()  #: springs and dashpots to the ground
+    #: (segment, load vector), see :func:`geometry.axial.pin_moments`
     pin_moments: Sequence[tuple[int, Array]] = ()
-    helper: Executor | None = None
+    helper: Executor | None = None  #: second process for the reduction
 
     @cached_property
     def symmetries(self) -> Sequence[SymmetryReduction]:

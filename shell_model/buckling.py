@@ -64,15 +64,11 @@ _ORDER = 2.0
 
 
 class BucklingModes(NamedTuple):
-    """Lowest buckling modes of a shell.
+    """Lowest buckling modes of a shell."""
 
-    Args:
-        factors: (num_modes,) load factors λ in ascending order; empty without compression.
-        shapes: (num_owned, num_modes) this rank's displacements and rotations; the magnitude of
-            the largest displacement is 1.
-    """
-
-    factors: Array
+    factors: Array  #: (num_modes,) load factors λ in ascending order; empty without compression
+    #: (num_owned, num_modes) this rank's displacements and rotations; the magnitude of the largest
+    #: displacement is 1
     shapes: Array
 
 
@@ -164,17 +160,13 @@ def _geometric_stiffness(shell: Shell, forces: Array) -> PETSc.Mat:
 
 @dataclass(frozen=True, slots=True)
 class StaticState:
-    """Static state of the shells of a boom.
+    """Static state of the shells of a boom."""
 
-    Args:
-        forces: membrane forces (num_triangles, 3) of each segment in N/m, as for
-            :func:`buckling_modes`; the same on every rank.
-        contact_stiffness: (num_contacts,) tangent stiffness of each contact row in N/m.
-        extensions: extension of each joint in m, by its position in ``Boom.joints``.
-    """
-
+    #: membrane forces (num_triangles, 3) of each segment in N/m, as for :func:`buckling_modes`; the
+    #: same on every rank
     forces: Sequence[Array]
-    contact_stiffness: Array
+    contact_stiffness: Array  #: (num_contacts,) tangent stiffness of each contact row in N/m
+    #: extension of each joint in m, by its position in ``Boom.joints``
     extensions: Mapping[int, float]
 
     @classmethod
@@ -206,19 +198,13 @@ class StaticState:
 
 @dataclass(frozen=True, slots=True)
 class SegmentBuckling:
-    """The lowest buckling modes of the walls of a segment.
+    """The lowest buckling modes of the walls of a segment."""
 
-    Args:
-        factors: (num_modes,) λ in ascending order, extrapolated to a mesh size of zero.
-        mesh_errors: (num_modes,) relative error of each factor on the finer mesh.
-        mesh: the finer mesh, on rank 0.
-        shapes: (num_modes, num_points, 3) displacements of its points, on rank 0; the magnitude of
-            the largest one is about 1.
-    """
-
-    factors: Array
-    mesh_errors: Array
-    mesh: PlatedMesh | None
+    factors: Array  #: (num_modes,) λ in ascending order, extrapolated to a mesh size of zero
+    mesh_errors: Array  #: (num_modes,) relative error of each factor on the finer mesh
+    mesh: PlatedMesh | None  #: the finer mesh, on rank 0
+    #: (num_modes, num_points, 3) displacements of its points, on rank 0; the magnitude of the
+    #: largest one is about 1
     shapes: Array | None
 
 

@@ -49,19 +49,12 @@ _FEWEST = 4
 
 @dataclass(frozen=True, slots=True)
 class _SampledRows:
-    """Rows of a group of stations at several extensions.
+    """Rows of a group of stations at several extensions."""
 
-    Args:
-        group: stations and drives; None for rows that do not move.
-        moving: (kind, index) of each row in the gap system.
-        extensions: extensions (num_extensions,) in m, ascending.
-        touching: contacts, friction and dashpots at each extension.
-    """
-
-    group: TelescopingStations | None
-    moving: Sequence[tuple[RowKind, int]]
-    extensions: Array
-    touching: Sequence[GapBuilder[Operator]]
+    group: TelescopingStations | None  #: stations and drives; None for rows that do not move
+    moving: Sequence[tuple[RowKind, int]]  #: (kind, index) of each row in the gap system
+    extensions: Array  #: extensions (num_extensions,) in m, ascending
+    touching: Sequence[GapBuilder[Operator]]  #: contacts, friction and dashpots at each extension
 
     @property
     def start(self) -> int:

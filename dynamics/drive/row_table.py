@@ -134,14 +134,10 @@ class MovingAxialForce:
     >>> table = RowTable.interpolate(lambda s: np.array([[3.0 * s]]), [0.0, 1.0])
     >>> MovingAxialForce(2.0, table).geometric_stiffness(0.5)
     array([[9.]])
-
-    Args:
-        force: N in N, positive if it compresses the length between 0 and a positive s.
-        table: rows (num_planes, num_modes) of the deflections at the force, over s in m.
     """
 
-    force: float
-    table: RowTable
+    force: float  #: N in N, positive if it compresses the length between 0 and a positive s
+    table: RowTable  #: rows (num_planes, num_modes) of the deflections at the force, over s in m
 
     @property
     def num_modes(self) -> int:
@@ -188,15 +184,10 @@ class MovingAxialForce:
 
 @dataclass(frozen=True, slots=True)
 class ChangingAxialForce:
-    """Axial force that is proportional to the value s of a history: K_G(s) = s Vᵀ diag(c) V.
+    """Axial force that is proportional to the value s of a history: K_G(s) = s Vᵀ diag(c) V."""
 
-    Args:
-        factors: c (num_vectors,).
-        vectors: V (num_vectors, num_modes).
-    """
-
-    factors: Array
-    vectors: Array
+    factors: Array  #: c (num_vectors,)
+    vectors: Array  #: V (num_vectors, num_modes)
 
     @classmethod
     def of(cls, geometric: Array, stiffness: Array, peak: float) -> ChangingAxialForce:

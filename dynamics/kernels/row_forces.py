@@ -55,23 +55,14 @@ class Laws(NamedTuple):
 
 
 class Problem(NamedTuple):
-    """Unknowns of a step, and work arrays for their solution.
+    """Unknowns of a step, and work arrays for their solution."""
 
-    Args:
-        free: (num_rows,) y_free in m.
-        force: (num_rows,) f in N; the initial guess, then the solution.
-        bound: (num_frictions,) μN in N.
-        active: (num_rows,) indices of the active rows.
-        jacobian: (num_rows, num_rows) Jacobian of the active rows.
-        residual: (num_rows,) residuals of the active rows.
-    """
-
-    free: Array
-    force: Array
-    bound: Array
-    active: Indices
-    jacobian: Array
-    residual: Array
+    free: Array  #: (num_rows,) y_free in m
+    force: Array  #: (num_rows,) f in N; the initial guess, then the solution
+    bound: Array  #: (num_frictions,) μN in N
+    active: Indices  #: (num_rows,) indices of the active rows
+    jacobian: Array  #: (num_rows, num_rows) Jacobian of the active rows
+    residual: Array  #: (num_rows,) residuals of the active rows
 
 
 def row_laws(system: GapSystem) -> Laws:

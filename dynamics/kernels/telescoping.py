@@ -24,21 +24,15 @@ _NOTHING = 1.0e-13
 
 
 class MovingRows(NamedTuple):
-    """Rows that change with travels, as cubics between knots.
+    """Rows that change with travels, as cubics between knots."""
 
-    Args:
-        number: (num_moving,) index of each moving row among all rows.
-        spans: (num_moving, 4) indices of the row's travel, first and last knot, and first piece.
-        shifts: (num_moving,) increase of the row's displacement per m of extension.
-        knots: knots of all travels in m.
-        cubics: (num_pieces, 4, num_modes) coefficients of powers of the relative position in a
-            piece, for all rows.
-    """
-
-    number: Indices
+    number: Indices  #: (num_moving,) index of each moving row among all rows
+    #: (num_moving, 4) indices of the row's travel, first and last knot, and first piece
     spans: Indices
-    shifts: Array
-    knots: Array
+    shifts: Array  #: (num_moving,) increase of the row's displacement per m of extension
+    knots: Array  #: knots of all travels in m
+    #: (num_pieces, 4, num_modes) coefficients of powers of the relative position in a piece, for
+    #: all rows
     cubics: Array
 
 

@@ -50,18 +50,13 @@ def horizon(members: Array, time: Array, share: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """Line T(ε) through measured horizons.
+    """Line T(ε) through measured horizons."""
 
-    Args:
-        rate: λ in 1/s; NaN with fewer than two horizons, or if the increase of horizons with
-            smaller ε is within the scatter.
-        start: T(1) in s; NaN like ``rate``.
-        scatter: root mean square distance of the horizons from the line in s.
-    """
-
+    #: λ in 1/s; NaN with fewer than two horizons, or if the increase of horizons with smaller ε is
+    #: within the scatter
     rate: float
-    start: float
-    scatter: float
+    start: float  #: T(1) in s; NaN like ``rate``
+    scatter: float  #: root mean square distance of the horizons from the line in s
 
     @classmethod
     def fit(cls, relatives: Array, times: Array) -> Growth:
@@ -84,23 +79,16 @@ class Growth:
 
 @dataclass(frozen=True, slots=True)
 class Horizons:
-    """Horizons of one system under changes of several sizes.
+    """Horizons of one system under changes of several sizes."""
 
-    Args:
-        relatives: ε (num_relatives,), ascending.
-        shares: fractions (num_shares,) of the range, ascending.
-        times: horizons (num_relatives, num_shares) in s; NaN if the spread stays below the share.
-        of_step: horizons (num_shares,) in s of a run with a finer step or tolerance.
-        growth: line through ``times`` for each share.
-        step_change: ε with the same horizon at the first share as the finer step, by the first
-            line; 0 if the finer step does not diverge, NaN without a line.
-    """
-
-    relatives: Array
-    shares: Array
+    relatives: Array  #: ε (num_relatives,), ascending
+    shares: Array  #: fractions (num_shares,) of the range, ascending
+    #: horizons (num_relatives, num_shares) in s; NaN if the spread stays below the share
     times: Array
-    of_step: Array
-    growth: Sequence[Growth]
+    of_step: Array  #: horizons (num_shares,) in s of a run with a finer step or tolerance
+    growth: Sequence[Growth]  #: line through ``times`` for each share
+    #: ε with the same horizon at the first share as the finer step, by the first line; 0 if the
+    #: finer step does not diverge, NaN without a line
     step_change: float
 
     @property

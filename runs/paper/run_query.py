@@ -29,13 +29,9 @@ class MissingData(Exception):
 
 @dataclass(frozen=True, slots=True)
 class RunQuery:
-    """Queries of a run. Methods raise :class:`MissingData` if the data are missing.
+    """Queries of a run. Methods raise :class:`MissingData` if the data are missing."""
 
-    Args:
-        results: results of the run.
-    """
-
-    results: Results
+    results: Results  #: results of the run
 
     @property
     def case(self) -> Case:

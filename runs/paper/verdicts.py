@@ -28,27 +28,17 @@ FILE = "verdicts.json"
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Verdict on one statement.
+    """Verdict on one statement."""
 
-    Args:
-        id: identifier of the statement in the case.
-        statement: text of the statement.
-        measured: number that the rule compares with the threshold; None if there is none.
-        threshold: limit of the number.
-        unit: unit of both numbers; empty if dimensionless.
-        verdict: result of the rule.
-        why: explanation of the comparison and of its limits.
-        demanded: True if the case demands the verdict ``reproduced``.
-    """
-
-    id: str
-    statement: str
+    id: str  #: identifier of the statement in the case
+    statement: str  #: text of the statement
+    #: number that the rule compares with the threshold; None if there is none
     measured: float | None
-    threshold: float | None
-    unit: str
-    verdict: Judgement
-    why: str
-    demanded: bool = False
+    threshold: float | None  #: limit of the number
+    unit: str  #: unit of both numbers; empty if dimensionless
+    verdict: Judgement  #: result of the rule
+    why: str  #: explanation of the comparison and of its limits
+    demanded: bool = False  #: True if the case demands the verdict ``reproduced``
 
     def with_unit(self, value: float | None) -> str:
         """Return a number as text with the unit of the verdict."""

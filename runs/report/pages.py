@@ -24,18 +24,14 @@ TONES = {"✓": "yes", "✗": "no", "?": "open"}
 
 @dataclass(frozen=True, slots=True)
 class Addition:
-    """Content that a calling program adds to the report of a run.
+    """Content that a calling program adds to the report of a run."""
 
-    Args:
-        template: path of a template that extends ``report.html`` and fills its blocks ``added_…``.
-        content: further variables of the template.
-        remarks: sentences below tables and figures, by anchor.
-        files: contents of further files in the folder of the run, by name.
-    """
-
+    #: path of a template that extends ``report.html`` and fills its blocks ``added_…``
     template: Path = TEMPLATES / "report.html"
-    content: Mapping[str, Any] = field(default_factory=dict)
+    content: Mapping[str, Any] = field(default_factory=dict)  #: further variables of the template
+    #: sentences below tables and figures, by anchor
     remarks: Mapping[str, str] = field(default_factory=dict)
+    #: contents of further files in the folder of the run, by name
     files: Mapping[str, str] = field(default_factory=dict)
 
 

@@ -37,17 +37,11 @@ _Point = tuple[Side, float, Operator]
 
 @dataclass(frozen=True, slots=True)
 class _PadOperators:
-    """Operators of the relative displacements u − w at a pad.
+    """Operators of the relative displacements u − w at a pad."""
 
-    Args:
-        pad: the pad.
-        corners: corner lines of all segments.
-        walls: walls of all segments; empty if no contact is on a wall.
-    """
-
-    pad: Pad
-    corners: Sequence[CornerLines]
-    walls: Sequence[WallPoints]
+    pad: Pad  #: the pad
+    corners: Sequence[CornerLines]  #: corner lines of all segments
+    walls: Sequence[WallPoints]  #: walls of all segments; empty if no contact is on a wall
 
     def contact(self, line: ContactLine) -> tuple[list[_Point], Operator]:
         """Return the contact points of the pad, and the operator of its sliding. Collective."""
@@ -126,21 +120,13 @@ class _PadOperators:
 
 @dataclass(frozen=True, slots=True)
 class ShellContacts:
-    """Possible contacts, friction and dashpots between the shells of a boom.
+    """Possible contacts, friction and dashpots between the shells of a boom."""
 
-    Args:
-        boom: boom with joints and stops.
-        line: contact line on the walls.
-        corners: corner lines of all segments.
-        walls: walls of all segments; empty if no contact is on a wall.
-        points: points of surface contact; none otherwise.
-    """
-
-    boom: Boom
-    line: ContactLine
-    corners: Sequence[CornerLines]
-    walls: Sequence[WallPoints]
-    points: Sequence[SurfacePoint]
+    boom: Boom  #: boom with joints and stops
+    line: ContactLine  #: contact line on the walls
+    corners: Sequence[CornerLines]  #: corner lines of all segments
+    walls: Sequence[WallPoints]  #: walls of all segments; empty if no contact is on a wall
+    points: Sequence[SurfacePoint]  #: points of surface contact; none otherwise
 
     @classmethod
     def from_shells(

@@ -24,15 +24,10 @@ from shell_model.segment.segment_shell import SegmentShell
 
 
 class _CornerLine(NamedTuple):
-    """Displacement nodes along a corner, alternately ends and midpoints of edges.
+    """Displacement nodes along a corner, alternately ends and midpoints of edges."""
 
-    Args:
-        x: (num_nodes,) x in m, ascending.
-        dofs: (num_nodes, 3) global rows of the displacement components.
-    """
-
-    x: Array
-    dofs: Indices
+    x: Array  #: (num_nodes,) x in m, ascending
+    dofs: Indices  #: (num_nodes, 3) global rows of the displacement components
 
     def mean(self, stretch: ContactInterval, direction: Direction) -> Row:
         """Return the mean displacement, weighted by the line load, by Simpson's rule."""

@@ -26,20 +26,16 @@ _MAX_MOMENTS = 12
 
 @dataclass(frozen=True, slots=True)
 class KrylovOptions:
-    """Shifts and moments of a Krylov basis, or its permitted error.
+    """Shifts and moments of a Krylov basis, or its permitted error."""
 
-    Args:
-        shifts: frequencies in Hz at which moments match.
-        moments: number of matched moments (derivatives with respect to ω²) at each shift.
-        tolerance: permitted relative error of the contact compliance and of the response of
-            outputs. If it is given, the number of moments increases until the error is permitted.
-        most: maximum number of coordinates of a segment. Each symmetry class keeps its rigid
-            motions and at least one further coordinate.
-    """
-
+    #: frequencies in Hz at which moments match
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0)
-    moments: int = 3
+    moments: int = 3  #: number of matched moments (derivatives with respect to ω²) at each shift
+    #: permitted relative error of the contact compliance and of the response of outputs. If it is
+    #: given, the number of moments increases until the error is permitted.
     tolerance: float | None = None
+    #: maximum number of coordinates of a segment. Each symmetry class keeps its rigid motions and
+    #: at least one further coordinate.
     most: int | None = None
 
     @property
@@ -147,21 +143,13 @@ def reduce_class(
 
 
 class _FullResponse(NamedTuple):
-    """Responses of the full model at a frequency, with the scales of their errors.
+    """Responses of the full model at a frequency, with the scales of their errors."""
 
-    Args:
-        sigma: (2π frequency)² in rad²/s².
-        compliance: compliance (num_forces, num_forces) of the forces.
-        scale: geometric means of pairs of diagonal entries of ``compliance``.
-        transfer: responses (num_outputs, num_forces) of outputs to forces.
-        transfer_scale: geometric means of the compliances of outputs and forces.
-    """
-
-    sigma: float
-    compliance: Array
-    scale: Array
-    transfer: Array
-    transfer_scale: Array
+    sigma: float  #: (2π frequency)² in rad²/s²
+    compliance: Array  #: compliance (num_forces, num_forces) of the forces
+    scale: Array  #: geometric means of pairs of diagonal entries of ``compliance``
+    transfer: Array  #: responses (num_outputs, num_forces) of outputs to forces
+    transfer_scale: Array  #: geometric means of the compliances of outputs and forces
 
     @classmethod
     def at(

@@ -27,17 +27,11 @@ _NEGLIGIBLE = 1.0e-4
 
 
 class PadResponses(NamedTuple):
-    """Responses (num_columns, num_columns) of a full segment to pad forces.
+    """Responses (num_columns, num_columns) of a full segment to pad forces."""
 
-    Args:
-        compliance: B (K + σ M)⁻¹ Bᵀ in m/N at the shift of springs.
-        inertia: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, the negative derivative by σ.
-        tested: compliance in m/N at another shift.
-    """
-
-    compliance: Array
-    inertia: Array
-    tested: Array
+    compliance: Array  #: B (K + σ M)⁻¹ Bᵀ in m/N at the shift of springs
+    inertia: Array  #: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, the negative derivative by σ
+    tested: Array  #: compliance in m/N at another shift
 
 
 def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> PadResponses:

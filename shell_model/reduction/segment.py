@@ -27,28 +27,20 @@ from shell_model.reduction.symmetry import Job, SymmetryCell, SymmetryReduction,
 
 @dataclass(frozen=True, slots=True)
 class ReducedSegment:
-    """Mass-normalised coordinates of one segment.
+    """Mass-normalised coordinates of one segment."""
 
-    Args:
-        omega2: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0.
-        shapes: this rank's rows (num_owned, num_modes) of the shapes in 1/√kg.
-        compliance_error: largest relative error of the contact compliance at frequencies between
-            the shifts.
-        output_error: largest error of the response of outputs to inputs, relative to the geometric
-            mean of both compliances.
-        lost_compliance: largest error (num_inputs,) of the compliance of each input in m/N. The
-            error of a pair is at most the geometric mean of both (Galerkin).
-        frequency_limit: frequency in Hz up to which natural frequencies are accurate to 0.1 %.
-        geometric: K_G (num_modes, num_modes), to be subtracted from diag(ω²).
-    """
-
-    omega2: Array
-    shapes: Array
+    omega2: Array  #: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0
+    shapes: Array  #: this rank's rows (num_owned, num_modes) of the shapes in 1/√kg
+    #: largest relative error of the contact compliance at frequencies between the shifts
     compliance_error: float
+    #: largest error of the response of outputs to inputs, relative to the geometric mean of both
+    #: compliances
     output_error: float
+    #: largest error (num_inputs,) of the compliance of each input in m/N. The error of a pair is at
+    #: most the geometric mean of both (Galerkin).
     lost_compliance: Array
-    frequency_limit: float
-    geometric: Array
+    frequency_limit: float  #: frequency in Hz up to which natural frequencies are accurate to 0.1 %
+    geometric: Array  #: K_G (num_modes, num_modes), to be subtracted from diag(ω²)
 
 
 def reduce_segment(

@@ -58,16 +58,11 @@ class SymmetryCell:
     """Quarter or half of a segment, whose mirror images complete the segment.
 
     Each rank assembles its matrices once for all classes.
-
-    Args:
-        segment: the whole segment.
-        mirrors: mirrors of the section.
-        mesh: mesh of the cell.
     """
 
-    segment: Segment
-    mirrors: Sequence[Direction]
-    mesh: PlatedMesh
+    segment: Segment  #: the whole segment
+    mirrors: Sequence[Direction]  #: mirrors of the section
+    mesh: PlatedMesh  #: mesh of the cell
 
     @cached_property
     def plates(self) -> Plates:

@@ -24,15 +24,10 @@ RIGID_TURN = 1.0e5
 
 
 class Attachments(NamedTuple):
-    """Springs or masses with the rows of their displacements.
+    """Springs or masses with the rows of their displacements."""
 
-    Args:
-        rows: this rank's parts (num_owned, num_attached) of the rows.
-        factors: stiffnesses (num_attached,) in N/m or N·m, or masses in kg.
-    """
-
-    rows: Array
-    factors: Array
+    rows: Array  #: this rank's parts (num_owned, num_attached) of the rows
+    factors: Array  #: stiffnesses (num_attached,) in N/m or N·m, or masses in kg
 
     @classmethod
     def from_rows(

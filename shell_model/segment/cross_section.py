@@ -68,19 +68,12 @@ def quadratic(s: Array) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class SectionNodes:
-    """Displacement nodes around the section at one x.
+    """Displacement nodes around the section at one x."""
 
-    Args:
-        x: x in m.
-        places: (num_nodes, 3) positions in m.
-        dofs: (num_nodes, 3) global rows of the displacement components.
-        section: section of the plates.
-    """
-
-    x: float
-    places: Array
-    dofs: Indices
-    section: Section
+    x: float  #: x in m
+    places: Array  #: (num_nodes, 3) positions in m
+    dofs: Indices  #: (num_nodes, 3) global rows of the displacement components
+    section: Section  #: section of the plates
 
     @classmethod
     def gather(

@@ -41,18 +41,12 @@ class Strains(NamedTuple):
     """Strains of the mid-surface in the frame (e1, e2, e3) of the facet.
 
     At the coordinate ζ along e3, the in-plane strain is ``membrane`` + ζ ``bending``.
-
-    Args:
-        membrane: (2, 2) ε.
-        bending: (2, 2) κ in 1/m.
-        shear: (2,) γ.
-        drilling: in-plane rotation of the facet less the rotation about e3, in rad.
     """
 
-    membrane: Any
-    bending: Any
-    shear: Any
-    drilling: Any
+    membrane: Any  #: (2, 2) ε
+    bending: Any  #: (2, 2) κ in 1/m
+    shear: Any  #: (2,) γ
+    drilling: Any  #: in-plane rotation of the facet less the rotation about e3, in rad
 
 
 def facet_frame(domain: Any) -> tuple[Any, Any, Any]:

@@ -26,17 +26,11 @@ _ROUND_OFF = 1.0e-10
 
 @dataclass(frozen=True)
 class SegmentShell(Shell):
-    """Shell of one segment, and its load vectors; a :class:`geometry.load.Member`.
+    """Shell of one segment, and its load vectors; a :class:`geometry.load.Member`."""
 
-    Args:
-        section: section of the plates at the tail.
-        segment: the segment.
-        mesh: mesh of the segment, on rank 0.
-    """
-
-    section: Section
-    segment: Segment
-    mesh: PlatedMesh | None
+    section: Section  #: section of the plates at the tail
+    segment: Segment  #: the segment
+    mesh: PlatedMesh | None  #: mesh of the segment, on rank 0
 
     @cached_property
     def unit_loads(self) -> Mapping[Direction, Array]:

@@ -34,21 +34,13 @@ _Condition = tuple[int, int, Callable[[Array], Mask]]
 
 @dataclass(frozen=True)
 class Plates:
-    """Plates before assembly.
+    """Plates before assembly."""
 
-    Args:
-        space: function space, which owns the communicator of the matrices.
-        forms: compiled forms of the mesh, see :class:`ShellForms`.
-        supports: Dirichlet conditions of the rigid supports.
-        compressed: True if the plates carry an axial force.
-        copies: factor of the forms: the number of congruent parts of the segment.
-    """
-
-    space: Any
-    forms: Any
-    supports: list[Any]
-    compressed: bool = False
-    copies: float = 1.0
+    space: Any  #: function space, which owns the communicator of the matrices
+    forms: Any  #: compiled forms of the mesh, see :class:`ShellForms`
+    supports: list[Any]  #: Dirichlet conditions of the rigid supports
+    compressed: bool = False  #: True if the plates carry an axial force
+    copies: float = 1.0  #: factor of the forms: the number of congruent parts of the segment
 
     @cached_property
     def nodes(self) -> Sequence[tuple[Array, Indices]]:

@@ -49,31 +49,23 @@ _TOGETHER = 10
 
 @dataclass(frozen=True, slots=True)
 class WallForces:
-    """Forces of one wall at a cross-section.
+    """Forces of one wall at a cross-section."""
 
-    Args:
-        axial: force along x in N, positive in tension.
-        shear: in-plane force in N on the part nearer the base, along y if the slope of the wall is
-            below 45°, else along z.
-        moment: moment in N·m of the axial stresses of the wall about the y-axis of the section,
-            positive for tension at the top.
-    """
-
-    axial: float
+    axial: float  #: force along x in N, positive in tension
+    #: in-plane force in N on the part nearer the base, along y if the slope of the wall is below
+    #: 45°, else along z
     shear: float
+    #: moment in N·m of the axial stresses of the wall about the y-axis of the section, positive for
+    #: tension at the top
     moment: float
 
 
 class Stress(NamedTuple):
-    """Stresses at the centroids of triangles, in Pa.
+    """Stresses at the centroids of triangles, in Pa."""
 
-    Args:
-        membrane: σ_x, σ_s, τ_xs (..., 3) of the mid-surface.
-        bending: stress (..., 3) of the outer face less the stress of the mid-surface; the inner
-            face has the opposite difference.
-    """
-
-    membrane: npt.NDArray[np.float32]
+    membrane: npt.NDArray[np.float32]  #: σ_x, σ_s, τ_xs (..., 3) of the mid-surface
+    #: stress (..., 3) of the outer face less the stress of the mid-surface; the inner face has the
+    #: opposite difference
     bending: npt.NDArray[np.float32]
 
     def at(self, face: Face) -> npt.NDArray[np.float32]:
@@ -92,37 +84,24 @@ class Stress(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ShellStress:
-    """Stresses of a shell in motion.
+    """Stresses of a shell in motion."""
 
-    Args:
-        centroids: centroids (num_triangles, 3) in m.
-        areas: areas (num_triangles,) in m².
-        thickness: thicknesses (num_triangles,) in m.
-        spans: smallest and largest x (num_triangles, 2) in m.
-        segment: index (num_triangles,) of the segment of each triangle, ascending.
-        outward: unit normals (num_triangles, 3) away from the axis.
-        wall: index (num_triangles,) of the wall in its segment's ``plates``; larger indices are
-            diaphragms.
-        plates: names of the plates of each segment.
-        modes: stress components (num_own, num_own_triangles, 6) in Pa of each segment, for unit
-            values of its coordinates.
-        states: coordinates (num_times, num_own) of each segment.
-        time: times (num_times,) in s.
-        axial: constant stress (num_triangles,) of axial forces in Pa.
-    """
-
-    centroids: Array
-    areas: Array
-    thickness: Array
-    spans: Array
+    centroids: Array  #: centroids (num_triangles, 3) in m
+    areas: Array  #: areas (num_triangles,) in m²
+    thickness: Array  #: thicknesses (num_triangles,) in m
+    spans: Array  #: smallest and largest x (num_triangles, 2) in m
+    #: index (num_triangles,) of the segment of each triangle, ascending
     segment: npt.NDArray[np.int32]
-    outward: Array
+    outward: Array  #: unit normals (num_triangles, 3) away from the axis
+    #: index (num_triangles,) of the wall in its segment's ``plates``; larger indices are diaphragms
     wall: npt.NDArray[np.int32]
-    plates: Sequence[Sequence[str]]
+    plates: Sequence[Sequence[str]]  #: names of the plates of each segment
+    #: stress components (num_own, num_own_triangles, 6) in Pa of each segment, for unit values of
+    #: its coordinates
     modes: Sequence[Modes]
-    states: Sequence[Modes]
-    time: Array
-    axial: npt.NDArray[np.float32]
+    states: Sequence[Modes]  #: coordinates (num_times, num_own) of each segment
+    time: Array  #: times (num_times,) in s
+    axial: npt.NDArray[np.float32]  #: constant stress (num_triangles,) of axial forces in Pa
 
     @classmethod
     def from_fields(cls, fields: xr.Dataset) -> ShellStress:
