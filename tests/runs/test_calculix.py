@@ -126,12 +126,13 @@ def test_boxes_buckle_in_calculix_as_here(
     """Reference: other code, CalculiX, linear buckling on the same mesh; factors between 1 and
     2."""
     shell, load, forces = box.pressed(n)
-    text = deck(box.name, [shell], [], [load], f"*BUCKLE\n{count}")
+    text = deck(box.name, [shell], [], [load], f"*BUCKLE\n{count + 1}")
     (tmp_path / "box.inp").write_text(text, "utf-8")
     subprocess.run(["ccx", "box"], cwd=tmp_path, check=True, capture_output=True)
     found = re.findall(r"^ +\d+ +(\d\.\d+E[+-]\d+)$", (tmp_path / "box.dat").read_text(), re.M)
     ours = buckling_modes(shell, forces, count).factors
-    assert sorted(map(float, found)) == pytest.approx(ours, rel=tolerance)
+    # With one factor more, the iteration of CalculiX does not miss one of two equal factors.
+    assert sorted(map(float, found))[:count] == pytest.approx(ours, rel=tolerance)
     if box.section is BOXES[0].section:
         documented = CALCULIX[0][1][n] * BOXES[0].compression / box.compression
         assert min(map(float, found)) == pytest.approx(documented, rel=1e-5)

@@ -49,7 +49,7 @@ class Shell(ModelTable):
     """the kind of model"""
     mesh_size: Length = 0.1
     """the edge length of the triangles in m, outside contacts and loads"""
-    contact_tolerance: ContactTolerance = 0.01
+    contact_tolerance: ContactTolerance = 0.02
     """the permitted relative error of the local compliance of walls, for which the mesh is refined
     at contacts, or 'any' for a uniform mesh"""
     modes: Modes | None = None
