@@ -157,7 +157,7 @@ def quality_notes(
         if model.mesh_error is not None:
             yield QualityNote(
                 "mesh",
-                f"{name}: the mesh changes the local contact compliance by "
+                f"{name}: the mesh error of the local contact compliance is "
                 f"{_percent(model.mesh_error)}, by extrapolation to an infinitely fine mesh.",
             )
     name, worst = max(models.items(), key=lambda moving_force: moving_force[1].energy_residual)

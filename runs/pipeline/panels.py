@@ -172,8 +172,9 @@ def panel_table(panels: Sequence[PanelBuckling], system: System) -> Table:
         Column("buckling factor", [one.factor for one in panels], ".3g"),
     ]
     note = (
-        "Under the largest loads at rest. Long panels on simple supports, stresses in interaction: "
-        "k = 4 in compression, 23.9 in bending, 5.34 in shear; without loads of pads."
+        "Static state under the largest loads. Walls are long panels on simple supports, with "
+        "k = 4 in compression, 23.9 in bending, 5.34 in shear, and their interaction; pad forces "
+        "are neglected."
     )
     return Table("Buckling of walls, estimate", columns, [note])
 

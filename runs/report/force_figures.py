@@ -288,9 +288,9 @@ def stress_history(run: FigureContext) -> list[Figure]:
         )
         caption = (
             f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "
-            f"each station and support, in every {run.time[-1] / time.size:.2g} s. Beside a line "
-            f"of contact the stress of a triangle grows with mesh refinement, and shows only "
-            f"place and time; the mean over a patch of half a wall converges."
+            f"each station and support, in every {run.time[-1] / time.size:.2g} s. Beside a "
+            f"contact line the stress of a triangle grows with mesh refinement: use it only for "
+            f"place and time. The mean over a patch of half a wall converges."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))
     return figures

@@ -23,7 +23,7 @@ def limit_table(results: Results) -> Table | None:
         Column(name, [check.limit.shown(check.values.get(name)) for check in checks])
         for name in results.main_models
     ]
-    notes = [f"{results.main_models[0]} decides; without a value of it, the next model decides."]
+    notes = [f"{results.main_models[0]} governs; if it has no value, the next model governs."]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 
 

@@ -310,7 +310,7 @@ def energies(run: FigureContext) -> list[Figure]:
     more = " and the initial energy" if start else ""
     caption = (
         f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
-        f"equals the {of}{more}, up to the residual of the next figure."
+        f"equals the {of}{more}, except for the residual in the next figure."
     )
     title = f"{name}: work of the loads, stored and dissipated energy"
     return [run.finish(sheet, axes, "energies", title, caption, part="numerics")]
@@ -327,8 +327,8 @@ def residuals(run: FigureContext) -> list[Figure]:
     axes.set_yscale("log")
     axes.set(xlabel="time (s)", ylabel="residual / maximum work (–)", xlim=(0.0, run.time[-1]))
     caption = (
-        "Kinetic, strain and contact energy, plus losses, less the work of the loads, over the "
-        "largest work: running maximum. Without contact the motion is exact to round-off."
+        "Kinetic, strain and contact energy plus losses less the work of the loads, divided by "
+        "the largest work; running maximum. Without contact it is round-off."
     )
     title = f"Energy residual: up to {scientific(highest(worst), 2)} of the work"
     return [run.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]

@@ -101,7 +101,7 @@ def envelopes(run: FigureContext) -> list[Figure]:
         for name, several in envelopes_of_models.items()
     }
     caption = (
-        "Minimum and maximum of the section forces of each segment over the run, along it."
+        "Minimum and maximum of the section forces over the run, along each segment."
         + initial_position_note(run.case)
     )
     return _draw_panels(run, lines, "envelopes", "Section forces in motion", caption)

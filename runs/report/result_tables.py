@@ -377,8 +377,8 @@ def stress_table(results: Results) -> Table | None:
         columns.append(Column("utilisation", plates_used, ".3g", "%"))
     notes = (
         "Outer fibre: axial stress from section forces. Plate: von Mises stress with plate "
-        "bending, mean over a patch of half a wall near stations and supports. Utilisation: part "
-        "of the yield strength.",
+        "bending, mean over a patch of half a wall near stations and supports. Utilisation: "
+        "fraction of the yield strength.",
     )
     return Table("Stress", columns, notes, "stress")
 
@@ -453,7 +453,7 @@ def life_table(results: Results) -> Table | None:
         columns.append(Column("damage of the life", [one.life_damage for one in lives], ".3g"))
     notes = [
         "Rainflow ranges of the outer fibre's stress where it varies most. Damage-equivalent "
-        "range: one cycle per run with the same damage for the slope 3."
+        "range: one cycle of this range per run causes the same damage at the slope 3."
     ]
     if len(columns) > 6:
         notes.append("Runs to failure: number of runs until the damage is 1; empty without damage.")

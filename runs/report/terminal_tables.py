@@ -149,8 +149,8 @@ def _model_notes(results: Results) -> Iterator[str]:
     for name, model in results.summary.models.items():
         if errors := model.reduction_errors:
             yield (
-                f"{name}: {model.modes} coordinates; error of the local compliance at contacts "
-                f"{number(errors['contact_compliance'], 1)}, of tip and head "
-                f"{number(errors['readings'], 1)}, of the mesh at contacts "
+                f"{name}: {model.modes} coordinates; reduction error of the local contact "
+                f"compliance {number(errors['contact_compliance'], 1)}, of tip and head "
+                f"{number(errors['readings'], 1)}; mesh error of the local contact compliance "
                 f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}"
             )

@@ -434,6 +434,6 @@ def test_every_run_shows_the_errors_of_its_reduction() -> None:
     case = case_file.load(str(CASES / "paper.toml"))
     results = Results(case, xr.Dataset(), summary_of({"shell": shell}))
     assert printed(print_models, results).splitlines()[-1] == (
-        "shell: 110 coordinates; error of the local compliance at contacts 2 × 10⁻⁹, of tip and "
-        "head 8 × 10⁻⁷, of the mesh at contacts 0.83 %"
+        "shell: 110 coordinates; reduction error of the local contact compliance 2 × 10⁻⁹, of tip "
+        "and head 8 × 10⁻⁷; mesh error of the local contact compliance 0.83 %"
     )
