@@ -116,6 +116,13 @@ def paper_law() -> PowerContact:
 
 
 @pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """Return an empty folder in which the test works, so that messages are predictable."""
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.fixture
 def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw one figure per run in tests of other things: figures take longer than beam motions."""
     from runs.report import figures

@@ -14,10 +14,10 @@ import typer
 import protractile as pt
 from runs import cli
 from runs.case.build import build_boom
-from runs.case.reading import load
 from runs.case.schema import case_schema
 from studies.convergence import STUDIES
 from tests.docs.conftest import DOCS, merged, toml_blocks
+from tests.runs.case_texts import read_case, table
 
 ROOT = DOCS.parent
 GUIDES = sorted(path.name for path in (DOCS / "how-to").glob("*.md"))
@@ -26,30 +26,14 @@ PAGES = [page for page in PAGES if not {"api", "generated"} & {*page.relative_to
 FRAGMENTS = [(guide, n) for guide in GUIDES for n in range(len(toml_blocks(f"how-to/{guide}")))]
 
 
-def as_toml(table: dict[str, Any]) -> str:
-    """Return a table of a case file as TOML, its tables inline."""
-
-    def value(of: Any) -> str:
-        if isinstance(of, dict):
-            return "{ " + ", ".join(f'"{k}" = {value(v)}' for k, v in of.items()) + " }"
-        if isinstance(of, list):
-            return "[" + ", ".join(map(value, of)) + "]"
-        return str(of).lower() if isinstance(of, bool) else repr(of)
-
-    return "\n".join(f'"{key}" = {value(entry)}' for key, entry in table.items())
-
-
 @pytest.mark.parametrize(("guide", "nth"), FRAGMENTS)
 def test_a_fragment_makes_a_boom(guide: str, nth: int, lift: str, tmp_path: Path) -> None:
     """A fragment of a guide, in place of the tutorial's tables, makes a case."""
     case = merged(tomllib.loads(lift), toml_blocks(f"how-to/{guide}")[nth])
-    path = tmp_path / "my-lift.toml"
-    path.write_text(as_toml(case), "utf-8")
-    assert build_boom(load(str(path))).segments[0].name == "base"
+    assert build_boom(read_case(tmp_path, table("", **case))).segments[0].name == "base"
 
 
-def test_code_of_the_guides_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def test_code_of_the_guides_runs(here: Path) -> None:
     names: dict[str, Any] = {"pt": pt}
     page = (DOCS / "how-to" / "notebooks.md").read_text("utf-8")
     for code in page.split("```python\n")[1:]:
@@ -114,9 +98,9 @@ def test_each_key_of_the_schema_has_its_row(reference: ModuleType) -> None:
     sections = dict(re.findall(r"^\((.*?)\)=\n((?:(?!^\().*\n?)*)", reference.case_tables(), re.M))
     tables = {"Case": schema} | schema["$defs"]
     assert sections.keys() == {name.lower() for name in tables}
-    for name, table in tables.items():
+    for name, one in tables.items():
         rows = re.findall(r"^\| `(\w+)` \|", sections[name.lower()], re.M)
-        assert rows == [*table["properties"]]
+        assert rows == [*one["properties"]]
 
 
 def test_the_page_names_each_table() -> None:

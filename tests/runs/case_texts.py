@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from runs import CASES
 from runs.case import reading
 from runs.case.messages import BadInput
 from runs.case.schema import Case
@@ -48,13 +49,16 @@ def elements(name: str, **keys: object) -> str:
 _SIZES = "height", "width", "flange", "web"
 
 
-def box(name: str, span: tuple[float, float], section: tuple[float, ...], more: str = "") -> str:
-    """Return a segment by height, width, flange and web in m, with further keys."""
+def box(
+    name: str, place: float | tuple[float, float], section: tuple[float, ...], more: str = ""
+) -> str:
+    """Return a segment of a length or a span by height, width, flange and web, with more keys."""
+    where = f"length = {place}" if isinstance(place, float) else f"span = {list(place)}"
     sizes = (f"{key} = {m}" for key, m in zip(_SIZES, section, strict=True))
     return f"""
 [[segment]]
 name = "{name}"
-span = {list(span)}
+{where}
 section = {{ {", ".join(sizes)} }}
 {more}
 """
@@ -75,10 +79,10 @@ exponent = 1.0
 """
 
 
-def read_case(folder: Path, text: str) -> Case:
+def read_case(folder: Path, content: str | bytes) -> Case:
     """Return the case of a text, from a file in a folder."""
     path = folder / "case.toml"
-    path.write_text(text, encoding="utf-8")
+    path.write_bytes(content if isinstance(content, bytes) else content.encode())
     return reading.load(str(path))
 
 
@@ -90,8 +94,13 @@ def refused(line: str) -> Iterator[None]:
     assert str(error.value) == line
 
 
-def refusal(folder: Path, text: str) -> str:
+def shipped(name: str) -> Case:
+    """Return a case that comes with the project."""
+    return reading.load(str(CASES / f"{name}.toml"))
+
+
+def refusal(folder: Path, content: str | bytes) -> str:
     """Why a case of a text is refused, behind the name of its file."""
     with pytest.raises(BadInput) as refused:
-        read_case(folder, text)
+        read_case(folder, content)
     return str(refused.value).removeprefix(f"{folder / 'case.toml'}: ")

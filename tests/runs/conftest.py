@@ -12,9 +12,8 @@ from tests.runs.sweeping import COARSE, FAST, Planned
 
 
 @pytest.fixture
-def planned(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Planned:
+def planned(here: Path) -> Planned:
     """Plans a sweep of case.toml, the coarse case until shortly after its first contact."""
-    monkeypatch.chdir(tmp_path)
     text = COARSE.read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.2")
     Path("case.toml").write_text(text, encoding="utf-8")
 

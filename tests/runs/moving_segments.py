@@ -7,13 +7,12 @@ import xarray as xr
 
 from geometry.arrays import Array
 from geometry.mesh import mesh_segment
-from runs import CASES
 from runs.case.build import build_boom
-from runs.case.reading import load
 from runs.case.schema import Case
 from runs.report.scene import Scene
+from tests.runs.case_texts import shipped
 
-CASE = load(str(CASES / "coarse.toml"))
+CASE = shipped("coarse")
 BOOM = build_boom(CASE)
 OUTER, INNER = (segment.section_at(10.0) for segment in BOOM.segments)
 CLEARANCE = 7.0e-3

@@ -15,6 +15,7 @@ from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Verdict
 from runs.pipeline.results import Results
+from tests.runs.case_texts import shipped
 from tests.runs.summaries import model_summary, summary_of
 
 PAPER = CASES / "paper.toml"
@@ -32,7 +33,7 @@ PEAKS = {
 
 def paper() -> Case:
     """Return the paper's case with these models, judged by all statements."""
-    found = case_file.select(case_file.load(str(PAPER)), str(PAPER), list(PEAKS))
+    found = case_file.select(shipped("paper"), str(PAPER), list(PEAKS))
     return found.model_copy(update={"statements": tuple(STATEMENTS)})
 
 

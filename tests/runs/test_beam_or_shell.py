@@ -19,18 +19,15 @@ pytestmark = pytest.mark.slow
 CASE = CASES / "beam-or-shell.toml"
 
 
-def test_better_beams_are_nearer_to_the_shell(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_better_beams_are_nearer_to_the_shell(here: Path) -> None:
     """Reference: other code, the shell; each beam has what the one before it lacks."""
-    monkeypatch.chdir(tmp_path)
     text = CASE.read_text(encoding="utf-8").replace("duration = 5.0", "duration = 1.0")
     assert text.count("acceleration = 1.0") == 1
     text = text.replace("acceleration = 1.0", "acceleration = 10.0")
     Path("case.toml").write_text(text, encoding="utf-8")
     keys = ["joint.play=0.004,0.014"]
     sweeping = plan("case.toml", keys, None, 0.4, "shell")
-    cache, out = Cache(tmp_path / "cache"), tmp_path / "out"
+    cache, out = Cache(here / "cache"), here / "out"
     sweep.prepare(out, "case.toml")
     with ThreadPoolExecutor(2) as pool:
         outcomes = sweep.run_points(sweeping, out, pool, lambda *_: None, cache)

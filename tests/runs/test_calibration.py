@@ -29,39 +29,20 @@ from runs.report.output import write
 from runs.report.pages import Addition
 from studies.motions import move
 from studies.working_load import Point, set_point
+from tests.runs.case_texts import elements, read_case, table
 from tests.runs.coarse_case import COARSE
 
 pytestmark = pytest.mark.slow
 
-CALIBRATED = """
-[[model]]
-name = "series"
-kind = "kantorovich"
-terms = [12, 12]
-base = "complete"
-contact = { stiffness = 1e9, exponent = 1.0 }
-
-[[model]]
-name = "sprung"
-kind = "finite-element"
-calibrated_by = "shell"
-contact = { stiffness = 1e9, exponent = 1.0 }
-
-[[model]]
-name = "fielded"
-kind = "finite-element"
-calibrated_by = "shell"
-section_fields = true
-contact = { stiffness = 1e9, exponent = 1.0 }
-
-[[model]]
-name = "sprung-series"
-kind = "kantorovich"
-terms = [12, 12]
-base = "complete"
-calibrated_by = "shell"
-contact = { stiffness = 1e9, exponent = 1.0 }
-"""
+CONTACT = {"contact": {"stiffness": 1e9, "exponent": 1.0}}
+SHELL = {"calibrated_by": "shell"} | CONTACT
+SERIES = {"kind": "kantorovich", "terms": [12, 12], "base": "complete"}
+CALIBRATED = (
+    table("[[model]]", name="series", **SERIES, **CONTACT)
+    + elements("sprung", **SHELL)
+    + elements("fielded", section_fields=True, **SHELL)
+    + table("[[model]]", name="sprung-series", **SERIES, **SHELL)
+)
 # What rubs makes motions comparable pointwise.
 RUBBING = COARSE.replace(
     "exponent = 2.0\n", "exponent = 2.0\nfriction = 0.2\nnormal_forces = [4500.0, 5000.0]\n", 1
@@ -70,9 +51,7 @@ RUBBING = COARSE.replace(
 
 @pytest.fixture(name="case", scope="module")
 def _case(tmp_path_factory: pytest.TempPathFactory) -> Case:
-    path = tmp_path_factory.mktemp("case") / "case.toml"
-    path.write_text(RUBBING + CALIBRATED, encoding="utf-8")
-    return case_file.load(str(path))
+    return read_case(tmp_path_factory.mktemp("case"), RUBBING + CALIBRATED)
 
 
 @pytest.fixture(name="built", scope="module")
@@ -134,9 +113,7 @@ def test_a_case_without_its_shell_still_has_it(case: Case, tmp_path: Path) -> No
     alone = case_file.select(case, "", ["sprung"], 0.5)
     (model,) = alone.models
     assert model.needs_shell
-    path = tmp_path / "alone.toml"
-    path.write_text(toml.dumps(alone), encoding="utf-8")
-    (read,) = case_file.load(str(path)).models
+    (read,) = read_case(tmp_path, toml.dumps(alone)).models
     shell = read.model_dump()["calibrated_by"]
     assert (shell["name"], shell["mesh_size"]) == ("shell", 0.5)
     assert isinstance(read.calibrated_by, Shell)

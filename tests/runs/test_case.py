@@ -18,57 +18,38 @@ from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.shell import Shell
-from runs.case.messages import BadInput
 from runs.case.reading import load, select
 from runs.case.schema import Case, case_schema
 from tests.runs.bad_edits import BAD_EDITS
-from tests.runs.case_texts import refused
+from tests.runs.case_texts import joint, read_case, refusal, refused, shipped, table
 from tests.runs.coarse_case import COARSE
 from tests.touching import contact_laws
 
 
 def test_beam_elements_are_shear_flexible_unless_the_case_says_otherwise(tmp_path: Path) -> None:
-    path = tmp_path / "case.toml"
-    path.write_text(COARSE.replace('theory = "euler-bernoulli"\n', ""), "utf-8")
-    theories = {model.theory for model in load(str(path)).models if isinstance(model, BeamElements)}
+    case = read_case(tmp_path, COARSE.replace('theory = "euler-bernoulli"\n', ""))
+    theories = {model.theory for model in case.models if isinstance(model, BeamElements)}
     assert theories == {"timoshenko"}
-
-
-@pytest.fixture
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return an empty working folder, so that messages are predictable."""
-    monkeypatch.chdir(tmp_path)
-    return tmp_path
-
-
-def complaint(folder: Path, content: str | bytes) -> str:
-    """Return the message with which a case is refused."""
-    data = content if isinstance(content, bytes) else content.encode()
-    (folder / "case.toml").write_bytes(data)
-    with pytest.raises(BadInput) as error:
-        load("case.toml")
-    return str(error.value)
 
 
 @pytest.mark.parametrize("name", ["paper", "coarse"])
 def test_the_effective_case_reads_back_as_itself(name: str) -> None:
-    case = load(str(CASES / f"{name}.toml"))
+    case = shipped(name)
     assert Case.model_validate(tomllib.loads(toml.dumps(case))) == case
 
 
-def test_any_text_and_number_survives_writing(folder: Path) -> None:
+def test_any_text_and_number_survives_writing(tmp_path: Path) -> None:
     """Reference: analytic. Quotes, escapes, and numbers that no short form holds."""
     title = 'quote " back\\slash é ∆ 𝔅'
-    case = load(str(CASES / "paper.toml")).model_copy(update={"title": title})
+    case = shipped("paper").model_copy(update={"title": title})
     joint = replace(case.joints[0], stiffness=1.0e13 / 3.0, stiffness_below=0.0)
     case = case.model_copy(update={"joints": (joint,), "demand": ("S1", "S5")})
-    (folder / "case.toml").write_text(toml.dumps(case), encoding="utf-8")
-    assert load("case.toml") == case
+    assert read_case(tmp_path, toml.dumps(case)) == case
 
 
-def test_the_paper_case_is_the_paper(folder: Path) -> None:
+def test_the_paper_case_is_the_paper() -> None:
     """Reference: external, the data of the paper."""
-    case = load(str(CASES / "paper.toml"))
+    case = shipped("paper")
     boom = build_boom(case)
     outer, inner = boom.segments
     assert (outer.start, outer.supports[1].x, inner.start, outer.end, inner.end) == (
@@ -86,7 +67,7 @@ def test_the_paper_case_is_the_paper(folder: Path) -> None:
 
 def test_inferred_sections_have_the_beam_s_numbers_and_the_joint_s_play() -> None:
     """Reference: analytic, area and second moment of the plates themselves."""
-    boom = build_boom(load(str(CASES / "paper.toml")))
+    boom = build_boom(shipped("paper"))
     for segment in boom.segments:
         assert segment.section.mass_per_length(7850.0) == pytest.approx(
             segment.mass_per_length, rel=1e-9
@@ -95,12 +76,10 @@ def test_inferred_sections_have_the_beam_s_numbers_and_the_joint_s_play() -> Non
             segment.second_moment_of_area, rel=1e-9
         )
     outer, inner = (segment.section for segment in boom.segments)
-    assert outer is not None
-    assert inner is not None
     assert free_room(outer, inner)[0] == pytest.approx(0.014, rel=1e-9)
 
 
-def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(folder: Path) -> None:
+def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(tmp_path: Path) -> None:
     """Reference: analytic. A thin box: A = 2(h + b)t, J = A h²/12 (1 + 3/r)/(1 + 1/r) nearly."""
     given = "section = { height = 0.6, width = 0.4, flange = 0.001, web = 0.001 }"
     text = COARSE.replace("mass_per_length = 83.16\n", given + "\n")
@@ -109,72 +88,55 @@ def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(folder: Path) -
     text = text.replace("height_to_width = 1.5\n", "")
     # The inner section that would fill this room does not exist; beams do without.
     text = text[: text.index('[[model]]\nname = "timoshenko"')]
-    (folder / "case.toml").write_text(text, encoding="utf-8")
-    outer, _ = build_boom(load("case.toml")).segments
+    outer, _ = build_boom(read_case(tmp_path, text)).segments
     assert outer.mass_per_length == pytest.approx(7850.0 * 2.0 * 1.0 * 0.001, rel=1e-12)
     thin = 0.002 * 0.6**2 / 12.0 * (1.0 + 3.0 / 1.5) / (1.0 + 1.0 / 1.5)
     assert outer.second_moment_of_area == pytest.approx(thin, rel=1e-4)
     assert outer.rotary_inertia == 7850.0 * outer.second_moment_of_area
 
 
-def test_a_section_goes_inwards_through_all_joints(folder: Path) -> None:
+def test_a_section_goes_inwards_through_all_joints(tmp_path: Path) -> None:
     """Reference: analytic, the clearances of a boom of three segments in any order."""
     text = COARSE.replace("span = [9.0, 19.0]", "span = [9.0, 19.0]\nsupports = []")
-    third = """[[segment]]
-name = "third"
-span = [18.0, 26.0]
-mass_per_length = 40.0
-second_moment_of_area = 1.40e-4
-
-"""
-    joints = """[[joint]]
-outer = "inner"
-inner = "third"
-stations = [18.0, 19.0]
-play = 0.008
-stiffness = 1e13
-
-"""
+    beam = {"mass_per_length": 40.0, "second_moment_of_area": 1.40e-4}
+    third = table("[[segment]]", name="third", span=[18.0, 26.0], **beam)
     # The joint of the innermost segment comes first.
-    text = text.replace("[[joint]]", f"{third}{joints}[[joint]]")
+    inmost = joint("third", "inner", 0.008, (18.0, 19.0), "stiffness = 1e13")
+    text = text.replace("[[joint]]", f"{third}{inmost}[[joint]]")
     text = text.replace("terms = [2, 2]", "terms = [2, 2, 2]")
     text = text.replace("terms = [2, 3]", "terms = [2, 3, 3]")
-    (folder / "case.toml").write_text(text, encoding="utf-8")
-    outer, inner, innermost = (s.section for s in build_boom(load("case.toml")).segments)
-    assert outer is not None
-    assert inner is not None
-    assert innermost is not None
+    outer, inner, innermost = (s.section for s in build_boom(read_case(tmp_path, text)).segments)
     assert free_room(outer, inner)[0] == pytest.approx(0.014, rel=1e-9)
     assert free_room(inner, innermost)[0] == pytest.approx(0.008, rel=1e-9)
 
 
 def test_a_model_s_own_contact_law_keeps_the_joint_s_clearance() -> None:
-    case = load(str(CASES / "coarse.toml"))
+    case = shipped("coarse")
     laws = {model.name: contact_laws(case, model)[0] for model in case.models}
     assert laws["kantorovich-4"] == PowerContact(1e13, 2.0).behind(7.0e-3)
     assert laws["beam-fe"] == PowerContact(1e9, 1.0).behind(7.0e-3)
 
 
-def test_a_beam_s_case_does_without_sections(folder: Path) -> None:
+def test_a_beam_s_case_does_without_sections(tmp_path: Path) -> None:
     text = COARSE.replace("height_to_width = 1.5\n", "")
     text = text[: text.index('[[model]]\nname = "timoshenko"')]
-    (folder / "case.toml").write_text(text, encoding="utf-8")
-    assert [segment.section for segment in build_boom(load("case.toml")).segments] == [None, None]
+    boom = build_boom(read_case(tmp_path, text))
+    assert [segment.section for segment in boom.segments] == [None, None]
 
 
 def test_selection_keeps_the_order_and_meshes_the_shells_anew() -> None:
-    case = select(load(str(CASES / "coarse.toml")), "coarse.toml", ["shell", "beam-fe"], 0.5)
+    case = select(shipped("coarse"), "coarse.toml", ["shell", "beam-fe"], 0.5)
     assert [model.name for model in case.models] == ["beam-fe", "shell"]
     assert case.models[1].model_dump()["mesh_size"] == 0.5
     assert case.models[1].model_dump()["contact_tolerance"] == "any"
 
 
 def test_selection_changes_the_members_of_ensembles() -> None:
-    coarse = load(str(CASES / "coarse.toml"))
+    coarse = shipped("coarse")
     assert coarse.ensemble is None
     some = select(coarse, "coarse.toml", members=7).ensemble
     assert (some.members, some.relative, some.seed, some.vary) == (7, 1e-9, 1, "load")
-    paper = load(str(CASES / "paper.toml"))
+    paper = shipped("paper")
     changed = select(paper, "paper.toml", members=3).ensemble
     assert changed.model_dump() == {**paper.ensemble.model_dump(), "members": 3}
     assert select(paper, "paper.toml", members=0).ensemble is None
@@ -185,23 +147,23 @@ def test_refuses_ensembles_of_other_sizes(members: int) -> None:
     with refused(
         f"paper.toml: --members: must be from 2 to 10000, or 0 for no ensembles, got {members}"
     ):
-        select(load(str(CASES / "paper.toml")), "paper.toml", members=members)
+        select(shipped("paper"), "paper.toml", members=members)
 
 
 def test_every_key_is_described_and_no_other_is_allowed() -> None:
     schema = Case.model_json_schema()
-    for table in [schema, *schema["$defs"].values()]:
-        assert table["additionalProperties"] is False
-        for key, rule in table["properties"].items():
-            assert rule.get("description"), f"{table['title']}.{key}"
+    for one in [schema, *schema["$defs"].values()]:
+        assert one["additionalProperties"] is False
+        for key, rule in one["properties"].items():
+            assert rule.get("description"), f"{one['title']}.{key}"
 
 
 @pytest.mark.parametrize(("good", "bad", "line"), BAD_EDITS, ids=[line for *_, line in BAD_EDITS])
 def test_refuses_a_bad_case_with_one_exact_line(
-    folder: Path, good: str, bad: str, line: str
+    tmp_path: Path, good: str, bad: str, line: str
 ) -> None:
     assert good in COARSE
-    assert complaint(folder, COARSE.replace(good, bad, 1)) == f"case.toml: {line}"
+    assert refusal(tmp_path, COARSE.replace(good, bad, 1)) == line
 
 
 BODY = COARSE[: COARSE.index("[[model]]")]
@@ -222,9 +184,9 @@ BODY = COARSE[: COARSE.index("[[model]]")]
     ],
 )  # fmt: skip
 def test_refuses_a_bad_file_with_one_exact_line(
-    folder: Path, content: str | bytes, line: str
+    tmp_path: Path, content: str | bytes, line: str
 ) -> None:
-    assert complaint(folder, content) == f"case.toml: {line}"
+    assert refusal(tmp_path, content) == line
 
 
 @pytest.mark.parametrize(
@@ -235,14 +197,14 @@ def test_refuses_a_bad_file_with_one_exact_line(
         ("./../nowhere.toml", "file: does not exist; give the path of a case file"),
     ],
 )
-def test_unreadable_file_is_named_as_given(folder: Path, path: str, line: str) -> None:
+@pytest.mark.usefixtures("here")
+def test_unreadable_file_is_named_as_given(path: str, line: str) -> None:
     with refused(f"{path}: {line}"):
         load(path)
 
 
-def test_a_byte_order_mark_is_no_fault(folder: Path) -> None:
-    (folder / "case.toml").write_text(COARSE, encoding="utf-8-sig")
-    assert load("case.toml").time.duration == 0.6
+def test_a_byte_order_mark_is_no_fault(tmp_path: Path) -> None:
+    assert read_case(tmp_path, COARSE.encode("utf-8-sig")).time.duration == 0.6
 
 
 @pytest.mark.parametrize(
@@ -258,14 +220,14 @@ def test_a_byte_order_mark_is_no_fault(folder: Path) -> None:
     ],
 )  # fmt: skip
 def test_refuses_a_selection_with_one_exact_line(models: Any, mesh_size: Any, line: str) -> None:
-    case = load(str(CASES / "coarse.toml"))
+    case = shipped("coarse")
     with refused(f"coarse.toml: {line}"):
         select(case, "coarse.toml", models, mesh_size)
 
 
 @pytest.mark.parametrize(("modes", "chosen"), [("auto", "auto"), ("12", 12)])
 def test_chooses_the_coordinates_of_the_shells(modes: str, chosen: object) -> None:
-    case = select(load(str(CASES / "coarse.toml")), "coarse.toml", modes=modes)
+    case = select(shipped("coarse"), "coarse.toml", modes=modes)
     assert [m.modes for m in case.models if isinstance(m, Shell)] == [chosen]
 
 
@@ -279,7 +241,7 @@ def test_chooses_the_coordinates_of_the_shells(modes: str, chosen: object) -> No
 )
 def test_refuses_coordinates_with_one_exact_line(models: Any, modes: str, line: str) -> None:
     with refused(f"coarse.toml: {line}"):
-        select(load(str(CASES / "coarse.toml")), "coarse.toml", models, modes=modes)
+        select(shipped("coarse"), "coarse.toml", models, modes=modes)
 
 
 VALIDATOR = jsonschema.Draft202012Validator(case_schema())

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from runs import CASES
-from runs.case.reading import load
 from runs.pipeline.model_quality import main_models
 from runs.report import theme
 from runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
+from tests.runs.case_texts import shipped
 
 
 def unpacked(packed: dict[str, str]) -> np.ndarray:
@@ -85,7 +84,7 @@ def test_the_library_comes_whole() -> None:
 )
 def test_shell_beam_and_bonded_are_read_first(name: str, first: set[str]) -> None:
     """Reference: the case files."""
-    case = load(str(CASES / f"{name}.toml"))
+    case = shipped(name)
     assert main_models(case, [model.name for model in case.models]) == first
 
 

@@ -34,11 +34,8 @@ Protractile = Callable[[str], Answer]
 
 
 @pytest.fixture
-def protractile(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> Protractile:
+def protractile(here: Path, capsys: pytest.CaptureFixture[str]) -> Protractile:
     """Return a runner of commands in an empty folder with case.toml, the coarse case."""
-    monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(COARSE, encoding="utf-8")
 
     def run(command: str) -> Answer:

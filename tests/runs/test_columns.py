@@ -17,9 +17,7 @@ LOAD = '[[load]]\nsegment = "inner"\n{keys}\nfile = "gust.csv"\n\n[[model]]'
 TABLE = ((0.0, 0.5), (0.25, -1500.0))
 
 
-@pytest.fixture(autouse=True)
-def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("here")
 
 
 def case_of(csv: str, keys: str, key: str = "load") -> Case:

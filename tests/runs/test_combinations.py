@@ -7,13 +7,11 @@ from pathlib import Path
 
 import pytest
 
-from runs.case.checked_case import CheckedCase
 from runs.case.conversion import convert_to_si
-from runs.check import print_check
 from runs.pipeline.combinations import combination_results, combination_tables
 from runs.pipeline.largest_loads import StaticExtreme
 from tests.runs.case_texts import read_case, refusal
-from tests.runs.summaries import printed
+from tests.runs.summaries import printed_check
 
 G = 9.80665
 # A stiff lift of two boxes, so that deflections hardly change lever arms.
@@ -185,7 +183,7 @@ def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     assert [name for name, tip in marked.items() if "*" in tip] == [governing]
     cells = {row[0]: row[1:] for row in envelope.rows}
     assert cells["tip"][2] == governing
-    text = printed(print_check, CheckedCase(case), width=80)
+    text = printed_check(case, 80)
     assert "Combinations, the largest results" in text
     assert max(map(len, text.splitlines())) <= 80
 

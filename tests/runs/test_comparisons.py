@@ -10,7 +10,6 @@ import pytest
 import xarray as xr
 
 from dynamics.trajectory import PointwiseDifferences
-from runs import CASES
 from runs.case import reading as case_file
 from runs.case.schema import Case, StopTable
 from runs.pipeline.comparison import Distributions, PeakDifferences
@@ -20,9 +19,9 @@ from runs.report.document import render
 from runs.report.model_tables import law_table, model_table, step_table
 from runs.report.pages import Addition
 from runs.report.predictability import comparison_tables, predictability_tables
+from tests.runs.case_texts import shipped
 from tests.runs.summaries import model_summary, steps_for_peaks, summary_of
 
-COARSE = CASES / "coarse.toml"
 PRESSED = 4500.0, 5000.0
 SERIES = ["kantorovich-4", "kantorovich-5"]
 TIME = np.arange(10_001) / 1000
@@ -31,7 +30,7 @@ CUTOFF = 2.0
 
 def case_of(*names: str, friction: float = 0.0, pressed: tuple[float, ...] = PRESSED) -> Case:
     """Return the coarse case with some of its models, and friction in its joint."""
-    case = case_file.select(case_file.load(str(COARSE)), "", names, None)
+    case = case_file.select(shipped("coarse"), "", names, None)
     rubbing = {"friction": friction, "normal_forces": pressed}
     joints = tuple(replace(joint, **rubbing) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
@@ -161,7 +160,7 @@ MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-bonded")
 
 def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
     """Ten seconds of two models with play and one without; ``changes`` to the first of them."""
-    case = case_file.select(case_file.load(str(COARSE)), "", MODELS, None)
+    case = case_file.select(shipped("coarse"), "", MODELS, None)
     rubbing = {"friction": friction, "normal_forces": (4500.0, 5000.0)}
     joints = tuple(replace(joint, **rubbing) for joint in case.joints)
     time = case.time.model_copy(update={"duration": 10.0})

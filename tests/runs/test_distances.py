@@ -73,9 +73,8 @@ def test_a_pad_force_is_held() -> None:
 
 
 @pytest.fixture
-def against(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Plan:
+def against(here: Path) -> Plan:
     """Return a sweep of the coarse case with friction, until after its first peak."""
-    monkeypatch.chdir(tmp_path)
     text = COARSE.read_text(encoding="utf-8")
     rubbing = text.replace("exponent = 2.0\n", f"exponent = 2.0\n{RUBBING}", 1)
     rubbing = rubbing.replace("duration = 0.6", "duration = 0.9")

@@ -2,7 +2,6 @@
 """What a case says of how its boom is drawn out, slips in it, and what a run tells of it."""
 
 from collections.abc import Sequence
-from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -10,19 +9,14 @@ import pytest
 import xarray as xr
 from matplotlib import rc_context
 from matplotlib.patches import Polygon
-from rich.console import Console
 
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import PiecewiseLinear
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.drive import resolving_times
 from runs.case.elastic_drive import elastic_drives
-from runs.case.messages import BadInput
-from runs.case.reading import load
-from runs.check import print_check
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
@@ -33,17 +27,22 @@ from runs.report.figures import draw
 from runs.report.result_tables import drive_table, record_tables, rest_tables
 from runs.report.summary_table import summary_table
 from runs.sweep.points import plan
+from tests.runs.case_texts import elements, read_case, refusal, shipped, table
+from tests.runs.summaries import printed_check
 
 DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
 DRIVE = "drive = { travel = 4.0, time = 5.0, least_overlap = 1.0 }\n"
+SHORT, FAST = ("duration = 7.0", "duration = 0.3"), ("time = 5.0", "time = 0.2")
 TABLE = "drive = { table = [[0.0, 0.0], [1.0, 2.0], [4.0, -1.0]] }\n"
 
 
-def case_file(folder: Path, before: str, after: str) -> str:
-    assert before in DRAWN
-    path = folder / "case.toml"
-    path.write_text(DRAWN.replace(before, after), encoding="utf-8")
-    return str(path)
+def edited(*edits: tuple[str, str]) -> str:
+    """Return the text of the case with something else in place of what it says."""
+    text = DRAWN
+    for before, after in edits:
+        assert before in text
+        text = text.replace(before, after)
+    return text
 
 
 @pytest.mark.parametrize(
@@ -63,7 +62,7 @@ def test_a_drive_has_a_history(
 ) -> None:
     """Reference: analytic, where each drive is at the start, half way and at its end."""
     (tmp_path / "ways.csv").write_text("t (ms);way (mm)\n0;0\n1000;2000\n4000;-1000\n")
-    found = build_boom(load(case_file(tmp_path, DRIVE, drive))).joints[0].drive
+    found = build_boom(read_case(tmp_path, edited((DRIVE, drive)))).joints[0].drive
     assert (found is None) == (ways is None)
     if found is not None:
         assert found.history(np.array([0.0, 2.5, 6.0])) == pytest.approx(ways)
@@ -74,10 +73,7 @@ def test_a_drive_has_a_history(
 def test_a_drive_in_other_units(tmp_path: Path) -> None:
     """Reference: analytic, 4000 mm are 4 m, 2e2 N/mm are 2e5 N/m, 0.5 N s/mm are 500 N s/m."""
     text = DRAWN.split("[[segment]]")[0].replace("[time]", 'units = "mm-t-s"\n\n[time]')
-    path = tmp_path / "case.toml"
-    path.write_text(
-        text.replace("2.1e11", "2.1e5").replace("7850.0", "7.85e-9")
-        + """
+    boom = """
 [[segment]]
 name = "arm"
 length = 10000.0
@@ -100,15 +96,9 @@ stations = ["tail", "head"]
 play = 14.0
 stiffness = 1e6
 exponent = 1.0
-
-[[model]]
-name = "beam"
-kind = "finite-element"
-theory = "euler-bernoulli"
-""",
-        encoding="utf-8",
-    )
-    case = load(str(path))
+"""
+    text = text.replace("2.1e11", "2.1e5").replace("7850.0", "7.85e-9")
+    case = read_case(tmp_path, text + boom + elements("beam", theory="euler-bernoulli"))
     drive, (pulled,) = (
         build_boom(case).joints[0].drive,
         elastic_drives(case, build_boom(case)).values(),
@@ -191,31 +181,28 @@ theory = "euler-bernoulli"
 )  # fmt: skip
 def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str) -> None:
     """Reference: the line that a user reads."""
-    with pytest.raises(BadInput) as caught:
-        load(case_file(tmp_path, before, after))
-    assert str(caught.value).removeprefix(f"{tmp_path}/case.toml: ") == message
+    assert refusal(tmp_path, edited((before, after))) == message
 
 
 @pytest.mark.parametrize("name", ["extension", "drive_power-2", "drive_lag-3"])
 def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
     """Reference: the line that a user reads."""
-    path = tmp_path / "case.toml"
-    observe = '[[observe]]\nname = "{}"\nsegment = "fly"\nx = "head"\n'
     text = (CASES / "crane-telescopes.toml").read_text(encoding="utf-8")
-    path.write_text(f"{text}\n{observe.format(f'{name}-of')}", encoding="utf-8")
-    assert load(str(path)).observe[-1].name == f"{name}-of"
-    path.write_text(f"{text}\n{observe.format(name)}", encoding="utf-8")
-    with pytest.raises(BadInput, match=f"'{name}' is the name of another output already; give it"):
-        load(str(path))
+    other, same = (
+        text + table("[[observe]]", name=one, segment="fly", x="head")
+        for one in (f"{name}-of", name)
+    )
+    assert read_case(tmp_path, other).observe[-1].name == f"{name}-of"
+    assert f"'{name}' is the name of another output already; give it" in refusal(tmp_path, same)
 
 
 def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) -> None:
     """Reference: by hand; the drive begins as the load's sine is largest, between even times."""
-    load_ = '[[load]]\nsegment = "inner"\nx = "head"\nmagnitude = 500.0\nfrequency = 1.2\n'
-    path = Path(case_file(tmp_path, "time = 5.0", "start = 0.2083333333333, time = 0.02"))
-    text = path.read_text(encoding="utf-8").replace("duration = 7.0", "duration = 0.3")
-    path.write_text(text.replace("[[joint]]", f"{load_}\n[[joint]]"), encoding="utf-8")
-    own = run_case(load(str(path)), models=["kantorovich-5"]).summary.design.models
+    late = ("time = 5.0", "start = 0.2083333333333, time = 0.02"), SHORT
+    text = edited(*late) + table(
+        "[[load]]", segment="inner", x="head", magnitude=500, frequency=1.2
+    )
+    own = run_case(read_case(tmp_path, text), models=["kantorovich-5"]).summary.design.models
     (begun, largest), bonded = own["kantorovich-5"].static, own["kantorovich-5"].static_bonded
     assert largest.time == pytest.approx(0.25 / 1.2, abs=1e-9)
     assert [rest.time for rest in bonded] == [begun.time, largest.time]
@@ -223,17 +210,13 @@ def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) ->
 
 def test_of_no_rest_nothing_is_said_where_it_is_drawn_to() -> None:
     """Reference: by hand; no model of a boom that is drawn may have a rest."""
-    assert extension_note(load(str(CASES / "drawn-out.toml")), []) == ""
+    assert extension_note(shipped("drawn-out"), []) == ""
 
 
 @pytest.mark.usefixtures("unprinted")
 def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
     """Reference: analytic, the ways of the case, and the drive's force from contact forces."""
-    path = case_file(tmp_path, "duration = 7.0", "duration = 0.3")
-    path_of = Path(path)
-    text = path_of.read_text(encoding="utf-8").replace("time = 5.0", "time = 0.2")
-    path_of.write_text(text, encoding="utf-8")
-    results = run_case(load(path), models=["kantorovich-5"])
+    results = run_case(read_case(tmp_path, edited(SHORT, FAST)), models=["kantorovich-5"])
     data = results.trajectories.sel(model="kantorovich-5")
     assert float(data["extension"][-1]) == pytest.approx(4.0)
     force = 0.2 * np.abs(data["contact_force"]).sum("station")
@@ -249,22 +232,18 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
 
 def test_friction_of_a_drive_in_a_flat_boom_acts_along_it_alone(tmp_path: Path) -> None:
     """Reference: the same joint with normal forces of zero from the sides."""
-    path = case_file(tmp_path, "friction = 0.2 ", "normal_forces = [0.0, 0.0]\nfriction = 0.2 ")
-    boom = build_boom(load(str(CASES / "drawn-out.toml")))
+    text = edited(("friction = 0.2 ", "normal_forces = [0.0, 0.0]\nfriction = 0.2 "))
+    boom = build_boom(shipped("drawn-out"))
     assert boom.joints[0].friction == 0.2
-    assert boom.joints == build_boom(load(path)).joints
+    assert boom.joints == build_boom(read_case(tmp_path, text)).joints
 
 
 def test_drive_works_against_axial_forces(tmp_path: Path) -> None:
     """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m."""
-    path = Path(case_file(tmp_path, "duration = 7.0", "duration = 0.3"))
-    text = path.read_text(encoding="utf-8").replace("time = 5.0", "time = 0.2")
-    text = text.replace("friction = 0.2 ", "locked_at = 1.0\nfriction = 0.2 ")
+    text = edited(SHORT, FAST, ("friction = 0.2 ", "locked_at = 1.0\nfriction = 0.2 "))
     works = []
     for pressed in ("", "[gravity]\nacceleration = 10.0\nangle = 30.0\n[[axial]]\nforce = 2e4\n"):
-        still = text.replace("[[joint]]", f"{pressed}\n[[joint]]")
-        path.write_text(still, encoding="utf-8")
-        data = run_case(load(str(path)), models=["kantorovich-5"]).trajectories
+        data = run_case(read_case(tmp_path, text + pressed), models=["kantorovich-5"]).trajectories
         power = data["drive_power"].sel(model="kantorovich-5").values
         works.append(float(power[1:].sum()) * 1.0e-3)
     assert works[1] - works[0] == pytest.approx(4.0 * (0.5 * 5507.0 + 2.0e4), rel=0.1)
@@ -340,7 +319,7 @@ def _check_figures(figures: Sequence[Figure]) -> None:
 def test_a_crane_telescopes_out_of_all_its_segments(time: float, extension: float) -> None:
     """Reference: the same boom built as far drawn out, without drives, at rest under its load; its
     nodes are at its stations, where elements of 1 m that are drawn there miss 0.3 %."""
-    drawn = load(str(CASES / "crane-telescopes.toml"))
+    drawn = shipped("crane-telescopes")
     still = change(drawn, **{"joint.drive.travel": 0.0, "joint.extension": extension})
     tips = []
     for case in (drawn, still):
@@ -364,26 +343,24 @@ def test_a_sweep_varies_how_fast_it_is_drawn() -> None:
 
 def test_check_prints_drives() -> None:
     """Reference: the case, and analytic: an S-curve is twice as fast as it is in the mean."""
-    case = load(str(CASES / "drawn-out.toml"))
-    shown = StringIO()
-    print_check(CheckedCase(case), Console(file=shown, width=200))
+    case = shipped("drawn-out")
     assert (
         "A drive extends 'inner' by 4 m from 0 to 5 s, at 1.6 m/s at most; the smallest overlap "
         "is 1 m.\n"
-    ) in shown.getvalue()
+    ) in printed_check(case)
 
 
 def test_largest_speed_is_the_steepest_slope(tmp_path: Path) -> None:
     """Reference: by hand, 0.1 m in 0.01 s."""
     jerk = "drive = { table = [[0.0, 0.0], [20.0, 1.0], [20.01, 1.1], [40.0, 2.0]] }\n"
-    case = load(case_file(tmp_path, DRIVE, jerk))
+    case = read_case(tmp_path, edited((DRIVE, jerk)))
     (line,) = drive_lines(build_boom(case), case.system)
     assert ", at 10 m/s at most; " in line
 
 
 def test_a_drawing_shows_where_a_segment_is_drawn_to() -> None:
     """Reference: the case; the inner segment of 10 m from 5 m on goes 4 m farther."""
-    case = load(str(CASES / "drawn-out.toml"))
+    case = shipped("drawn-out")
     with rc_context(theme.RC):
         sheet = boom_sheet(case, build_boom(case))
     (dashed,) = [patch for patch in sheet.axes[1].patches if patch.get_linestyle() == "--"]

@@ -27,7 +27,7 @@ from runs.pipeline.estimates import (
     sweep_cost,
 )
 from runs.sweep import points as sweep_points
-from tests.runs.case_texts import refused
+from tests.runs.case_texts import refused, shipped
 from tests.runs.coarse_case import COARSE
 from tests.runs.summaries import printed
 
@@ -52,9 +52,7 @@ print(1024 * int(most.split()[1]))
 SERIES = "--models", "kantorovich-5"
 
 
-@pytest.fixture(autouse=True)
-def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("here")
 
 
 def write(*edits: tuple[str, str]) -> None:
@@ -122,7 +120,7 @@ def test_memory_is_not_above_the_estimate_and_not_far_below(
 )  # fmt: skip
 def test_times_are_within_a_factor_of_two(name: str, seconds: float) -> None:
     """Reference: external, wall times of all models on two idle cores, in ``summary.json``."""
-    case = case_file.load(str(CASES / f"{name}.toml"))
+    case = shipped(name)
     assert 0.5 * seconds <= models_cost(Preview(CheckedCase(case))).seconds <= 2.0 * seconds
 
 
@@ -143,7 +141,7 @@ def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolera
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     from shell_model.boom_shell import segment_mesh
 
-    case = case_file.load(str(CASES / f"{name}.toml"))
+    case = shipped(name)
     (shell,) = select_kind(Shell, case.models)
     shell = shell.model_copy(update={"mesh_size": mesh_size, "contact_tolerance": tolerance})
     boom = build_boom(case)

@@ -24,30 +24,18 @@ from runs.report.opensees import _points, write
 from studies.motions import friction_case, model_of, move
 from studies.pads import with_pads
 from tests.other_codes import INSTALLED, run_elsewhere
-from tests.runs.case_texts import refused
+from tests.runs.case_texts import elements, read_case, refused, shipped, table
 
 # A load that grows, a weight, a spring: what the paper's boom does not have.
-MORE = """
-[[load]]
-segment = "inner"
-x = 14.0
-magnitude = 300.0
-ramp = 0.2
-
-[[load]]
-segment = "inner"
-from = 11.0
-to = 13.5
-magnitude = 40.0
-"""
-
-MODEL = """
-[[model]]
-name = "timoshenko"
-kind = "finite-element"
-theory = "timoshenko"
-contact = { stiffness = 1e9, exponent = 1.0 }
-"""
+MORE = "".join(
+    table("[[load]]", segment="inner", **keys)
+    for keys in (
+        {"x": 14.0, "magnitude": 300.0, "ramp": 0.2},
+        {"from": 11.0, "to": 13.5, "magnitude": 40.0},
+    )
+)
+CONTACT = {"stiffness": 1e9, "exponent": 1.0}
+MODEL = elements("timoshenko", theory="timoshenko", contact=CONTACT)
 
 
 def run(script: Path, *arguments: str) -> float:
@@ -60,13 +48,11 @@ def run(script: Path, *arguments: str) -> float:
 
 def boom_with_more(folder: Path) -> Case:
     text = (CASES / "friction-walk.toml").read_text(encoding="utf-8")
-    path = folder / "more.toml"
     heavier = text.replace(
         "supports = [0.0, 2.0]", "supports = [0.0, { x = 2.0, stiffness = 5e7 }]"
     )
     boom, _, _ = heavier.replace("[[joint]]", f"{MORE}\n[[joint]]", 1).partition("[[model]]")
-    path.write_text(boom + MODEL, encoding="utf-8")
-    return case_file.load(str(path))
+    return read_case(folder, boom + MODEL)
 
 
 class _Sinking(ModuleType):
@@ -181,7 +167,7 @@ def test_points_follow_a_law_behind_its_spring() -> None:
 
 
 def test_unsupported_cases_are_refused(tmp_path: Path) -> None:
-    case = case_file.load(str(CASES / "spatial.toml"))
+    case = shipped("spatial")
     with refused(
         "case.toml: joint.lateral_play: cannot be exported to OpenSees, for which a boom must be "
         "flat and undamped, start from rest, and have friction under given normal_forces only; "

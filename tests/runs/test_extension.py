@@ -14,49 +14,28 @@ from runs.case.schema import Case
 from runs.cli import main
 from runs.sweep.points import plan
 from tests.beam_model.exact import bonded_frequencies
-from tests.runs.case_texts import refused
+from tests.runs.case_texts import STEEL, box, elements, refused, table
 from tests.runs.coarse_case import COARSE
 
-CRANE = """
+CRANE = f"""
 title = "A boom of three"
-
-[time]
-duration = 0.1
-
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-
-[[segment]]
-name = "base"
-length = 10.0
-supports = ["tail", { x = { tail = 2.0 }, stiffness = 1e8 }]
-section = { height = 0.50, width = 0.32, flange = 0.008, web = 0.006 }
-collars = [{ span = [{ head = 0.5 }, "head"], thickness = 0.01 }]
-
-[[segment]]
-name = "middle"
-length = 9.5
-section = { height = 0.46, width = 0.28, flange = 0.006, web = 0.005 }
-masses = [{ x = { head = 0.25 }, mass = 40.0 }]
-load = -500.0
-
-[[segment]]
-name = "fly"
-length = 9.0
-section = { height = 0.42, width = 0.25, flange = 0.005, web = 0.004 }
-load = -300.0
-
+time = {{ duration = 0.1 }}
+start = {{ velocity = {{ fly = {{ turn = 0.01, x = "tail" }} }} }}
+{STEEL}
+{box("base", 10.0, (0.50, 0.32, 0.008, 0.006))}
+supports = ["tail", {{ x = {{ tail = 2.0 }}, stiffness = 1e8 }}]
+collars = [{{ span = [{{ head = 0.5 }}, "head"], thickness = 0.01 }}]
+{box("middle", 9.5, (0.46, 0.28, 0.006, 0.005), "load = -500.0")}
+masses = [{{ x = {{ head = 0.25 }}, mass = 40.0 }}]
+{box("fly", 9.0, (0.42, 0.25, 0.005, 0.004), "load = -300.0")}
 [[joint]]
 outer = "base"
 inner = "middle"
 extension = 8.0
-stations = ["tail", { head = 0.1 }]
+stations = ["tail", {{ head = 0.1 }}]
 play = 0.006
 stiffness = 1e9
 exponent = 1.0
-
 [[joint]]
 outer = "middle"
 inner = "fly"
@@ -65,35 +44,15 @@ stations = ["tail", "head"]
 play = 0.006
 stiffness = 1e9
 exponent = 1.0
-
 [[load]]
 segment = "fly"
-x = "head"
-magnitude = -2000.0
-
-[[load]]
-segment = "fly"
-from = { head = 4.0 }
+from = {{ head = 4.0 }}
 to = "head"
 magnitude = -100.0
-
-[[stop]]
-segment = "middle"
-x = { tail = 1.0 }
-play = 0.5
-stiffness = 1e7
-
-[[observe]]
-name = "seat"
-segment = "fly"
-x = { head = 1.0 }
-
-[start]
-velocity = { fly = { turn = 0.01, x = "tail" } }
-
-[[model]]
-name = "beam"
-kind = "finite-element"
+{table("[[load]]", segment="fly", x="head", magnitude=-2000.0)}
+{table("[[stop]]", segment="middle", x={"tail": 1.0}, play=0.5, stiffness=1e7)}
+{table("[[observe]]", name="seat", segment="fly", x={"head": 1.0})}
+{elements("beam")}
 """
 
 PAPER = (
@@ -114,9 +73,7 @@ BY_HAND = (
 )  # fmt: skip
 
 
-@pytest.fixture(autouse=True)
-def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("here")
 
 
 def case_of(text: str) -> Case:
@@ -196,7 +153,7 @@ def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
         ('["tail", { head = 0.1 }]', '["tail", { head = -0.1 }]',
          "joint[1].stations[2]: must be a number of m, 'tail', 'head' or a distance in m from one "
          "of them such as { tail = 0.2 }, got {'head': -0.1}"),
-        ('x = "head"', "x = inf", "load[1].x: must be a finite number, got inf"),
+        ('x = "head"', "x = inf", "load[2].x: must be a finite number, got inf"),
     ],
 )  # fmt: skip
 def test_a_contradiction_is_one_line(relative: str, wrong: str, line: str) -> None:

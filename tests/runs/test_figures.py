@@ -15,7 +15,6 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.lines import Line2D
 
 from protractile.cases import run_case
-from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.pipeline.summary import FirstPeak
@@ -25,18 +24,18 @@ from runs.report.figures import draw
 from runs.report.force_figures import contact_peaks, first_contacts, friction
 from runs.report.model_tables import model_table
 from runs.report.motion_figures import close_up, energies, heads, horizons, tip
+from tests.runs.case_texts import shipped
 from tests.runs.summaries import changed
 
 pytestmark = pytest.mark.slow
 
 
-COARSE = CASES / "coarse.toml"
 WITH_PLAY = ["kantorovich-4", "kantorovich-5", "beam-fe"]
 
 
 @pytest.fixture(scope="module")
 def results() -> Results:
-    return run_case(case_file.load(str(COARSE)), [*WITH_PLAY, "beam-fe-bonded"])
+    return run_case(shipped("coarse"), [*WITH_PLAY, "beam-fe-bonded"])
 
 
 # Pixels per inch of the figures.

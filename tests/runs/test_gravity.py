@@ -11,14 +11,13 @@ from protractile.cases import run_case
 from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from tests.runs.case_texts import read_case, refusal
+from tests.runs.case_texts import REST, elements, read_case, refusal
 
 STEEL = "youngs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\nyield_strength = 690e6\n"
 ALUMINIUM = "{ youngs_modulus = 7e10, poissons_ratio = 0.33, density = 2700.0 }"
 ARM = """
 title = "Arm"
-[time]
-duration = 0.1
+time = {{ duration = 0.1 }}
 {material}
 [[segment]]
 name = "arm"
@@ -26,27 +25,17 @@ span = [0.0, 10.0]
 supports = [{{ x = 0.0, kind = "clamped" }}]
 section = {{ height = 0.4, width = 0.3, flange = 0.01, web = 0.008 }}
 {segment}
-[[model]]
-name = "beam"
-kind = "finite-element"
-theory = "euler-bernoulli"
-element_length = 2.5
-rotary_inertia = false
 {rest}
 """
+ELEMENTS = elements("beam", theory="euler-bernoulli", element_length=2.5, rotary_inertia=False)
 BOX = BoxSection(height=0.4, width=0.3, flange=0.01, web=0.008)
 AREA, SECOND_MOMENT = BOX.area, BOX.second_moment_of_area
-LIFTED = """
-masses = [{ x = 4.0, mass = 120.0 }]
-[payload]
-mass = 500.0
-[start]
-state = "equilibrium"
-"""
+LIFTED = f"masses = [{{ x = 4.0, mass = 120.0 }}]\n[payload]\nmass = 500.0\n{REST}"
 
 
 def text_of(rest: str = "", material: str = "", segment: str = "") -> str:
-    return ARM.format(material=material or f"[material]\n{STEEL}", segment=segment, rest=rest)
+    material = material or f"[material]\n{STEEL}"
+    return ARM.format(material=material, segment=segment, rest=rest) + ELEMENTS
 
 
 def read(folder: Path, rest: str = "", material: str = "", segment: str = "") -> Case:

@@ -13,11 +13,10 @@ from runs import CASES
 from runs.case.build import build_boom
 from runs.case.hoist import HoistTable, WindTable, with_initial_slack
 from runs.case.load_tables import LoadTable
-from runs.case.reading import load
 from runs.case.schema import Case, EnsembleTable, StartTable
 from runs.pipeline.bonded import bonded_system
 from runs.pipeline.models import build
-from tests.runs.case_texts import refused
+from tests.runs.case_texts import refusal, shipped
 
 HOIST = (CASES / "hoist.toml").read_text(encoding="utf-8")
 
@@ -34,7 +33,7 @@ def static_tip(case: Case, time: float) -> float:
 
 def test_hanging_load_at_rest() -> None:
     """Reference: the same boom under the load across it and the same force along it."""
-    case = of_beam(load(str(CASES / "hoist.toml")))
+    case = of_beam(shipped("hoist"))
     weight = 5000.0 * 9.80665
     across = LoadTable(segment="fly", x="head", magnitude=-0.5 * weight)  # type: ignore[arg-type] # read as in a file
     force = case.axial[0].force
@@ -46,7 +45,7 @@ def test_hanging_load_at_rest() -> None:
 
 def test_results_of_a_hoist() -> None:
     """Reference: the height at which the load leaves the ground, and the energy balance."""
-    case = of_beam(load(str(CASES / "hoist.toml")))
+    case = of_beam(shipped("hoist"))
     case = change(case, **{"hoist.phi_2_min": 1.1, "hoist.beta_2": 0.34})
     results = run_case(change(case, **{"time.duration": 4.0, "time.output_step": 2e-3}))
     (summary,) = results.summary.models.values()
@@ -67,7 +66,7 @@ def test_results_of_a_hoist() -> None:
 
 def test_work_of_the_winch() -> None:
     """Reference: the energy balance of a horizontal boom, in which only the winch moves rows."""
-    case = of_beam(load(str(CASES / "hoist.toml")))
+    case = of_beam(shipped("hoist"))
     results = run_case(change(case, **{"time.duration": 1.0, "gravity.angle": 0.0}))
     drives = results.summary.design.models["series"].drives
     work = float(results.trajectories["drive_work"].values[0, -1])
@@ -79,7 +78,7 @@ def test_work_of_the_winch() -> None:
 
 def test_ensemble_and_comparison_without_play() -> None:
     """Reference: energy balance of all members, and the stiffer boom without play."""
-    case = change(of_beam(load(str(CASES / "hoist.toml"))), **{"time.duration": 0.6})
+    case = change(of_beam(shipped("hoist")), **{"time.duration": 0.6})
     table = EnsembleTable(members=2, vary="load", relative=1e-3, seed=1)
     results = run_case(case.model_copy(update={"ensemble": table}))
     found = results.summary.models["series"].ensemble
@@ -92,7 +91,7 @@ def test_ensemble_and_comparison_without_play() -> None:
 
 def test_rope_of_a_boom_without_play_is_straight_at_rest() -> None:
     """Reference: the series without play. A taut rope would raise the first frequency to 1.9 Hz."""
-    case = of_beam(load(str(CASES / "hoist.toml")))
+    case = of_beam(shipped("hoist"))
     boom, (model,) = build_boom(case), case.models
     system = build(case, boom, model).system.gather_loads()
     bonded = bonded_system(system, [equilibrium(system, system.load)])[0]
@@ -105,7 +104,7 @@ def test_rope_of_a_boom_without_play_is_straight_at_rest() -> None:
 
 def test_dropped_load() -> None:
     """Reference: a force of the same size at the tip that is released at t = 0."""
-    case = change(of_beam(load(str(CASES / "hoist.toml"))), **{"time.duration": 0.4})
+    case = change(of_beam(shipped("hoist")), **{"time.duration": 0.4})
     weight = LoadTable(
         segment="fly",
         x="head",  # type: ignore[arg-type] # read as in a file
@@ -123,7 +122,7 @@ def test_dropped_load() -> None:
 
 def test_load_swings_under_wind() -> None:
     """Reference: analytic, 2 F l/(m g) of a force F that acts at once."""
-    case = of_beam(load(str(CASES / "hoist.toml")))
+    case = of_beam(shipped("hoist"))
     wind = WindTable(direction="x", force=500.0)
     hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, pendulum=2.0, wind=(wind,))
     still = case.model_copy(update={"hoist": hung, "start": StartTable()})
@@ -167,7 +166,4 @@ def test_load_swings_under_wind() -> None:
 )  # fmt: skip
 def test_bad_input(tmp_path: Path, before: str, after: str, message: str) -> None:
     assert before in HOIST
-    path = tmp_path / "case.toml"
-    path.write_text(HOIST.replace(before, after), encoding="utf-8")
-    with refused(f"{path}: {message}"):
-        load(str(path))
+    assert refusal(tmp_path, HOIST.replace(before, after)) == message

@@ -16,10 +16,10 @@ from pathlib import Path
 import pytest
 
 from runs import CASES
-from runs.case import reading as case_file
 from runs.folder.versions import packages, program, sources
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import addition, evidence
+from tests.runs.case_texts import shipped
 
 ROOT = Path(__file__).parents[2]
 # What each room knows besides itself.
@@ -207,7 +207,7 @@ SLOW = "figure-slow-peaks", "table-horizons", "table-slow-peaks"
 )  # fmt: skip
 def test_evidence_of_each_statement(case: str, changed: dict[str, list[str]]) -> None:
     """Reference: the statements themselves; with friction others are meant."""
-    found = evidence(case_file.load(str(CASES / f"{case}.toml")))
+    found = evidence(shipped(case))
     assert {key: [*anchors] for key, anchors in found.items()} == {
         "S1": [CLOSE_UP],
         "S2": [TIP, *SLOW],
@@ -227,7 +227,7 @@ def test_evidence_of_each_statement(case: str, changed: dict[str, list[str]]) ->
 @pytest.mark.parametrize(("case", "numbers"), [("paper", (6, 7)), ("paper-friction", (8, 9))])
 def test_figures_name_their_counterparts(case: str, numbers: tuple[int, int]) -> None:
     """Reference: the paper's Figs. 6 and 7 are without, 8 and 9 with friction."""
-    found = case_file.load(str(CASES / f"{case}.toml"))
+    found = shipped(case)
     remarks = addition(found, []).remarks
     for place, number in zip(("tip", "head"), numbers, strict=True):
         assert f"counterpart of Fig. {number} of the paper" in remarks[f"figure-{place}"]

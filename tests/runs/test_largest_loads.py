@@ -15,9 +15,7 @@ from geometry.boom import Boom, Load, Material, Segment, Support
 from geometry.profiles import hexagon
 from geometry.section import BoxSection
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.conversion import convert_to_si
-from runs.check import print_check
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.largest_loads import (
     BeamStates,
@@ -30,8 +28,8 @@ from runs.pipeline.section_forces import section_forces
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import Fibres, outer_corners
 from studies.reference_models.statics import static_response
-from tests.runs.case_texts import box, joint, read_case
-from tests.runs.summaries import answers_of, printed
+from tests.runs.case_texts import CLAMPED, STEEL, box, elements, joint, read_case, table
+from tests.runs.summaries import answers_of, printed_check
 
 # Depth of outer fibres and second moment of area of the boxes below.
 ARM, FLY = (0.40, 0.30, 0.008, 0.006), (0.36, 0.26, 0.006, 0.005)
@@ -40,19 +38,15 @@ RAMP = '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -2000.0\nramp = 0.1\n
 SINE = '[[load]]\nsegment = "arm"\nx = 6.0\nmagnitude = 500.0\nfrequency = 2.0\n'
 
 
-def boom_of(loads: str, of_joint: str = PAD, more: str = "") -> str:
+def boom_of(loads: str, of_joint: str = PAD) -> str:
     """Return a case of two boxes with pads, clamped at the base."""
-    held = 'supports = [{ x = 0.0, kind = "clamped" }]'
     return (
-        'title = "Two boxes"\n[time]\nduration = 1.0\n'
-        "[material]\nyoungs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\n"
-        "yield_strength = 3e8\n"
-        + box("arm", (0.0, 8.0), ARM, held)
+        f'title = "Two boxes"\n[time]\nduration = 1.0\n{STEEL}yield_strength = 3e8\n'
+        + box("arm", (0.0, 8.0), ARM, CLAMPED)
         + box("fly", (6.0, 14.0), FLY)
         + joint("fly", "arm", 0.004, (6.0, 8.0), of_joint)
         + loads
-        + '\n[[model]]\nname = "beam"\nkind = "finite-element"\ntheory = "timoshenko"\n'
-        + more
+        + elements("beam", theory="timoshenko")
     )
 
 
@@ -177,7 +171,7 @@ def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
 def test_statics_name_their_model_and_fit_a_terminal(tmp_path: Path) -> None:
     """Reference: exact text at 80 columns."""
     text = boom_of(RAMP + SINE)
-    shown = printed(print_check, CheckedCase(read_case(tmp_path, text)), width=80)
+    shown = printed_check(read_case(tmp_path, text), 80)
     assert max(map(len, shown.splitlines())) <= 80
     assert "time of   utilisation" in shown
     assert "Static results at t = 0 and under the maximum loads" in shown
@@ -188,62 +182,33 @@ def test_statics_name_their_model_and_fit_a_terminal(tmp_path: Path) -> None:
     ) in shown
 
 
-CASE = """
+CASE = f"""
 title = "A cantilever, loaded suddenly"
 time = {{ duration = 0.5, output_step = 1e-3 }}
-
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
+{STEEL}
 yield_strength = 3e8
-
-[[segment]]
-name = "arm"
-span = [0.0, 10.0]
-supports = [{{ x = 0.0, kind = "clamped" }}]
-section = {{ height = 0.40, width = 0.30, flange = 0.008, web = 0.006 }}
+{box("arm", (0.0, 10.0), ARM, CLAMPED)}
 load = -1000.0
-
-[[model]]
-name = "one"
-{model}
 """
-
-
+BEAM = elements("one", theory="timoshenko", element_length=0.25)
+SIDE = "lateral_load = 500.0\n"
 # An arm of 6 m with another in it, in space.
-SIDEWAYS = CASE.replace("[0.0, 10.0]", "[0.0, 6.0]").replace(
-    "load = -1000.0",
-    """load = -1000.0
-lateral_load = 500.0
-
-[[segment]]
-name = "inner"
-span = [5.0, 10.0]
-section = {{ height = 0.35, width = 0.26, flange = 0.008, web = 0.006 }}
-load = -1000.0
-lateral_load = 500.0
-
-[[joint]]
-outer = "arm"
-inner = "inner"
-stations = ["tail", "head"]
-play = 0.004
-lateral_play = 0.004
-stiffness = 1e8
-exponent = 1.0
-""",
+SIDEWAYS = (
+    CASE.replace("[0.0, 10.0]", "[0.0, 6.0]")
+    + SIDE
+    + box("inner", (5.0, 10.0), (0.35, 0.26, 0.008, 0.006), f"load = -1000.0\n{SIDE}")
+    + joint("inner", "arm", 0.004, (5.0, 6.0), "lateral_play = 0.004\nstiffness = 1e8")
 )
 
 
 def answers(model: str, folder: Path, case: str = CASE) -> ModelDesignResults:
-    return answers_of(read_case(folder, case.format(model=model))).models["one"]
+    return answers_of(read_case(folder, case + model)).models["one"]
 
 
 def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
     """Reference: analytic. A boom of one coordinate swings to twice its rest after half a
     period."""
-    series = 'kind = "kantorovich"\nterms = [1]\nbase = "complete"'
+    series = table("[[model]]", name="one", kind="kantorovich", terms=[1], base="complete")
     found = answers(series, tmp_path)
     assert {peak.what for peak in found.motion.peaks} == {"deflection", "bending moment"}
     for peak in found.motion.peaks:
@@ -258,8 +223,7 @@ def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
 
 def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
     """Reference: by hand. 1000 N/m on 10 m: 10 kN, 50 kN m, σ = M c/J with c = 0.204 m."""
-    beam = 'kind = "finite-element"\ntheory = "timoshenko"\nelement_length = 0.25'
-    found = answers(beam, tmp_path)
+    found = answers(BEAM, tmp_path)
     still = {peak.what: peak.at_rest for peak in found.motion.peaks}
     assert still["reaction"] == pytest.approx(1e4, rel=1e-6)
     assert still["moment at the support"] == pytest.approx(5e4, rel=1e-3)
@@ -274,8 +238,7 @@ def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
 
 def test_lateral_reactions_are_reported(tmp_path: Path) -> None:
     """Reference: by hand: 11 and 5.5 kN, 1000 (6 · 3 + 5 · 7.5) N m and half of it, no torque."""
-    beam = 'kind = "finite-element"\ntheory = "timoshenko"\nelement_length = 0.25'
-    found = answers(beam, tmp_path, SIDEWAYS)
+    found = answers(BEAM, tmp_path, SIDEWAYS)
     wall = {p.what: p.at_rest for p in found.motion.peaks if "arm" in p.where}
     assert wall["reaction"] == pytest.approx(1.1e4, rel=1e-6)
     assert wall["lateral reaction"] == pytest.approx(5.5e3, rel=1e-6)

@@ -27,10 +27,7 @@ from tests.runs.cantilever import (
 from tests.runs.case_texts import refused
 from tests.runs.sweeping import run
 
-
-@pytest.fixture(autouse=True)
-def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("here")
 
 
 def write(limits: str, text: str = CANTILEVER) -> str:

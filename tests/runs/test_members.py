@@ -14,7 +14,6 @@ from matplotlib.figure import Figure as Sheet
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
-from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case, EnsembleTable
@@ -28,7 +27,7 @@ from runs.pipeline.summary import EnsembleSummary
 from runs.report.figures import draw
 from runs.report.output import write
 from runs.report.pages import Addition
-from tests.runs.case_texts import refusal
+from tests.runs.case_texts import refusal, shipped
 from tests.runs.coarse_case import COARSE
 
 SERIES = ["kantorovich-4", "kantorovich-5"]
@@ -38,7 +37,7 @@ STEP = 1.0e-3
 
 @pytest.fixture(scope="module")
 def case() -> Case:
-    coarse = case_file.select(case_file.load(str(CASES / "coarse.toml")), "", MODELS, None)
+    coarse = case_file.select(shipped("coarse"), "", MODELS, None)
     time = coarse.time.model_copy(update={"duration": 3.0})
     table = EnsembleTable(members=5, relative=1e-6, seed=3, vary="load")
     return coarse.model_copy(update={"time": time, "ensemble": table})
@@ -231,15 +230,15 @@ def test_a_bad_table_is_one_line(table: str, line: str, tmp_path: Path) -> None:
 
 
 def test_the_paper_s_case_asks_for_ensembles() -> None:
-    table = case_file.load(str(CASES / "paper.toml")).ensemble
+    table = shipped("paper").ensemble
     assert table == EnsembleTable(members=32, relative=1e-9, seed=1, vary="load")
-    assert case_file.load(str(CASES / "coarse.toml")).ensemble is None
+    assert shipped("coarse").ensemble is None
 
 
 @pytest.fixture(scope="module")
 def five_terms() -> tuple[GapSystem, float]:
     """Return the five-term series, and the cut-off of its slow motion in Hz."""
-    case = case_file.load(str(CASES / "paper.toml"))
+    case = shipped("paper")
     boom = build_boom(case)
     model = next(model for model in case.models if model.name == "kantorovich-5")
     assert model.kind == "kantorovich"

@@ -20,12 +20,11 @@ from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
 from protractile.cases import run_case
-from runs.case import reading as case_file
 from runs.case.kinds import KINDS
 from runs.case.kinds.rigid import Rigid
 from runs.pipeline.modes import Mode, match_modes, modes
 from runs.pipeline.section_forces import LoadedModel
-from tests.runs.case_texts import refused
+from tests.runs.case_texts import read_case, refusal
 from tests.runs.coarse_case import COARSE
 from tests.runs.test_actions import CANTILEVER
 
@@ -116,10 +115,8 @@ def test_each_kind_is_listed_by_the_name_in_its_table() -> None:
 
 def test_rigid_segments_run_beside_the_others(tmp_path: Path) -> None:
     """Reference: analytic, free fall q/m of the inner segment across the clearance Δ."""
-    path = tmp_path / "case.toml"
-    text = COARSE.partition("[[model]]")[0] + RIGID
-    path.write_text(text, encoding="utf-8")
-    summary = run_case(case_file.load(str(path))).summary.models["bodies"]
+    case = read_case(tmp_path, COARSE.partition("[[model]]")[0] + RIGID)
+    summary = run_case(case).summary.models["bodies"]
     assert (summary.kind, summary.degrees_of_freedom) == ("rigid", 2)
     assert summary.energy_residual < 1e-5
     # A uniform load on a free body turns it nowhere.
@@ -139,10 +136,7 @@ def test_play_of_a_joint_is_the_play_of_its_contacts(paper_boom: Boom) -> None:
 
 
 def test_immovable_rigid_segments_are_refused(tmp_path: Path) -> None:
-    path = tmp_path / "case.toml"
-    path.write_text(CANTILEVER + RIGID, encoding="utf-8")
-    with refused(
-        f"{path}: model[1].kind: every segment is held, and no rigid one could move; give another "
-        "kind, or elastic supports"
-    ):
-        case_file.load(str(path))
+    assert refusal(tmp_path, CANTILEVER + RIGID) == (
+        "model[1].kind: every segment is held, and no rigid one could move; give another kind, or "
+        "elastic supports"
+    )

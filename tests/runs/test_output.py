@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from runs import CASES
 from runs.case import reading as case_file
 from runs.client import judge
 from runs.pipeline.context import RunContext
@@ -20,16 +19,15 @@ from runs.pipeline.run import Run, run_case
 from runs.pipeline.static_results import place_names
 from runs.report.output import write, write_csv, write_report
 from runs.report.pages import Addition
+from tests.runs.case_texts import shipped
 
 pytestmark = pytest.mark.usefixtures("few_figures")
-
-COARSE = CASES / "coarse.toml"
 
 
 @pytest.fixture(scope="module")
 def run() -> Run:
     """Return the run of a series over a twentieth of a second."""
-    case = case_file.select(case_file.load(str(COARSE)), "", ["kantorovich-4"], None)
+    case = case_file.select(shipped("coarse"), "", ["kantorovich-4"], None)
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.05})})
     finished = run_case(case, "", RunContext())
     finished.evaluate()

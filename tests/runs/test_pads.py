@@ -5,22 +5,20 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from rich.console import Console
 
 from dynamics.motion import initial_state
 from protractile.cases import run_case
-from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case
-from runs.check import print_check
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import positions, station_loads
 from runs.pipeline.summary import Summary
 from runs.report.result_tables import pad_table
 from runs.report.summary_table import summary_table
+from tests.runs.case_texts import elements, read_case
 from tests.runs.coarse_case import COARSE
+from tests.runs.summaries import printed_check
 from tests.touching import contact_laws
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"
@@ -29,13 +27,10 @@ PAD = "pad = { length = 0.2, width = 0.05, thickness = 0.02, allowable_pressure 
 
 def case_with(folder: Path, joint: str, play: float = 0.014) -> Case:
     """Return the coarse case with Timoshenko's beam alone, on the joint's own contacts."""
-    path = folder / "case.toml"
-    beam = '[[model]]\nname = "beam"\nkind = "finite-element"\nelement_length = 0.5\n'
-    text = COARSE[: COARSE.index("[[model]]")] + beam
+    text = COARSE[: COARSE.index("[[model]]")] + elements("beam", element_length=0.5)
     text = text.replace(COARSE[COARSE.index("statements") :].splitlines()[0] + "\n", "")
     text = text.replace("play = 0.014", f"play = {play}").replace(LAW, joint)
-    path.write_text(text, encoding="utf-8")
-    return case_file.load(str(path))
+    return read_case(folder, text)
 
 
 def test_pads_are_as_stiff_as_they_are_thick(tmp_path: Path) -> None:
@@ -62,12 +57,9 @@ def test_a_play_may_be_more_above_than_below(tmp_path: Path) -> None:
     assert law.force(y) == pytest.approx([-1.0e6, 0.0, 0.0, 1.0e6])
 
 
-def test_check_tells_both_sides(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    print_check(
-        CheckedCase(case_with(tmp_path, "stiffness = 1e9\nplay_above = 0.004\n")),
-        Console(width=200),
-    )
-    assert "4 above, 10 below" in capsys.readouterr().out
+def test_check_tells_both_sides(tmp_path: Path) -> None:
+    case = case_with(tmp_path, "stiffness = 1e9\nplay_above = 0.004\n")
+    assert "4 above, 10 below" in printed_check(case)
 
 
 def test_the_play_above_is_where_the_tail_presses(tmp_path: Path) -> None:

@@ -26,7 +26,7 @@ from runs.pipeline.static_results import (
     station_loads,
 )
 from runs.pipeline.statics import boom_with_play
-from tests.runs.case_texts import read_case
+from tests.runs.case_texts import read_case, shipped
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 SLENDERNESS = 80.0
@@ -117,7 +117,7 @@ section = { height = 0.4, width = 0.3, flange = 0.003, web = 0.008 }
 
 def test_bulging_walls_give_a_caution() -> None:
     """Reference: by hand, right walls that move by a part of the lateral play; beams close none."""
-    case = reading.load(str(CASES / "spatial.toml"))
+    case = shipped("spatial")
     boom, model = build_boom(case), next(m for m in case.models if m.name == "timoshenko")
     system = build(case, boom, model).system.gather_loads()
     position = positions(system)[0.0]

@@ -13,11 +13,10 @@ from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Step
 from dynamics.gap_system import GapSystem, Observer
-from runs import CASES
-from runs.case import reading as case_file
 from runs.pipeline.bonded import bonded_system
 from runs.pipeline.design_results import DesignResults, PlayDifference
 from runs.pipeline.model_quality import quality_notes
+from tests.runs.case_texts import shipped
 from tests.runs.summaries import answers_of, model_summary, summary_of
 
 if TYPE_CHECKING:
@@ -26,7 +25,7 @@ if TYPE_CHECKING:
 
 def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> DesignResults:
     """Return results of some models of the paper's boom."""
-    case = case_file.load(str(CASES / "coarse.toml"))
+    case = shipped("coarse")
     models = tuple(model for model in case.models if model.name in names)
     return answers_of(case.model_copy(update={"models": models}), comm)
 

@@ -11,9 +11,7 @@ from geometry.material import Material
 from geometry.section import BoxSection
 from geometry.segment import Segment
 from protractile.cases import run_case
-from runs import CASES as CASE_FILES
 from runs import cli
-from runs.case import reading
 from runs.pipeline.combinations import combination_results, combination_states
 from runs.pipeline.panels import WallStresses
 from runs.pipeline.proofs import (
@@ -27,7 +25,7 @@ from runs.pipeline.proofs import (
 from runs.pipeline.summary import Summary
 from runs.report.document import render
 from runs.report.pages import Addition
-from tests.runs.case_texts import read_case, refusal
+from tests.runs.case_texts import read_case, refusal, shipped
 from tests.runs.test_combinations import CASES, LIFT, by_hand
 
 G = 9.80665
@@ -305,7 +303,7 @@ def test_shipped_cases_are_proved() -> None:
     """Reference: non-regression; slender webs of the crane buckle first, the others hold."""
     failed, kinds = {}, {}
     for name in ("lift", "inspection-arm", "crane-proof"):
-        case = reading.load(str(CASE_FILES / f"{name}.toml"))
+        case = shipped(name)
         found = prove(case, combination_states(case)).proofs
         failed[name] = {(one.kind, one.part) for one in found if not one.holds}
         kinds[name] = {one.kind for one in found}

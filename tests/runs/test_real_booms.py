@@ -12,10 +12,10 @@ from beam_model.boom_modes import BoomModes
 from beam_model.statics import Elements, StaticState, static_state
 from geometry.boom import Boom, Joint, Segment
 from runs import CASES
-from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.statics import cylinder_force, reactions
+from tests.runs.case_texts import shipped
 
 GRAVITY = 9.80665
 
@@ -109,7 +109,7 @@ def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
 
 def level(name: str) -> Case:
     """Return the horizontal case under its weights alone, without axial forces but of cylinders."""
-    case = case_file.load(str(CASES / f"{name}.toml"))
+    case = shipped(name)
     gravity = case.gravity.model_copy(update={"angle": 0.0})
     return case.model_copy(update={"gravity": gravity, "axial": (), "loads": ()})
 
@@ -141,7 +141,7 @@ def second_order(boom: Boom, rest: StaticState) -> float:
 @pytest.mark.parametrize("name", LUFFED)
 def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None:
     """Reference: analytic, moments of all forces about the pin, within 0.1 %."""
-    case = case_file.load(str(CASES / f"{name}.toml"))
+    case = shipped(name)
     base, *others = case.segments
     (pin,) = base.supports
     lower = replace(pin, depth=pin.depth + lowered)

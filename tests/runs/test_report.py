@@ -17,8 +17,6 @@ from matplotlib import image
 from PIL import Image
 
 from protractile.cases import run_case
-from runs import CASES
-from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
 from runs.paper.rules import judge
@@ -31,16 +29,16 @@ from runs.report.document import render
 from runs.report.figure_context import Figure
 from runs.report.pages import Addition
 from runs.report.terminal_tables import print_models
+from tests.runs.case_texts import shipped
 from tests.runs.summaries import changed, model_summary, printed, summary_of
 
-COARSE = CASES / "coarse.toml"
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-bonded"]
 GIF = base64.b64decode("R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs=")
 
 
 @pytest.fixture(scope="module")
 def results() -> Results:
-    return run_case(case_file.load(str(COARSE)), MODELS)
+    return run_case(shipped("coarse"), MODELS)
 
 
 @pytest.fixture
@@ -326,7 +324,7 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
 def test_axial_forces_beyond_the_wall_limit_give_a_caution(name: str, cautioned: bool) -> None:
     """Reference: by hand; of these booms one alone is both pressed along and drawn out."""
     shell = model_summary().model_copy(update={"stress": object()})
-    boom = build_boom(case_file.load(str(CASES / f"{name}.toml")))
+    boom = build_boom(shipped(name))
     told = list(stress_cautions(summary_of({"beam": model_summary(), "shell": shell}), boom))
     assert [line.partition(" carry ")[0] for line in told] == (
         ["caution: the walls of shell"] if cautioned else []

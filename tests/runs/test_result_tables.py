@@ -9,8 +9,6 @@ import numpy as np
 import pytest
 
 from protractile.cases import change, run_case
-from runs import CASES
-from runs.case import reading as case_file
 from runs.pipeline.design_results import DesignResults, PlayDifference, PlayEffect
 from runs.pipeline.pads import PadLoad
 from runs.pipeline.results import Results
@@ -31,6 +29,7 @@ from runs.report.summary_table import (
 )
 from runs.report.tables import Table
 from runs.report.terminal_tables import print_results
+from tests.runs.case_texts import shipped
 from tests.runs.summaries import printed
 
 PLAYED, BONDED = "kantorovich-5", "beam-fe-bonded"
@@ -38,7 +37,7 @@ PLAYED, BONDED = "kantorovich-5", "beam-fe-bonded"
 
 @pytest.fixture(scope="module")
 def results() -> Results:
-    case = change(case_file.load(str(CASES / "coarse.toml")), **{"damping.modal": 0.02})
+    case = change(shipped("coarse"), **{"damping.modal": 0.02})
     return run_case(case, [PLAYED, BONDED])
 
 

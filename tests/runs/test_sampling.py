@@ -20,8 +20,7 @@ SCATTERED = CANTILEVER.replace(f"load = {LOAD}", f"load = {SPREAD}")
 
 
 @pytest.fixture(autouse=True)
-def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def _folder(here: Path) -> None:
     Path("case.toml").write_text(SCATTERED, encoding="utf-8")
 
 

@@ -18,9 +18,7 @@ from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Material, Segment, Stop, Support
 from geometry.joint import Drive
 from geometry.section import BoxSection
-from runs import CASES
 from runs.case.build import build_boom
-from runs.case.reading import load
 from runs.pipeline.model_output import BeamOutput, SegmentMotion
 from runs.report import theme
 from runs.report.boom_drawing import boom_sheet
@@ -30,6 +28,7 @@ from runs.report.snapshots import place_of_largest_force
 from runs.report.symbols import PAYLOAD, abbreviate, boom_symbols
 from runs.report.viewer import TRUNCATION, View, few_shapes, pack_view, symbol_lines
 from studies.gallery import change_of_shape
+from tests.runs.case_texts import shipped
 from tests.runs.moving_segments import (
     BOOM,
     CASE,
@@ -118,7 +117,7 @@ def test_contact_in_the_run_is_contact_in_the_picture(
 @pytest.fixture(scope="module")
 def in_space(shell: Scene) -> list[Scene]:
     """Two joints along z and y, and a stop, which is no contact of segments; side and above."""
-    boom = build_boom(load(str(CASES / "inspection-arm.toml")))
+    boom = build_boom(shipped("inspection-arm"))
     boom = replace(
         boom, stops=(Stop(1, boom.joints[0].stations[0], 0.04, PowerContact(1e9, 1.0).upper()),)
     )
@@ -166,7 +165,7 @@ def test_from_above_y_points_up(shell: Scene) -> None:
     comes towards the eye."""
     motion = moving_trajectories().sel(model="shell").isel(station=[0, 1, 0, 1])
     motion = motion.assign(tip_lateral=-2.0 * motion["tip"])
-    side, above = Scene.views(moving_fields(), motion, load(str(CASES / "spatial.toml")))
+    side, above = Scene.views(moving_fields(), motion, shipped("spatial"))
     assert (side.from_above, above.from_above, above.symbols) == (False, True, [])
     assert above.half_height(0) == pytest.approx(0.5 * OUTER.size("y"))
     moved = side.displacement(0.5), above.displacement(0.5)
@@ -288,7 +287,7 @@ def test_values_at_jumps_are_read_beyond_the_jump() -> None:
 
 
 def drawn(name: str) -> Figure:
-    case = load(str(CASES / f"{name}.toml"))
+    case = shipped(name)
     with rc_context(theme.RC):
         return boom_sheet(case, build_boom(case))
 
@@ -337,7 +336,7 @@ def test_boom_in_space_shows_lateral_loads() -> None:
 @pytest.mark.parametrize("name", ["paper", "crane", "three-segments"])
 def test_sections_are_as_large_as_the_case_says(name: str) -> None:
     """Reference: the boom's plates; patches of one panel have one scale."""
-    boom = build_boom(load(str(CASES / f"{name}.toml")))
+    boom = build_boom(shipped(name))
     panel = next(axes for axes in drawn(name).axes if axes.get_title("left").startswith("sections"))
     assert panel.get_aspect() == 1.0
     plates = [patch for patch in panel.patches if isinstance(patch, Polygon)]
@@ -352,7 +351,7 @@ def test_sections_are_as_large_as_the_case_says(name: str) -> None:
 def test_a_force_down_points_down() -> None:
     """Reference: an arrow's head is at the place that it marks; on a boom that stands upright what
     acts across it comes from the left, and a payload hangs all the same."""
-    case = load(str(CASES / "crane.toml"))
+    case = shipped("crane")
     acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
     load_across = acts["24.52 kN down, perpendicular to the boom within 0.5 s"]
     (_, tail), (_, head) = load_across.rotated(0.0).vertices[:2]

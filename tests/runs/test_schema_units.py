@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A case in millimetres, tonnes and seconds is the same case; every number says its unit."""
 
-import io
 import re
 import tomllib
 from collections.abc import Iterator
@@ -11,20 +10,18 @@ from typing import Any, get_args, get_origin
 
 import pytest
 from pydantic.fields import FieldInfo
-from rich.console import Console
 
 from geometry.fields import declared_units, describe, fields_of
 from protractile.cases import change
 from runs.case import reading, toml
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.contact import ContactTable, JointTable
 from runs.case.conversion import convert_to_si
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
-from runs.check import print_check
 from runs.sweep.points import plan
 from tests.runs.case_texts import refused
+from tests.runs.summaries import printed_check
 from tests.touching import contact_laws
 
 IN_SI = """
@@ -130,8 +127,7 @@ IN_MM = (
 
 
 @pytest.fixture(autouse=True)
-def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def _folder(here: Path) -> None:
     Path("gust.csv").write_text("0, 0.2\n3, 1.0\n", encoding="utf-8")
 
 
@@ -237,9 +233,7 @@ def test_a_models_own_contact_has_an_exponent_of_its_own() -> None:
 
 def test_check_shows_the_units_of_the_case() -> None:
     """Reference: the numbers of the case file."""
-    shown = io.StringIO()
-    print_check(CheckedCase(in_mm()), Console(file=shown, width=200))
-    text = shown.getvalue()
+    text = printed_check(in_mm())
     lines = [" ".join(line.split()) for line in text.splitlines()]
     assert "segment mm t/mm mm⁴ t mm plates t, mm" in lines
     assert "joint mm mm mm mm friction" in lines

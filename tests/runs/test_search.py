@@ -17,8 +17,7 @@ ONE = "give one of --vary, --sensitivity and --samples"
 
 
 @pytest.fixture(autouse=True)
-def _folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+def _folder(here: Path) -> None:
     Path("case.toml").write_text(CANTILEVER, encoding="utf-8")
 
 

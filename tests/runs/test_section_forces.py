@@ -20,7 +20,6 @@ from dynamics.line import Line
 from geometry.boom import Boom, Load, Material, Segment, Support
 from geometry.compression import Compression
 from geometry.section import BoxSection
-from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.design_results import DesignResults
 from runs.pipeline.results import Results
@@ -30,43 +29,28 @@ from runs.report.figure_context import FigureContext
 from runs.report.force_figures import stress_history
 from runs.report.model_tables import wall_table
 from studies.telescoping_column import END, LAW, LENGTH, STIFFNESS, column
-from tests.runs.case_texts import read_case
+from tests.runs.case_texts import STEEL, box, elements, read_case, shipped
 from tests.runs.summaries import answers_of, model_summary, summary_of
 from tests.touching import touching
 
 BOX = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 
 # A pin at 1 m, 100 kg/m under 30 degrees, and a cylinder of the triangle 3, 4, 5 at 4 m.
-CASE = """
+CASE = f"""
 title = "An arm on its cylinder"
-time = { duration = 0.1, output_step = 1e-2 }
-start = { state = "equilibrium" }
-gravity = { acceleration = 10.0, angle = 30.0 }
-
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-
-[[segment]]
-name = "arm"
-span = [0.0, 10.0]
-supports = [{ x = 1.0 }]
-mass_per_length = 100.0
-section = { height = 0.40, width = 0.30, flange = 0.008, web = 0.006 }
-
+time = {{ duration = 0.1, output_step = 1e-2 }}
+start = {{ state = "equilibrium" }}
+gravity = {{ acceleration = 10.0, angle = 30.0 }}
+{STEEL}
+{box("arm", (0.0, 10.0), (0.40, 0.30, 0.008, 0.006), "mass_per_length = 100.0")}
+supports = [{{ x = 1.0 }}]
 [[cylinder]]
 segment = "arm"
 x = 4.0
 depth = 0.0
 ground = [0.0, -3.0]
 stiffness = 1e8
-
-[[model]]
-name = "beam"
-kind = "finite-element"
-theory = "timoshenko"
-element_length = 0.5
+{elements("beam", theory="timoshenko", element_length=0.5)}
 """
 
 
@@ -159,7 +143,6 @@ def test_the_fibre_feels_the_normal_force(answers: DesignResults) -> None:
     assert pulled > 0.05 * bent
 
 
-COARSE = CASES / "coarse.toml"
 STRESS: dict[str, Any] = {
     "von_mises": 9.16e7,
     "time": 0.5,
@@ -190,7 +173,7 @@ STRESS: dict[str, Any] = {
 
 def results(stress: dict[str, Any] | None) -> Results:
     """Return a run of the coarse case's shell, with or without stresses."""
-    case = case_file.select(case_file.load(str(COARSE)), "", ["shell"], None)
+    case = case_file.select(shipped("coarse"), "", ["shell"], None)
     data = xr.Dataset(
         {"tip": (("model", "time"), np.zeros((1, 601)))},
         coords={"model": ["shell"], "time": np.arange(601) / 1000},

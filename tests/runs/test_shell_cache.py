@@ -14,7 +14,6 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 from mpi4py import MPI
 
 from dynamics.excitation import Ramp
-from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
@@ -26,13 +25,14 @@ from runs.folder.cache import Cache, load_or_compute
 from runs.pipeline.models import build
 from runs.process.terminal import shorten
 from shell_model.reduced_shell import ReducedShell, reduce_boom
+from tests.runs.case_texts import shipped
 
 pytestmark = pytest.mark.slow
 
 
 @pytest.fixture
 def case() -> Case:
-    return case_file.select(case_file.load(str(CASES / "coarse.toml")), "", ["shell"], 1.0)
+    return case_file.select(shipped("coarse"), "", ["shell"], 1.0)
 
 
 def reduce(case: Case, cache: Cache | None) -> ReducedShell:

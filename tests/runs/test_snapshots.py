@@ -13,21 +13,20 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.results import Results
 from runs.report import opengl
 from runs.report.opengl import RenderingUnavailable
 from runs.report.snapshots import describe_one, start_rendering
+from tests.runs.case_texts import shipped
 
-COARSE = CASES / "coarse.toml"
 TIME = np.arange(1001) / 1000
 
 
 def results(*shells: str) -> Results:
     """Shells whose tips swing once a second by 100 mm, to the sides half as far and more slowly,
     and touch at 0.25 s with 2 kN."""
-    case = case_file.select(case_file.load(str(COARSE)), "", ["shell"], None)
+    case = case_file.select(shipped("coarse"), "", ["shell"], None)
     models = tuple(case.models[0].model_copy(update={"name": name}) for name in shells)
     force = np.zeros((len(shells), TIME.size, 1))
     force[:, 250] = 2000.0

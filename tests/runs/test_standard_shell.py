@@ -17,41 +17,26 @@ from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.pipeline.models import build
-from tests.runs.case_texts import STEEL, box, read_case
+from tests.runs.case_texts import HINGED, STEEL, box, read_case, table
 
 CASE = """
 title = "A boom of one segment"
 time = { duration = 0.1 }
-[[model]]
-name = "shell"
-kind = "shell"
-mesh_size = 0.4
-contact_tolerance = "any"
+model = [{ name = "shell", kind = "shell", mesh_size = 0.4, contact_tolerance = "any" }]
 """
 RESTING = f"""
-[gravity]
-angle = 0.0
+{table("[gravity]", angle=0.0)}
 {STEEL}
-{box("base", (0.0, 6.0), (0.4, 0.3, 0.008, 0.006), 'supports = [{ x = 0.0, kind = "hinged" }]')}
-[[stop]]
-segment = "base"
-x = 5.0
-play = 0.01
-stiffness = 0.0
-stiffness_below = 1e7
+{box("base", (0.0, 6.0), (0.4, 0.3, 0.008, 0.006), HINGED)}
+{table("[[stop]]", segment="base", x=5.0, play=0.01, stiffness=0.0, stiffness_below=1e7)}
 """
 # At 50 degrees, its pin 0.35 m below the axis.
 RAISED = f"""
-[gravity]
-angle = 50.0
+{table("[gravity]", angle=50.0)}
 {STEEL.replace("7850.0", "1600.0")}
 {box("base", (0.0, 10.0), (0.6, 0.4, 0.025, 0.025), "supports = [{ x = 0.0, depth = 0.35 }]")}
-[payload]
-mass = 400.0
-[[load]]
-segment = "base"
-x = 8.0
-magnitude = -3000.0
+{table("[payload]", mass=400.0)}
+{table("[[load]]", segment="base", x=8.0, magnitude=-3000.0)}
 [[cylinder]]
 segment = "base"
 x = 2.6

@@ -15,13 +15,11 @@ from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine
 from dynamics.gap_system import GapSystem
 from geometry.fields import Distance
 from protractile.cases import change
-from runs import CASES
-from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
 from runs.case.load_tables import LoadTable
 from runs.case.schema import Case, StopTable
-from runs.check import check_case, print_check
+from runs.check import check_case
 from runs.pipeline.design_results import DesignResults
 from runs.pipeline.models import build
 from runs.pipeline.section_forces import LoadedModel
@@ -33,19 +31,18 @@ from runs.pipeline.static_results import (
     static_result,
 )
 from studies.reference_models.statics import static_response
-from tests.runs.case_texts import read_case
-from tests.runs.summaries import answers_of, printed
+from tests.runs.case_texts import read_case, shipped
+from tests.runs.summaries import answers_of, printed_check
 
 
 def told(case: Case) -> list[str]:
-    shown = printed(print_check, CheckedCase(case), width=200)
-    return [" ".join(line.replace("−", "-").split()) for line in shown.split("\n")]
+    return [" ".join(line.replace("−", "-").split()) for line in printed_check(case).split("\n")]
 
 
 def test_masses_forces_and_tips_are_those_of_hand() -> None:
     """Reference: by hand, the lever rule; other code, 9.916 mm of elements; play adds 7 + 14 · 9
     mm."""
-    lines = told(case_file.load(str(CASES / "coarse.toml")))
+    lines = told(shipped("coarse"))
     assert "outer 831.6 0 5" in lines
     assert "all 1382 0 8.586" in lines
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
@@ -66,7 +63,7 @@ def test_masses_forces_and_tips_are_those_of_hand() -> None:
 
 def test_unequal_plays_are_not_pressed_in() -> None:
     """Reference: by hand, √(F/k) of 2.2 and 2.8 kN on 1e13 N/m², whatever the play above."""
-    case = case_file.load(str(CASES / "coarse.toml"))
+    case = shipped("coarse")
     (joint,) = case.joints
     joint = replace(joint, play_above=0.001)
     lines = told(case.model_copy(update={"joints": (joint,)}))
@@ -81,7 +78,7 @@ def test_unequal_plays_are_not_pressed_in() -> None:
 
 def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
     """Reference: by hand. The tip of 9.916 mm presses a stop of 10 N/m, 5 mm above, by 4.916 mm."""
-    case = case_file.load(str(CASES / "coarse.toml"))
+    case = shipped("coarse")
     bonded = tuple(model for model in case.models if model.bonded)
     stop = StopTable("inner", Distance(head=0.0), play=0.01, stiffness=10.0)
     lines = told(case.model_copy(update={"models": bonded, "stops": (stop,)}))
@@ -144,7 +141,7 @@ def test_series_weigh_and_swing_with_stiffeners_as_elements_do(tmp_path: Path) -
 
 def test_a_boom_without_rest_says_so() -> None:
     """The square of its load is no number of any machine."""
-    case = case_file.load(str(CASES / "coarse.toml"))
+    case = shipped("coarse")
     segments = tuple(s.model_copy(update={"load": 1.0e300}) for s in case.segments)
     lines = told(case.model_copy(update={"segments": segments}))
     assert "There is no static equilibrium under the loads at t = 0." in lines
@@ -152,14 +149,14 @@ def test_a_boom_without_rest_says_so() -> None:
 
 def test_walls_under_pads_lower_the_tip_as_in_the_shell() -> None:
     """Reference: other code, the shell of the lift at rest, −229.12 mm (−190.18 mm of its beam)."""
-    lines = told(case_file.load(str(CASES / "lift.toml")))
+    lines = told(shipped("lift"))
     (tip,) = (line for line in lines if line.startswith("Static tip deflection"))
     assert float(tip.split(": ")[1].split()[0]) == pytest.approx(-229.12, rel=0.01)
 
 
 def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
     """Reference: the same loads from t = 0 on, without the ramp."""
-    case = case_file.load(str(CASES / "lift.toml"))
+    case = shipped("lift")
     share, remedies = pad_wall_sentences(case)
     assert share == (
         "Walls bend under pads, which moves the tip by -60.64 of -378.5 mm, 16 %, under the loads "
@@ -185,7 +182,7 @@ def pad_wall_sentences(case: Case) -> list[str]:
 @pytest.fixture(scope="module")
 def answers() -> DesignResults:
     """Of the paper's boom by elements, with play."""
-    case = change(case_file.load(str(CASES / "coarse.toml")), **{"time.duration": 0.05})
+    case = change(shipped("coarse"), **{"time.duration": 0.05})
     models = tuple(model for model in case.models if model.name == "timoshenko")
     return answers_of(case.model_copy(update={"models": models}))
 
@@ -253,7 +250,7 @@ def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
 
 def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     """Reference: by hand. At 19 m 2 kN, 550.7 N at 14 m, 83.16 N/m; 14 mrad of play."""
-    case = case_file.load(str(CASES / "drawn-out.toml"))
+    case = shipped("drawn-out")
     table = ((0.0, 0.0), (5.5, 0.0), (6.0, 1.0))
     late = LoadTable.model_validate(
         {"segment": "inner", "x": "head", "magnitude": 2e3, "table": table}

@@ -11,12 +11,9 @@ from matplotlib import rc_context
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.elastic_drive import elastic_drives
-from runs.case.reading import load
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.check import print_check
 from runs.pipeline.drives import lag_cautions
 from runs.pipeline.quantities import measure
 from runs.pipeline.results import Results
@@ -25,8 +22,8 @@ from runs.report import theme
 from runs.report.figure_context import FigureContext
 from runs.report.force_figures import drives
 from runs.report.result_tables import result_tables, stick_slip_table
-from tests.runs.case_texts import read_case, refusal
-from tests.runs.summaries import printed
+from tests.runs.case_texts import read_case, refusal, shipped
+from tests.runs.summaries import printed_check
 
 ROPE = "least_overlap = 1.0, stiffness = 2e5, dashpot = 500.0, static_friction = 0.3 }"
 # Without play, at rest under loads downwards, so that pads press all the time.
@@ -92,7 +89,7 @@ def test_nothing_sticks_where_nothing_rubs(tmp_path: Path) -> None:
 
 def test_drive_moves_all_outboard_masses() -> None:
     """Reference: analytic, the masses beyond each joint of the crane; mm, t and s in SI units."""
-    crane = load(str(CASES / "crane-telescopes.toml"))
+    crane = shipped("crane-telescopes")
     case = change(crane, **{"joint.drive.stiffness": 4e6, "joint[2].drive.static_friction": 0.15})
     boom = build_boom(case)
     beyond = [sum(one.mass for one in boom.segments[number:]) for number in (1, 2, 3)]
@@ -127,7 +124,7 @@ def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
 def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
     """Reference: by hand. The lever rule presses pads of 1 m of overlap by 27 and 21.6 kN; 550.7 kg
     on 200 kN/m swing at 3.03 Hz, damped by 500/2√(k m), and the critical speed from the formula."""
-    shown = printed(print_check, CheckedCase(drawn_by(tmp_path, ROPE)), width=300)
+    shown = printed_check(drawn_by(tmp_path, ROPE), 300)
     assert (
         "The drive of 'inner' moves 550.7 kg, with a frequency of 3.03 Hz and a damping ratio of "
         "2.38 %; against the largest static friction of 9.72 kN it sticks and slips below 0.791 "
@@ -152,7 +149,7 @@ def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
     assert (
         f"caution: the drive of 'inner' sticks and slips during its whole travel: it moves at "
         f"{caution}\n"
-    ) in printed(print_check, CheckedCase(drawn_by(tmp_path, rope, **slow)), width=300)
+    ) in printed_check(drawn_by(tmp_path, rope, **slow), 300)
 
 
 @pytest.mark.slow

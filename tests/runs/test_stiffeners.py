@@ -23,9 +23,8 @@ STIFFENED = COARSE.replace(
 
 
 @pytest.fixture
-def stiffened(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+def stiffened(here: Path) -> str:
     """Return a case file of the coarse case with stiffeners."""
-    monkeypatch.chdir(tmp_path)
     Path("case.toml").write_text(STIFFENED, encoding="utf-8")
     return "case.toml"
 

@@ -15,7 +15,6 @@ from beam_model.segment_model import gap_system
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from protractile.cases import run_case
-from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.contact import ContactTable
@@ -25,6 +24,7 @@ from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
 from runs.pipeline.results import Results
 from runs.report.terminal_tables import print_models
+from tests.runs.case_texts import shipped
 from tests.runs.paper_curves import (
     FIRST_CONTACT,
     PEAKS,
@@ -431,7 +431,7 @@ def test_runs_without_verdicts_show_no_table() -> None:
 def test_every_run_shows_the_errors_of_its_reduction() -> None:
     errors = {"contact_compliance": 2.3e-9, "readings": 8.1e-7, "frequency_limit_in_hz": 84.6}
     shell = model_summary(modes=110, reduction_errors=errors, mesh_error=0.0083)
-    case = case_file.load(str(CASES / "paper.toml"))
+    case = shipped("paper")
     results = Results(case, xr.Dataset(), summary_of({"shell": shell}))
     assert printed(print_models, results).splitlines()[-1] == (
         "shell: 110 coordinates; reduction error of the local contact compliance 2 × 10⁻⁹, of tip "

@@ -25,20 +25,12 @@ from runs.report.result_tables import buckling_table
 from runs.report.summary_table import summary_table
 from shell_model.buckling import SegmentBuckling
 from studies.wall_buckling import TUBE
-from tests.runs.case_texts import read_case
+from tests.runs.case_texts import read_case, table
 from tests.runs.moving_segments import moving_scene
 from tests.shell_model.booms import box_segment
 
-SHELL = """
-[[model]]
-name = "shell"
-kind = "shell"
-mesh_size = 0.25
-contact_tolerance = "any"
-
-[buckling]
-modes = 2
-"""
+COARSE = {"kind": "shell", "mesh_size": 0.25, "contact_tolerance": "any"}
+SHELL = table("[[model]]", name="shell", **COARSE) + table("[buckling]", modes=2)
 
 
 def run(folder: Path, name: str, **changes: str) -> Results:

@@ -18,6 +18,8 @@ from runs.case.messages import BadInput
 from runs.case.reading import load
 from runs.paper.rules import judge
 from runs.pipeline.results import Results, read_fields
+from tests.runs.case_texts import CLAMPED, table
+from tests.runs.test_actions import CANTILEVER
 from tests.system.run_folder import (
     COARSE,
     SERIES,
@@ -225,28 +227,10 @@ def test_a_case_without_play_runs(tmp_path: Path) -> None:
 @pytest.mark.usefixtures("few_figures")
 def test_a_beam_without_joints_runs(tmp_path: Path) -> None:
     """Reference: analytic. A pinned beam's midspan swings to twice 5 q L⁴ / 384 E J, nearly."""
-    (tmp_path / "case.toml").write_text(
-        """title = "one beam"
-[time]
-duration = 0.6
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-[[segment]]
-name = "beam"
-span = [0.0, 10.0]
-supports = [0.0, 10.0]
-mass_per_length = 83.16
-second_moment_of_area = 3.7986e-4
-load = 83.16
-[[model]]
-name = "beam"
-kind = "kantorovich"
-terms = [6]
-base = "pinned"
-"""
-    )
+    series = table("[[model]]", name="beam", kind="kantorovich", terms=[6], base="pinned")
+    text = CANTILEVER.replace("duration = 2.0", "duration = 0.6") + "load = 83.16\n" + series
+    text = text.replace(CLAMPED, "supports = [0.0, 10.0]")
+    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
     folder = tmp_path / "out"
     assert protractile("run", tmp_path / "case.toml", "--out", folder) == 0
     check_common_files(folder, ["beam"])

@@ -36,10 +36,9 @@ def write_case(folder: Path) -> Path:
 
 
 @pytest.fixture
-def case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+def case(here: Path) -> str:
     """case.toml in the current folder."""
-    monkeypatch.chdir(tmp_path)
-    return write_case(tmp_path).name
+    return write_case(here).name
 
 
 @pytest.fixture
