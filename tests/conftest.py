@@ -123,6 +123,14 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 @pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Points run where patches hold, and no process imports what this one has."""
+    from tests import at_once
+
+    monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
+
+
+@pytest.fixture
 def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw one figure per run in tests of other things: figures take longer than beam motions."""
     from runs.report import figures

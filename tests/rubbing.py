@@ -8,12 +8,12 @@ import pytest
 
 from dynamics.contact import DryFriction, PowerContact
 from dynamics.excitation import SCurve
-from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.kernels.march import march
 from dynamics.motion import Motion
 from tests.dynamics.test_moving_thrust import pressed_along
 from tests.dynamics.test_telescoping import lossy
+from tests.modal import modal_system
 
 
 def compiled_in(factory: pytest.TempPathFactory) -> Path:
@@ -32,14 +32,12 @@ def motion_numbers() -> str:
     """Return all numbers of motions with friction, telescoping and moving axial forces."""
     random = np.random.default_rng(3)
     rows = random.normal(size=(2, 12))
-    system = GapSystem(
-        omega2=np.linspace(0.0, 300.0, 12) ** 2,
-        load=random.normal(size=12),
-        rows=rows,
-        laws=[PowerContact(1.0e6, 2.0).behind(1.0e-3)] * 2,
-        station_of_row=np.array([0, 1]),
-        stations=[0.0, 1.0],
-        observers={"tip": Observer(rows[0])},
+    system = modal_system(
+        np.linspace(0.0, 300.0, 12) ** 2,
+        random.normal(size=12),
+        rows,
+        [PowerContact(1.0e6, 2.0).behind(1.0e-3)] * 2,
+        tip=rows[0],
         friction_rows=random.normal(size=(2, 12)),
         frictions=[DryFriction(0.2, 0, 1.0, (0,)), DryFriction(0.2, 1, 2.0)],
     )

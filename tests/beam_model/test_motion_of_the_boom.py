@@ -19,6 +19,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Segment, Support
+from tests.modal import modal_system
 from tests.touching import touching
 
 Models = Callable[..., list[SegmentModel]]
@@ -218,16 +219,7 @@ def test_free_segment_decays_at_the_ratio_of_the_first_mode(heavy: GapSystem) ->
 def test_contact_force_of_round_off_does_not_close_a_contact() -> None:
     """Reference: analytic. A stop with 1e-17 m of penetration leaves its mass at 20 rad/s."""
     stop = PowerContact(stiffness=1.0e6, exponent=1.0)
-    system = GapSystem(
-        omega2=np.array([400.0, 0.0]),
-        load=np.array([0.0, 10.0]),
-        rows=np.eye(2),
-        laws=[stop, stop],
-        station_of_row=np.array([0, 1]),
-        stations=[0.0, 1.0],
-        grounded=[0, 1],
-        observers={},
-    )
+    system = modal_system([400.0, 0.0], [0.0, 10.0], np.eye(2), [stop, stop], grounded=[0, 1])
     omega, _ = closed_contact_modes(system, np.array([1.0e-17, 1.0e-5]))
     np.testing.assert_allclose(omega, [20.0, 1000.0], rtol=1e-12)
 

@@ -9,7 +9,8 @@ import pytest
 from beam_model.calibration import elastic_compliance
 from beam_model.section_fields import condense
 from dynamics.contact import DryFriction, PowerContact
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
+from tests.modal import modal_system
 
 MODES = 60
 
@@ -19,17 +20,9 @@ def system(num_modes: int = MODES) -> GapSystem:
     random = np.random.default_rng(3)
     rows = random.normal(size=(4, MODES))[:, :num_modes]
     omega = np.concatenate([[0.0], 20.0 * np.arange(1, MODES) ** 1.5])[:num_modes]
-    return GapSystem(
-        omega2=omega**2,
-        load=rows[3],
-        rows=rows[:2],
-        laws=[PowerContact(1e7, 1.0).behind(0.01)] * 2,
-        station_of_row=np.array([0, 1]),
-        stations=[0.0, 1.0],
-        observers={"tip": Observer(rows[2])},
-        friction_rows=rows[2:3],
-        frictions=[DryFriction(0.2, 0, 100.0, ())],
-    )
+    laws = [PowerContact(1e7, 1.0).behind(0.01)] * 2
+    rubbing = {"friction_rows": rows[2:3], "frictions": [DryFriction(0.2, 0, 100.0, ())]}
+    return modal_system(omega**2, rows[3], rows[:2], laws, tip=rows[2], **rubbing)
 
 
 def test_a_condensed_system_answers_slow_forces_alike() -> None:

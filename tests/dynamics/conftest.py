@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 
 from dynamics.contact import PowerContact
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
+from tests.modal import modal_system
 
 
 def one_mass(
@@ -23,16 +24,8 @@ def one_mass(
     """
     row = np.array([1.0 / np.sqrt(mass)])
     laws = [] if law is None else [law]
-    return GapSystem(
-        omega2=np.array([spring / mass]),
-        load=force * row,
-        rows=row.reshape(1, 1)[: len(laws)],
-        laws=laws,
-        station_of_row=np.zeros(len(laws), dtype=np.int64),
-        stations=[0.0][: len(laws)],
-        observers={"tip": Observer(row)},
-        damping=np.array([dashpot / mass]),
-    )
+    rows, damping = row[: len(laws)], np.array([dashpot / mass])
+    return modal_system([spring / mass], force * row, rows, laws, tip=row, damping=damping)
 
 
 @pytest.fixture(name="one_mass")

@@ -14,6 +14,7 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
+from tests.modal import modal_system
 
 # Half the distance in s over which the speed of a drive is measured.
 _APART = 1.0e-6
@@ -21,15 +22,9 @@ _APART = 1.0e-6
 
 def two_modes(exponent: float = 2.0) -> GapSystem:
     """Two modes under load that swing against a one-sided stop, once within 0.6 s."""
-    return GapSystem(
-        omega2=np.array([9.0, 60.0]),
-        load=np.array([2.0, 5.0]),
-        rows=np.array([[1.0, 0.6]]),
-        laws=[PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent).upper().behind(0.05)],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={"first": Observer(np.array([1.0, 0.0]))},
-    )
+    law = PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent).upper().behind(0.05)
+    first = {"first": Observer(np.array([1.0, 0.0]))}
+    return modal_system([9.0, 60.0], [2.0, 5.0], [1.0, 0.6], [law], observers=first)
 
 
 def table_slope(table: RowTable, s: float) -> Array:

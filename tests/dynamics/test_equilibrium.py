@@ -13,26 +13,20 @@ from dynamics.contact import PowerContact
 from dynamics.damping import closed_contact_damping, with_modal_damping
 from dynamics.equilibrium import equilibrium
 from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.second_order import buckling_factor, soften_modes
 from geometry.boom import Boom
+from tests.modal import modal_system
 from tests.touching import touching
 
 
 def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
     """2 kg on a spring, and a stop of 3e6 N/mⁿ after 4 mm above alone."""
     row = np.array([1.0 / np.sqrt(2.0)])
-    return GapSystem(
-        omega2=np.array([omega2]),
-        load=np.zeros(1),
-        rows=row[None],
-        laws=[PowerContact(3.0e6, exponent).upper().behind(4.0e-3)],
-        station_of_row=np.zeros(1, dtype=np.int64),
-        stations=[0.0],
-        observers={"tip": Observer(row)},
-    )
+    law = PowerContact(3.0e6, exponent).upper().behind(4.0e-3)
+    return modal_system([omega2], [0.0], row, [law], tip=row)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
@@ -154,15 +148,7 @@ def test_unstable_mass_rests_on_its_stop(tipping: GapSystem) -> None:
 
 def test_the_pressed_boom_is_damped_as_asked_for() -> None:
     """Reference: the ratio that is asked for, of a mass bonded to an elastic one beside it."""
-    two = GapSystem(
-        omega2=np.array([NEGATIVE / MASS, 400.0]),
-        load=np.array([-9.0, 0.0]),
-        rows=np.array([[0.5, -0.4]]),
-        laws=[STOPS],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={"tip": Observer(np.ones(2))},
-    )
+    two = modal_system([NEGATIVE / MASS, 400.0], [-9.0, 0.0], [0.5, -0.4], [STOPS], tip=[1.0, 1.0])
     omega, ratios = closed_contact_damping(with_modal_damping(two, 0.03))
     assert (omega > 0.0).all()
     assert ratios[0] == pytest.approx(0.03, rel=1e-6)

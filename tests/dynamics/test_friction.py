@@ -16,6 +16,7 @@ from dynamics.excitation import Excitation, Sine
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
+from tests.modal import modal_system
 
 OneMass = Callable[..., GapSystem]
 
@@ -31,18 +32,9 @@ def rubbing(system: GapSystem, *frictions: DryFriction, rows: Array | None = Non
 
 def modes(omega: Array, load: Array, rows: Array, limits: Array, **more: Any) -> GapSystem:
     """Modes under load that friction rows with prescribed μ N couple."""
-    return GapSystem(
-        omega2=omega**2,
-        load=load,
-        rows=np.zeros((0, omega.size)),
-        laws=[],
-        station_of_row=np.zeros(0, dtype=np.int64),
-        stations=[0.0, 1.0],
-        observers={"first": Observer(np.eye(omega.size)[0])},
-        friction_rows=rows,
-        frictions=[DryFriction(0.25, j % 2, 4.0 * limit) for j, limit in enumerate(limits)],
-        **more,
-    )
+    frictions = [DryFriction(0.25, j % 2, 4.0 * limit) for j, limit in enumerate(limits)]
+    more |= {"observers": {"first": Observer(np.eye(omega.size)[0])}, "stations": [0.0, 1.0]}
+    return modal_system(omega**2, load, friction_rows=rows, frictions=frictions, **more)
 
 
 def test_a_mass_on_a_spring_comes_to_rest(one_mass: OneMass) -> None:
@@ -219,16 +211,11 @@ def test_dependent_friction_rows_share_the_force() -> None:
 def sled(speed: float, fall: float, friction: DryFriction, stiffness: float = 1.0e6) -> GapSystem:
     """2 kg that can slide (mode 0) on a floor that it is pressed to (mode 1) by 2 kg · 10 m/s²."""
     root = np.sqrt(2.0)
-    return GapSystem(
-        omega2=np.zeros(2),
-        load=np.array([0.0, -10.0 * root]),
-        rows=np.array([[0.0, 1.0 / root]]),
-        laws=[PowerContact(stiffness, 1.0).lower()],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={"way": Observer(np.array([1.0 / root, 0.0]))},
-        friction_rows=np.array([[1.0 / root, 0.0]]),
-        frictions=[friction],
+    along, floor = np.array([1.0 / root, 0.0]), PowerContact(stiffness, 1.0).lower()
+    rubbing = {"friction_rows": along[None], "frictions": [friction]}
+    load, row = [0.0, -10.0 * root], [0.0, 1.0 / root]
+    return modal_system(
+        [0.0, 0.0], load, row, [floor], observers={"way": Observer(along)}, **rubbing
     )
 
 

@@ -26,6 +26,7 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import build_motion
 from dynamics.trajectory import Trajectory
 from tests.dynamics.test_telescoping import lossy
+from tests.modal import modal_system
 
 MASS, ROPE, GRAVITY, SPEED = 1000.0, 1.0e6, 10.0, 0.5
 
@@ -33,15 +34,8 @@ MASS, ROPE, GRAVITY, SPEED = 1000.0, 1.0e6, 10.0, 0.5
 def mass_on_spring() -> GapSystem:
     """Return a tip of 500 kg on a spring of 2 MN/m, under 2 kN."""
     mass, stiffness = 500.0, 2.0e6
-    return GapSystem(
-        omega2=np.array([stiffness / mass]),
-        load=np.array([-2000.0 / np.sqrt(mass)]),
-        rows=np.zeros((0, 1)),
-        laws=[],
-        station_of_row=np.zeros(0, dtype=np.int64),
-        stations=[],
-        observers={"tip": Observer(np.array([1.0 / np.sqrt(mass)]))},
-    )
+    root = np.sqrt(mass)
+    return modal_system([stiffness / mass], [-2000.0 / root], tip=[1.0 / root])
 
 
 def hoisted(

@@ -12,6 +12,7 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.kernels.modal_flow import compliance, finish_flow, free_flow, modal_flow
 from dynamics.motion import Motion
+from tests.modal import modal_system
 
 # ω² in rad²/s², c in 1/s, load in N/√kg
 MODES = {
@@ -24,17 +25,9 @@ MODES = {
 
 def modes() -> GapSystem:
     omega2, damping, load = np.array(list(MODES.values())).T
-    n = omega2.size
-    return GapSystem(
-        omega2=omega2,
-        load=load,
-        rows=np.zeros((0, n)),
-        laws=[],
-        station_of_row=np.zeros(0, dtype=np.int64),
-        stations=[],
-        observers={name: Observer(row) for name, row in zip(MODES, np.eye(n), strict=True)},
-        damping=damping,
-    )
+    eye = np.eye(omega2.size)
+    observers = {name: Observer(row) for name, row in zip(MODES, eye, strict=True)}
+    return modal_system(omega2, load, observers=observers, damping=damping)
 
 
 @pytest.mark.parametrize("step", [1.0e-2, 1.0])

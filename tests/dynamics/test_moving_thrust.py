@@ -13,13 +13,14 @@ from dynamics.drive.row_table import MovingAxialForce, RowTable
 from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import PiecewiseLinear, SCurve
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 from dynamics.kernels.telescoping import (
     add_axial_forces,
     moving_axial_forces,
 )
 from dynamics.motion import Motion
 from tests.dynamics.reference import errors_in_the_step, runge_kutta, slopes
+from tests.modal import modal_system
 
 # Sines of a beam of 10 m, from its middle on, in two planes that share no mode.
 WAVES = np.pi * np.arange(1, 4) / 10.0
@@ -52,14 +53,12 @@ def pressed_along(history: SCurve | PiecewiseLinear) -> GapSystem:
     """Six modes on a soft contact, whose row stays where it is."""
     row = np.array([[0.1, -0.2, 0.3, 0.2, 0.1, -0.3]])
     table = RowTable(np.array([-1.0, 2.0]), np.array([[row, 0 * row, 0 * row, 0 * row]]))
-    return GapSystem(
-        omega2=np.array([200.0, 300.0, 900.0, 400.0, 2000.0, 5000.0]),
-        load=np.array([1.0, -2.0, 0.5, 1.0, 0.2, 0.1]),
-        rows=row,
-        laws=[PowerContact(1e4, 1.0).behind(1e-4)],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={"tip": Observer(row[0])},
+    return modal_system(
+        [200.0, 300.0, 900.0, 400.0, 2000.0, 5000.0],
+        [1.0, -2.0, 0.5, 1.0, 0.2, 0.1],
+        row,
+        [PowerContact(1e4, 1.0).behind(1e-4)],
+        tip=row[0],
         damping=np.array([0.1, 0.2, 0.3, 0.1, 0.2, 0.3]),
         travels=[Travel(history, table, (("rows", 0),), "", (thrust(),))],
     )

@@ -12,12 +12,13 @@ from dynamics.contact import ContactLaw, DryFriction, PowerContact
 from dynamics.contact_table import TableContact
 from dynamics.contact_term import TERM
 from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.kernels import march
 from dynamics.kernels.row_forces import row_laws, row_problem, solve_contact_forces
 from dynamics.kernels.terms import discrete_gradient
 from dynamics.motion import Motion
+from tests.modal import modal_system
 
 # What round-off leaves of a law, as a part of the largest force.
 TOLERANCE = 1.0e-10
@@ -42,14 +43,11 @@ def random_system(random: np.random.Generator, equal_rows: bool) -> GapSystem:
     if equal_rows:
         frictions = frictions[np.arange(f) // 2]
     pressing = [tuple(np.flatnonzero(random.random(m) < 0.5).tolist()) for _ in range(f)]
-    return GapSystem(
-        omega2=random.uniform(0.0, 1e4, n),
-        load=np.zeros(n),
-        rows=random.normal(size=(m, n)),
-        laws=[LAWS[k] for k in random.integers(0, len(LAWS), m)],
-        station_of_row=np.zeros(m, dtype=np.int64),
-        stations=[0.0],
-        observers={},
+    return modal_system(
+        random.uniform(0.0, 1e4, n),
+        np.zeros(n),
+        random.normal(size=(m, n)),
+        [LAWS[k] for k in random.integers(0, len(LAWS), m)],
         dashpots=random.normal(size=(d, n)) * 10.0 ** random.uniform(-1.0, 2.0),
         friction_rows=frictions,
         frictions=[
@@ -120,17 +118,9 @@ def test_equal_friction_rows_stick_at_once() -> None:
     random, time = np.random.default_rng(3), 1.0e-3
     for _ in range(200):
         copies = random.permutation(np.repeat(random.normal(size=(3, 4)), 2, axis=0))
-        system = GapSystem(
-            omega2=np.zeros(4),
-            load=np.zeros(4),
-            rows=random.normal(size=(2, 4)),
-            laws=[PowerContact(1.0e6, 1.0)] * 2,
-            station_of_row=np.zeros(2, dtype=np.int64),
-            stations=[0.0],
-            observers={},
-            friction_rows=copies,
-            frictions=[DryFriction(1.0, 0, 1.0e9)] * 6,
-        )
+        rubbing = {"friction_rows": copies, "frictions": [DryFriction(1.0, 0, 1.0e9)] * 6}
+        rows, laws = random.normal(size=(2, 4)), [PowerContact(1.0e6, 1.0)] * 2
+        system = modal_system(np.zeros(4), np.zeros(4), rows, laws, **rubbing)
         stacked = system.all_rows
         compliance, start = 0.5 * time**2 * stacked @ stacked.T, np.zeros(8)
         problem = row_problem(8, 6)
@@ -164,19 +154,12 @@ def test_the_discrete_gradient(exponent: float, before: float, after: float) -> 
 
 def wedge(friction: float) -> GapSystem:
     """Return a block whose friction increases its own contact force."""
-    rows = np.array([[1.0, 0.0], [0.0, 1.0]])
     tilted = np.array([[-0.9, 1.0], [0.9, 1.0]])
-    return GapSystem(
-        omega2=np.array([0.0, 100.0]),
-        load=np.array([30.0, 50.0]),
-        rows=rows,
-        laws=[PowerContact(1.0e9, 1.0).behind(1.0e-4)] * 2,
-        station_of_row=np.array([0, 0]),
-        stations=[0.0],
-        observers={"tip": Observer(np.ones(2))},
-        friction_rows=tilted,
-        frictions=[DryFriction(friction, 0, 1.0, (0, 1))] * 2,
-    )
+    laws = [PowerContact(1.0e9, 1.0).behind(1.0e-4)] * 2
+    rubbing = {"friction_rows": tilted, "frictions": [DryFriction(friction, 0, 1.0, (0, 1))] * 2}
+    one_place = {"station_of_row": np.array([0, 0]), "stations": [0.0]}
+    more = rubbing | one_place
+    return modal_system([0.0, 100.0], [30.0, 50.0], np.eye(2), laws, tip=[1.0, 1.0], **more)
 
 
 @pytest.mark.parametrize("friction", [0.3, 2.0, 20.0])
@@ -206,13 +189,5 @@ def test_a_side_without_a_law_ends_the_search_for_its_deepest_press(
     side: float, slope: float
 ) -> None:
     """Reference: analytic, a linear stop below. Round-off may give a force above it a sign."""
-    system = GapSystem(
-        omega2=np.zeros(1),
-        load=np.zeros(1),
-        rows=np.ones((1, 1)),
-        laws=[PowerContact(1.0e9, 1.0).lower()],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={},
-    )
+    system = modal_system([0.0], [0.0], [1.0], [PowerContact(1.0e9, 1.0).lower()])
     assert march._stiffness_at_energy(row_laws(system), 0, side, 1.0e-3) == pytest.approx(slope)

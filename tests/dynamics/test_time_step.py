@@ -32,6 +32,7 @@ from tests.dynamics.reference import (
 )
 from tests.dynamics.test_moving_thrust import pressed_along
 from tests.dynamics.test_telescoping import lossy, rider
+from tests.modal import modal_system
 
 OneMass = Callable[..., GapSystem]
 
@@ -338,16 +339,9 @@ def test_a_closed_contact_is_a_spring() -> None:
     the impulse that momentum and loads ask for."""
     weight, stiffness, rise, load = 10.0, 1.0e6, 0.0104, -5.0
     ramp = Excitation(np.array([load]), PiecewiseLinear((0.0, rise), (0.0, 1.0)))
-    system = GapSystem(
-        omega2=np.zeros(1),
-        load=np.array([-weight]),
-        rows=np.ones((1, 1)),
-        laws=[PowerContact(stiffness, 1.0).behind(2.0e-3)],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={"tip": Observer(np.ones(1)), "speed": Observer(np.ones(1), "m/s", 1)},
-        excitations=[ramp],
-    )
+    seen = {"tip": Observer(np.ones(1)), "speed": Observer(np.ones(1), "m/s", 1)}
+    law = PowerContact(stiffness, 1.0).behind(2.0e-3)
+    system = modal_system([0.0], [-weight], [1.0], [law], observers=seen, excitations=[ramp])
     run = FixedStep(1e-5)(Motion(system, 0.2, 1.0e-3, equilibrium(system, system.load)))
     time, omega = run.time, np.sqrt(stiffness)
     since = np.maximum(time - rise, 0.0)

@@ -16,6 +16,7 @@ from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory, prominent_peaks
+from tests.modal import modal_system
 
 STOP = PowerContact(stiffness=1.0e4, exponent=1.0).behind(1.0e-2)
 
@@ -57,15 +58,8 @@ def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
 def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> None:
     """Three rows at two stops report the forces of two rows. Reference: other code path."""
     row = np.array([[0.8], [-0.5]])
-    whole = GapSystem(
-        omega2=np.array([10.0]),
-        load=np.array([2.0]),
-        rows=row,
-        laws=[STOP, STOP.law.behind(5.0e-3)],
-        station_of_row=np.array([0, 1]),
-        stations=[9.0, 10.0],
-        observers={},
-    )
+    laws = [STOP, STOP.law.behind(5.0e-3)]
+    whole = modal_system([10.0], [2.0], row, laws, stations=[9.0, 10.0])
     shared = replace(
         whole,
         rows=row[[0, 1, 0]],
@@ -82,15 +76,13 @@ def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> Non
 
 def test_stations_have_directions_and_friction_forces() -> None:
     """Reference: other code path. Two friction rows of one station are one of both limits."""
-    system = GapSystem(
-        omega2=np.array([10.0]),
-        load=np.array([2.0]),
-        rows=np.array([[0.8]]),
-        laws=[STOP.law.behind(1.0)],
-        station_of_row=np.array([0]),
+    system = modal_system(
+        [10.0],
+        [2.0],
+        [0.8],
+        [STOP.law.behind(1.0)],
         stations=[9.0, 9.0],
         station_directions=["z", "y"],
-        observers={},
         friction_rows=np.array([[0.8], [0.8]]),
         frictions=[DryFriction(0.1, 1, 4.0), DryFriction(0.1, 1, 6.0)],
     )
@@ -104,15 +96,9 @@ def test_stations_have_directions_and_friction_forces() -> None:
 
 
 def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
-    system = GapSystem(
-        omega2=np.array([4.0, 9.0]),
-        load=np.array([1.0, 1.0]),
-        rows=np.array([[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]),
-        laws=[STOP.law.behind(10.0)] * 3,
-        station_of_row=np.array([1, 1, 0]),
-        stations=[9.0, 10.0],
-        observers={},
-    )
+    rows, laws = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]], [STOP.law.behind(10.0)] * 3
+    shared = {"station_of_row": np.array([1, 1, 0]), "stations": [9.0, 10.0]}
+    system = modal_system([4.0, 9.0], [1.0, 1.0], rows, laws, **shared)
     run = FixedStep(0.1)(Motion(system, 1.0, output_step=0.1))
     np.testing.assert_allclose(run.data["gap"][:, 0], run.states.sum(axis=1), rtol=1e-14)
     np.testing.assert_allclose(run.data["gap"][:, 1], run.states.mean(axis=1), rtol=1e-14)

@@ -2,6 +2,7 @@
 """The examples of a notebook's length give the numbers that they should."""
 
 import sys
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -10,10 +11,10 @@ import numpy as np
 import pytest
 
 import protractile as pt
-from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep, simulate
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
+from tests.dynamics.two_stops import CHAOTIC
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -90,15 +91,7 @@ def test_a_rubber_stop_takes_all_the_energy(example: ModuleType) -> None:
 @of("own_integrator")
 def test_another_integrator_finds_the_same(example: ModuleType) -> None:
     """Reference: other code, the time step; before chaos parts the two."""
-    system = GapSystem(
-        omega2=np.array([4.0, 31.0]),
-        load=np.array([2.0, 3.0]),
-        rows=np.array([[0.8, -0.6]]),
-        laws=[pt.PowerContact(1.0e4, 2.0).behind(0.02)],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-        observers={"tip": Observer(np.array([1.0, 0.4]))},
-    )
+    system = replace(CHAOTIC, laws=[pt.PowerContact(1.0e4, 2.0).behind(0.02)])
     other = simulate(system, 2.0, 1e-2, integrator=example.RungeKutta())
     ours = simulate(system, 2.0, 1e-2, integrator=FixedStep(1e-5))
     assert ours.data.attrs["contact_changes"] >= 2

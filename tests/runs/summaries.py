@@ -19,7 +19,7 @@ from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import DesignResults
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
-from runs.pipeline.run import run_case
+from runs.pipeline.run import Run, run_case
 from runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
 
 if TYPE_CHECKING:
@@ -70,10 +70,16 @@ def printed_check(case: Case, width: int = 200) -> str:
     return printed(print_check, CheckedCase(case), width=width)
 
 
+def finished(case: Case, context: RunContext | None = None) -> Run:
+    """Return the run of a case with its design results."""
+    run = run_case(case, "", context or RunContext())
+    run.evaluate()
+    return run
+
+
 def answers_of(case: Case, comm: Intracomm | None = None) -> DesignResults:
     """Return the results of a run of a case, as read from a folder."""
-    run = run_case(case, "", RunContext(comm))
-    run.evaluate()
+    run = finished(case, RunContext(comm))
     return Summary.model_validate_json(str(run.results.summary)).design
 
 

@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 
 from dynamics.trajectory import PointwiseDifferences
+from protractile.cases import change
 from runs.case import reading as case_file
 from runs.case.schema import Case, StopTable
 from runs.pipeline.comparison import Distributions, PeakDifferences
@@ -163,11 +164,10 @@ def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> R
     case = case_file.select(shipped("coarse"), "", MODELS, None)
     rubbing = {"friction": friction, "normal_forces": (4500.0, 5000.0)}
     joints = tuple(replace(joint, **rubbing) for joint in case.joints)
-    time = case.time.model_copy(update={"duration": 10.0})
     models = {name: model_summary() for name in MODELS} | {MODELS[0]: model_summary(**changes)}
     asked = {"members": 32, "relative": 1e-9, "seed": 1, "vary": "load", "slow_below": 1.67}
     summary = summary_of(models, ensemble=asked, comparisons=comparisons)
-    case = case.model_copy(update={"time": time, "joints": joints})
+    case = change(case.model_copy(update={"joints": joints}), **{"time.duration": 10.0})
     return Results(case, xr.Dataset(), summary)
 
 

@@ -12,7 +12,7 @@ from matplotlib.figure import Figure as Sheet
 from rich.console import Console
 
 from dynamics.predictability.horizon import measure_horizons
-from protractile.cases import run_case
+from protractile.cases import change, run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
@@ -31,6 +31,7 @@ from runs.sweep.distances import (
 )
 from runs.sweep.points import Plan, plan
 from runs.sweep.run import Outcome, run_point
+from tests.runs.case_texts import shipped
 from tests.runs.sweeping import COARSE, run
 
 TIME = np.arange(2001) / 1000
@@ -218,8 +219,8 @@ def test_a_reference_must_be_one_of_several_models(
 
 def test_chaos_is_compared_until_its_horizon() -> None:
     """Reference: other code, the horizon that ensembles measure with the same change."""
-    case = case_file.select(case_file.load(str(COARSE)), "", ["kantorovich-4"])
-    case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 3.0})})
+    case = case_file.select(shipped("coarse"), "", ["kantorovich-4"])
+    case = change(case, **{"time.duration": 3.0})
     (model,) = case.models
     until = comparable_until(case, model, run_case(case), None, None)
     moving = MotionPlan.of(build(case, build_boom(case), model).system, case, model)
@@ -237,8 +238,8 @@ def test_chaos_is_compared_until_its_horizon() -> None:
 def test_shell_reference_is_limited_by_its_horizon(tmp_path: Path) -> None:
     """Reference: analytic, no tip can be told beyond the end; a shell is built once more for it."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-    case = case_file.select(case_file.load(str(COARSE)), "", ["timoshenko", "shell"], 0.5)
-    case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.3})})
+    case = case_file.select(shipped("coarse"), "", ["timoshenko", "shell"], 0.5)
+    case = change(case, **{"time.duration": 0.3})
     outcome = run_point(case, Cache(tmp_path / "cache"), "shell")
     assert outcome.failures == {}
     off = outcome.off["timoshenko"]["tip_off"]

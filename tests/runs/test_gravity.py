@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from geometry.section import BoxSection
-from protractile.cases import run_case
+from protractile.cases import change, run_case
 from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.schema import Case
@@ -62,10 +62,7 @@ def test_everything_weighs_across_the_boom(tmp_path: Path, angle: float) -> None
 
 def test_from_rest_the_boom_swings_about_where_its_weight_holds_it(tmp_path: Path) -> None:
     """Reference: analytic. The tip falls at g and swings to nearly twice the static deflection."""
-    falling = read(tmp_path, "[gravity]\n").model_copy(
-        update={"time": read(tmp_path).time.model_copy(update={"duration": 1.0})}
-    )
-    moved = tip(falling)
+    moved = tip(change(read(tmp_path, "[gravity]\n"), **{"time.duration": 1.0}))
     static = tip(read(tmp_path, '[gravity]\n[start]\nstate = "equilibrium"\n'))[0]
     assert moved[0] == 0.0
     assert moved.min() == pytest.approx(2.0 * static, rel=0.06)

@@ -14,6 +14,7 @@ from matplotlib.figure import Figure as Sheet
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
+from protractile.cases import change
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case, EnsembleTable
@@ -22,13 +23,14 @@ from runs.pipeline.low_pass import SlowPeaks, slow_peaks
 from runs.pipeline.members import PEAKS, slow_cutoff, steps_for_peaks
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
-from runs.pipeline.run import Run, run_case
+from runs.pipeline.run import Run
 from runs.pipeline.summary import EnsembleSummary
 from runs.report.figures import draw
 from runs.report.output import write
 from runs.report.pages import Addition
 from tests.runs.case_texts import refusal, shipped
 from tests.runs.coarse_case import COARSE
+from tests.runs.summaries import finished
 
 SERIES = ["kantorovich-4", "kantorovich-5"]
 MODELS = [*SERIES, "beam-fe-bonded"]
@@ -38,9 +40,8 @@ STEP = 1.0e-3
 @pytest.fixture(scope="module")
 def case() -> Case:
     coarse = case_file.select(shipped("coarse"), "", MODELS, None)
-    time = coarse.time.model_copy(update={"duration": 3.0})
     table = EnsembleTable(members=5, relative=1e-6, seed=3, vary="load")
-    return coarse.model_copy(update={"time": time, "ensemble": table})
+    return change(coarse.model_copy(update={"ensemble": table}), **{"time.duration": 3.0})
 
 
 @pytest.fixture(scope="module")
@@ -50,9 +51,7 @@ def told() -> list[tuple[str, str, float]]:
 
 @pytest.fixture(scope="module")
 def run(case: Case, told: list[tuple[str, str, float]]) -> Run:
-    finished = run_case(case, "", RunContext(progress=lambda *what: told.append(what)))
-    finished.evaluate()
-    return finished
+    return finished(case, RunContext(progress=lambda *what: told.append(what)))
 
 
 def test_member_0_is_the_trajectory(run: Run) -> None:
@@ -93,8 +92,8 @@ def test_slow_is_below_the_closed_boom(case: Case) -> None:
     """Reference: other code, the play-free beam's lowest frequency of 2.0852 Hz."""
     boom = build_boom(case)
     assert slow_cutoff(boom, case.time) == pytest.approx(0.8 * 2.0852, rel=1e-3)
-    for change in ({"duration": 0.5}, {"output_step": 0.5}):
-        assert slow_cutoff(boom, case.time.model_copy(update=change)) is None
+    for update in ({"duration": 0.5}, {"output_step": 0.5}):
+        assert slow_cutoff(boom, case.time.model_copy(update=update)) is None
 
 
 def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
@@ -127,12 +126,8 @@ def test_ensembles_are_read_back(run: Run, tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("unprinted")
 def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path) -> None:
-    short = case.model_copy(
-        update={"ensemble": None, "time": case.time.model_copy(update={"duration": 0.1})}
-    )
-    without = run_case(short, "", RunContext())
-    without.evaluate()
-    write(without, Addition(), tmp_path)
+    short = change(case.model_copy(update={"ensemble": None}), **{"time.duration": 0.1})
+    write(finished(short), Addition(), tmp_path)
     assert not (tmp_path / "ensembles.nc").exists()
     assert Results.load(tmp_path).ensembles is None
 

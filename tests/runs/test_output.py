@@ -10,16 +10,17 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from protractile.cases import change
 from runs.case import reading as case_file
 from runs.client import judge
-from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.results import Results
-from runs.pipeline.run import Run, run_case
+from runs.pipeline.run import Run
 from runs.pipeline.static_results import place_names
 from runs.report.output import write, write_csv, write_report
 from runs.report.pages import Addition
 from tests.runs.case_texts import shipped
+from tests.runs.summaries import finished
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 
@@ -28,10 +29,7 @@ pytestmark = pytest.mark.usefixtures("few_figures")
 def run() -> Run:
     """Return the run of a series over a twentieth of a second."""
     case = case_file.select(shipped("coarse"), "", ["kantorovich-4"], None)
-    case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.05})})
-    finished = run_case(case, "", RunContext())
-    finished.evaluate()
-    return finished
+    return finished(change(case, **{"time.duration": 0.05}))
 
 
 @pytest.fixture

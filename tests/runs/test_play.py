@@ -12,10 +12,11 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Step
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 from runs.pipeline.bonded import bonded_system
 from runs.pipeline.design_results import DesignResults, PlayDifference
 from runs.pipeline.model_quality import quality_notes
+from tests.modal import modal_system
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import answers_of, model_summary, summary_of
 
@@ -122,16 +123,14 @@ LAW = PowerContact(1e6, 1.0).behind(0.01)
 def pair() -> GapSystem:
     """1 kg on a spring of 100 N/m, 1 kg that hangs in it by a play of 10 mm each way, with 5 N on
     it, and a rest on the ground far below."""
-    return GapSystem(
-        omega2=np.array([100.0, 0.0]),
-        load=np.array([0.0, -5.0]),
-        rows=np.array([[-1.0, 1.0], [0.0, 1.0]]),
-        laws=[LAW, PowerContact(1e5, 1.0).behind(0.5)],
-        station_of_row=np.array([0, 1]),
+    return modal_system(
+        [100.0, 0.0],
+        [0.0, -5.0],
+        [[-1.0, 1.0], [0.0, 1.0]],
+        [LAW, PowerContact(1e5, 1.0).behind(0.5)],
+        tip=[0.0, 1.0],
         stations=[1.0, 2.0],
-        station_directions=("z", "z"),
         grounded=[1],
-        observers={"tip": Observer(np.array([0.0, 1.0]))},
         excitations=[Excitation(np.array([1.0, 0.0]), Step())],
     )
 

@@ -20,7 +20,7 @@ SCATTERED = CANTILEVER.replace(f"load = {LOAD}", f"load = {SPREAD}")
 
 
 @pytest.fixture(autouse=True)
-def _folder(here: Path) -> None:
+def _folder(here: Path, in_this_process: None) -> None:
     Path("case.toml").write_text(SCATTERED, encoding="utf-8")
 
 

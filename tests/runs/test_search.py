@@ -17,7 +17,7 @@ ONE = "give one of --vary, --sensitivity and --samples"
 
 
 @pytest.fixture(autouse=True)
-def _folder(here: Path) -> None:
+def _folder(here: Path, in_this_process: None) -> None:
     Path("case.toml").write_text(CANTILEVER, encoding="utf-8")
 
 

@@ -4,7 +4,7 @@
 from dataclasses import replace
 
 from dynamics.contact import PowerContact
-from geometry.boom import Boom, Joint, Lateral, Material, Segment, Support
+from geometry.boom import Boom, Joint, Material, Segment, Support
 from geometry.section import BoxSection, Section, infer_inner_section, infer_outer_section
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
@@ -23,26 +23,8 @@ def box_segment(
     lateral_load: float = 0.0,
 ) -> Segment:
     """Return a steel segment whose beam data, in both planes, are those of its box."""
-    density, sideways = STEEL.density, section.lateral_second_moment_of_area
-    return Segment(
-        name=name,
-        start=start,
-        end=end,
-        material=STEEL,
-        mass_per_length=section.mass_per_length(density),
-        second_moment_of_area=section.second_moment_of_area,
-        rotary_inertia=density * section.second_moment_of_area,
-        section=section,
-        load=load,
-        supports=supports,
-        lateral=Lateral(
-            second_moment_of_area=sideways,
-            rotary_inertia=density * sideways,
-            torsion_constant=section.torsion_constant,
-            polar_inertia=density * section.polar_second_moment_of_area,
-            load=lateral_load,
-        ),
-    )
+    segment = Segment.of_section(name, start, end, STEEL, section, load=load, supports=supports)
+    return replace(segment, lateral=replace(segment.lateral, load=lateral_load))
 
 
 def two_segments(outer: Section, inner: Section) -> tuple[Segment, Segment]:
@@ -84,7 +66,6 @@ def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
     segments = tuple(
         replace(segment, lateral=replace(segment.lateral, load=sideways * segment.load))
         for segment in flat.segments
-        if segment.lateral is not None
     )
     joint = replace(flat.joints[0], lateral_play=2.0 * LATERAL_LAW.above, friction=friction)
     return Boom(segments, (joint,))

@@ -61,9 +61,7 @@ def octagonal_boom() -> Boom:
     """Return a boom of octagons, pushed sideways by 0.3 of what pushes it along z."""
     boom = sections.boom_of(*sections.SHAPES["octagon"])
     segments = tuple(
-        replace(s, lateral=replace(s.lateral, load=0.3 * s.load))
-        for s in boom.segments
-        if s.lateral is not None
+        replace(s, lateral=replace(s.lateral, load=0.3 * s.load)) for s in boom.segments
     )
     joint = replace(boom.joints[0], lateral_play=2.0 * LATERAL_LAW.above)
     return replace(boom, segments=segments, joints=(joint,))
@@ -166,7 +164,6 @@ def test_lateral_motion_follows_beams() -> None:
     segments = tuple(
         replace(segment, load=0.0, lateral=replace(segment.lateral, load=segment.load))
         for segment in flat.segments
-        if segment.lateral is not None
     )
     boom = replace(flat, segments=segments)
     elements = finite_element_segments(boom, 0.5, "timoshenko", True)

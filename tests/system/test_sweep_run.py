@@ -16,7 +16,6 @@ from PIL import Image
 
 from runs.folder.cache import Cache
 from runs.sweep.run import Outcome
-from tests import at_once
 from tests.system.run_folder import COARSE, ROOT, files, protractile
 
 pytestmark = pytest.mark.slow
@@ -41,12 +40,6 @@ def case(here: Path) -> str:
     return write_case(here).name
 
 
-@pytest.fixture
-def _in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Points run where patches hold, and no process imports what this one has."""
-    monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
-
-
 @pytest.fixture(scope="module")
 def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """Return the folder of a sweep on all cores, with its output beside it."""
@@ -64,7 +57,7 @@ def stamps(folder: str | Path) -> dict[str, int]:
     return {path.name: path.stat().st_ino for path in points}
 
 
-@pytest.mark.usefixtures("_in_this_process")
+@pytest.mark.usefixtures("in_this_process")
 def test_a_sweep_leaves_its_files_and_is_taken_up(
     swept: Path, case: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -87,7 +80,7 @@ def test_a_sweep_leaves_its_files_and_is_taken_up(
     assert before.items() <= after.items()
 
 
-@pytest.mark.usefixtures("_in_this_process")
+@pytest.mark.usefixtures("in_this_process")
 def test_failures_are_lines_and_count_if_nothing_is_left(
     case: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -119,7 +112,7 @@ def test_two_ranks_write_the_same_sweep_as_two_cores(
     assert stamps("two").keys() == stamps(swept).keys()
 
 
-@pytest.mark.usefixtures("_in_this_process")
+@pytest.mark.usefixtures("in_this_process")
 def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
     play, beams = "joint.play=0.004:0.014:3", "kantorovich-4"
     arguments = ["sweep", case, "--vary", play, "--models", beams, "--out", "out"]

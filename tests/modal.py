@@ -1,0 +1,39 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Small systems by the numbers that a test is about."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from dynamics.contact import ContactLaw
+from dynamics.gap_system import GapSystem, Observer
+
+
+def modal_system(
+    omega2: ArrayLike,
+    load: ArrayLike,
+    rows: ArrayLike = (),
+    laws: Sequence[ContactLaw] = (),
+    tip: ArrayLike | None = None,
+    **more: Any,
+) -> GapSystem:
+    """Return a system whose contact rows have a station each unless others are given.
+
+    Args:
+        omega2: (num_modes,) as the next ones in a :class:`GapSystem`.
+        load: (num_modes,).
+        rows: (num_rows, num_modes).
+        laws: one for each row.
+        tip: (num_modes,) row of the observer ``tip``.
+        more: what else a system has, or has otherwise.
+    """
+    modes, stations = np.array(omega2, dtype=float), range(len(laws))
+    usual = {
+        "station_of_row": np.array(stations, dtype=np.int64),
+        "stations": [float(number) for number in stations],
+        "observers": {} if tip is None else {"tip": Observer(np.array(tip, dtype=float))},
+    }
+    contacts = np.array(rows, dtype=float).reshape(len(laws), modes.size)
+    return GapSystem(modes, np.array(load, dtype=float), contacts, laws, **usual | more)
