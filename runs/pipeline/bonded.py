@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Models with bonded contacts, without play.
 
-Contacts that are closed in the static state are bonded without play. At a station without closed
-contacts all contacts are bonded. Local compliance, for example of a shell's walls, remains.
+Contacts that are closed in the static state are bonded without play. At a lateral station, and at
+a station without closed contacts, all contacts are bonded: without lateral play, walls that bulge
+under vertical pads press both lateral pads. Local compliance, for example of a shell's walls,
+remains.
 """
 
 from __future__ import annotations
@@ -43,7 +45,8 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
         gaps = system.rows @ rest
         pressing |= [bool(law.force(y)) for law, y in zip(system.laws, gaps, strict=True)]
     pressed = np.isin(system.station_of_row, system.station_of_row[pressing])
-    held = system.rows[~on_ground & (pressing | ~pressed)]
+    lateral = np.array(system.station_directions)[system.station_of_row] == "y"
+    held = system.rows[~on_ground & (pressing | ~pressed | lateral)]
     free = null_space(held) if held.size else np.eye(system.num_modes)
     omega2, shapes = eigh(free.T @ system.stiffness @ free)
     least = _RIGID_FRACTION * min(system.omega2[system.omega2 > 0.0], default=0.0)

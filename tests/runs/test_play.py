@@ -166,3 +166,23 @@ def test_the_ground_is_still_met(pair: GapSystem) -> None:
 def test_where_nothing_presses_all_is_bonded(pair: GapSystem) -> None:
     bonded, _ = bonded_system(pair, [])
     np.testing.assert_allclose(bonded.omega2, [50.0], rtol=1e-12)
+
+
+def test_lateral_contacts_of_both_walls_are_bonded() -> None:
+    """Reference: by hand. 5 N bulge the walls by 50 mm, 4 N move the mass by 40 mm to the right
+    wall, where it presses. Without play both stay in place, and 1 N moves the rest by 1/4 m."""
+    law = PowerContact(1e5, 1.0).behind(0.08)
+    system = modal_system(
+        [100.0, 100.0, 4.0],
+        [4.0, 5.0, 1.0],
+        [[1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]],
+        [law, law],
+        station_of_row=np.array([0, 0]),
+        stations=[1.0],
+        station_directions=("y",),
+    )
+    rest = equilibrium(system, system.load)
+    assert [bool(law.force(gap)) for gap in system.rows @ rest] == [True, False]
+    bonded, basis = bonded_system(system, [rest])
+    hung = basis @ equilibrium(bonded, bonded.load)
+    np.testing.assert_allclose(hung, [0.0, 0.0, 0.25], atol=1e-12)
