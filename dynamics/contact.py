@@ -36,7 +36,7 @@ class ContactLaw(ABC):
       the penetration, but never adhesive;
     - ``str(law)``, a short description for tables.
 
-    Contact begins at y = 0 unless :meth:`behind` adds a clearance.
+    Contact begins at y = 0 unless :meth:`with_clearance` adds a clearance.
     """
 
     __slots__ = ()
@@ -50,20 +50,20 @@ class ContactLaw(ABC):
 
     def one_sided(self, side: int) -> Gap | None:
         """Return the law on one side, 1 or −1, only; None without contact on this side."""
-        part = self.behind(0.0)
+        part = self.with_clearance(0.0)
         part = replace(part, sides=tuple(one for one in part.sides if one == side))
         return part if part.terms else None
 
-    def shared(self, weight: float) -> Gap:
+    def with_weight(self, weight: float) -> Gap:
         """Return the law times ``weight``, for one of several points that share its force."""
-        part = self.behind(0.0)
+        part = self.with_clearance(0.0)
         return replace(part, weight=weight * part.weight)
 
-    def behind(self, above: float, below: float | None = None) -> Gap:
+    def with_clearance(self, above: float, below: float | None = None) -> Gap:
         """Return the law with a clearance in m for y > 0, and this or another one for y < 0."""
         return Gap(self, above, above if below is None else below)
 
-    def scaled(self, factor: float) -> ContactLaw:
+    def scale_clearances(self, factor: float) -> ContactLaw:
         """Return the law with its clearances multiplied by a factor."""
         return self
 
@@ -112,7 +112,7 @@ class ContactLaw(ABC):
 class Gap(ContactLaw):
     """Contact law with clearances and a factor, on one side or on both.
 
-    >>> law = pt.PowerContact(1e6, exponent=1.0).behind(0.004, 0.010)
+    >>> law = pt.PowerContact(1e6, exponent=1.0).with_clearance(0.004, 0.010)
     >>> law.force(np.array([0.005, -0.005]))
     array([1000.,    0.])
 
@@ -153,12 +153,12 @@ class Gap(ContactLaw):
             if side in self.sides
         )
 
-    def behind(self, above: float, below: float | None = None) -> Gap:
+    def with_clearance(self, above: float, below: float | None = None) -> Gap:
         """Return the law with clearances that are larger by these lengths in m."""
         more = above if below is None else below
         return replace(self, above=self.above + above, below=self.below + more)
 
-    def scaled(self, factor: float) -> Gap:
+    def scale_clearances(self, factor: float) -> Gap:
         return replace(self, above=factor * self.above, below=factor * self.below)
 
     def slope_at(self, force: float) -> float:
@@ -176,7 +176,7 @@ class PowerContact(ContactLaw):
     Equation (4) of Rusiński and Wyciślok (1997), in the only sign convention that gives a restoring
     force; n = 3/2 is Hertz contact, n = 1 a linear stop. A side with stiffness zero has no contact.
 
-    >>> law = pt.PowerContact(stiffness=1e6, exponent=1.5).behind(0.01)
+    >>> law = pt.PowerContact(stiffness=1e6, exponent=1.5).with_clearance(0.01)
     >>> law.force(np.array([0.0, 0.01, 0.02]))
     array([   0.,    0., 1000.])
 

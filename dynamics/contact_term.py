@@ -39,7 +39,7 @@ LIMITS = np.dtype([("low", np.float64), ("high", np.float64), ("damping", np.flo
 class Term(NamedTuple):
     """One-sided power law F = side · k max(side · y − onset, 0)ⁿ.
 
-    >>> pt.PowerContact(1e6, 1.0).lower().behind(0.01).terms
+    >>> pt.PowerContact(1e6, 1.0).lower().with_clearance(0.01).terms
     (Term(side=-1.0, stiffness=1000000.0, onset=0.01, exponent=1.0),)
 
     Args:

@@ -98,8 +98,8 @@ class GapBuilder(Generic[R]):
         for side, weight, operator in points:
             there = law if side == 0 else law.one_sided(side)
             if there is not None:
-                part = there.shared(weight) if side else there
-                part = part.behind(-shim) if shim else part
+                part = there.with_weight(weight) if side else there
+                part = part.with_clearance(-shim) if shim else part
                 self.contacts.append(LawRow(operator, part, station))
         return tuple(range(first, len(self.contacts)))
 

@@ -235,7 +235,9 @@ class GapSystem:
             for (kind, position), row in zip(travel.moved_rows, rows, strict=True):
                 rows_at[kind][position] = row
             for (_, position), shift in zip(travel.moved_rows, travel.shifts, strict=False):
-                laws[position] = laws[position].behind(-shift * extension, shift * extension)
+                laws[position] = laws[position].with_clearance(
+                    -shift * extension, shift * extension
+                )
         geometric_stiffness = geometric_stiffness if geometric_stiffness.any() else np.zeros((0, 0))
         return replace(
             self, **rows_at, laws=laws, travels=(), geometric_stiffness=geometric_stiffness

@@ -179,7 +179,7 @@ class HangingLoad:
             constant = np.pad(hung[None, None, :1], [(0, 0), (0, 3), (0, 0), (0, 0)])
             table = RowTable(np.array([0.0, 1.0]), constant)
             travels.append(Travel(self.hoist, table, (("rows", first),), shifts=(1.0,)))
-        pulling = PowerContact(self.stiffness, 1.0).upper().behind(self.slack or 0.0)
+        pulling = PowerContact(self.stiffness, 1.0).upper().with_clearance(self.slack or 0.0)
         contacts: list[tuple[Array, ContactLaw]] = [(hung[0], pulling)]
         if self.pendulum is not None:
             swing = self.pendulum
@@ -205,7 +205,7 @@ class HangingLoad:
                 ]
         if self.slack is not None:
             ground = PowerContact(_GROUND * self.stiffness, 1.0).lower()
-            contacts.append((height, ground.behind(0.0, -self.weight / ground.below)))
+            contacts.append((height, ground.with_clearance(0.0, -self.weight / ground.below)))
         numbers = [len(system.stations) + number for number in range(len(contacts))]
         return replace(
             wide,

@@ -13,7 +13,7 @@ SPEED = 2.0
 def rebound(restitution: float) -> float:
     """Return the ratio of the speed after the impact to that before it."""
     damping = pt.restitution_damping(restitution, SPEED)
-    law = pt.PowerContact(1.0e6, 1.5, damping=damping).upper().behind(0.01)
+    law = pt.PowerContact(1.0e6, 1.5, damping=damping).upper().with_clearance(0.01)
     one, place = np.ones(1), np.array([0])
     seen = {"place": Observer(one)}
     mass = GapSystem(0.0 * one, 0.0 * one, one[None], [law], place, [0.0], seen)

@@ -129,7 +129,7 @@ class Boom:
         return replace(self, joints=tuple(replace(joint, drive=None) for joint in self.joints))
 
     @property
-    def driven(self) -> bool:
+    def telescopes(self) -> bool:
         """True if a joint telescopes during the motion."""
         return any(joint.drive is not None for joint in self.joints)
 

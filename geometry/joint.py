@@ -260,7 +260,7 @@ class Joint(BareJoint):
             raise BoomError(
                 "joint.contact", "missing; give a contact law, or tie the segments of the joint"
             )
-        return law.behind(*self.clearances(direction))
+        return law.with_clearance(*self.clearances(direction))
 
     @property
     def padded(self) -> bool:
@@ -324,4 +324,4 @@ class Stop(BareStop):
     @property
     def law(self) -> Any:
         """The contact law across the play."""
-        return self.contact.behind(0.5 * self.play)
+        return self.contact.with_clearance(0.5 * self.play)

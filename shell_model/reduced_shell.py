@@ -97,7 +97,7 @@ def reduce_boom(
     stages = Stages(progress)
     full = replace(assemble_boom(boom, options, comm, stages), helper=helper)
     telescoping = None
-    if boom.driven:
+    if boom.telescopes:
         fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
         reduce = partial(_reduce_segment, full, fewer, stages)
         test = options.krylov.tests[0]

@@ -56,7 +56,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
     opened = replace(
         system,
         laws=[
-            law.behind(*more[station]) if any(more[station]) else law
+            law.with_clearance(*more[station]) if any(more[station]) else law
             for law, station in zip(system.laws, system.station_of_row.tolist(), strict=True)
         ],
         load=system.load - shell.own_loads.sum(axis=0) + factors @ shell.own_loads,

@@ -99,7 +99,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         ContactModel(
             f"{default.name}, {part:g} of the penalty",
             case,
-            replace(default.system, laws=[law.shared(part) for law in default.system.laws]),
+            replace(default.system, laws=[law.with_weight(part) for law in default.system.laws]),
         )
         for part in sizes.penalties
     ]

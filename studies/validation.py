@@ -203,9 +203,11 @@ def released_slider() -> Iterator[Verification]:
 def impact_pair() -> Verification:
     """Compare one oscillator against a wall with two that collide (SDND102)."""
     wall, pair = PowerContact(5.76e7, 1.0), PowerContact(2.88e7, 1.0)
-    one = Oscillators(25.0, 98696.0, [1.0], 10.0, 0.07).system(laws=[wall.upper().behind(5.0e-4)])
+    one = Oscillators(25.0, 98696.0, [1.0], 10.0, 0.07).system(
+        laws=[wall.upper().with_clearance(5.0e-4)]
+    )
     both = Oscillators(25.0, 98696.0, [1.0, -1.0], 10.0, 0.07).system(
-        laws=[pair.upper().behind(1.0e-3)]
+        laws=[pair.upper().with_clearance(1.0e-3)]
     )
     runs = [FixedStep(1.0e-5)(Motion(system, 1.0, 1.0e-3)).data for system in (one, both)]
     single, mutual = (run["x0"].values for run in runs)

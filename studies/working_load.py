@@ -156,7 +156,7 @@ class ContactResults:
 
 def set_point(system: GapSystem, point: Point) -> GapSystem:
     """Return the system with the play and the load of a point, in the same coordinates."""
-    laws = [law.scaled(0.0).behind(0.5 * point.play) for law in system.laws]
+    laws = [law.scale_clearances(0.0).with_clearance(0.5 * point.play) for law in system.laws]
     return replace(system, laws=laws, load=point.load * system.load)
 
 

@@ -112,7 +112,7 @@ def spatial_boom(paper_boom: Boom) -> Boom:
 @pytest.fixture(scope="session")
 def paper_law() -> PowerContact:
     """(4) with the paper's k, n and Δ."""
-    return PowerContact(stiffness=1.0e13, exponent=2.0).behind(7.0e-3)
+    return PowerContact(stiffness=1.0e13, exponent=2.0).with_clearance(7.0e-3)
 
 
 @pytest.fixture

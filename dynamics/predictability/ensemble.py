@@ -69,7 +69,7 @@ def vary_motion(motion: Motion, vary: Vary, factor: float) -> Motion:
         load = factor * system.load
         return replace(motion, system=replace(system, load=load, excitations=excitations))
     if vary == "clearance":
-        laws = [law.scaled(factor) for law in system.laws]
+        laws = [law.scale_clearances(factor) for law in system.laws]
         return replace(motion, system=replace(system, laws=laws))
     return replace(motion, velocity=factor * motion.velocity)
 
@@ -84,7 +84,7 @@ def check_varied(motion: Motion, vary: Vary) -> None:
     loads = [system.load, *(x.load for x in system.excitations)]
     varied: dict[Vary, bool] = {
         "load": any(load.any() for load in loads),
-        "clearance": any(law.scaled(2.0) != law for law in system.laws),
+        "clearance": any(law.scale_clearances(2.0) != law for law in system.laws),
         "velocity": bool(motion.velocity.any()),
     }
     if not varied[vary]:

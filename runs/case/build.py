@@ -128,7 +128,7 @@ def _check_observations(case: Case) -> None:
     check_names("observe", [table.name for table in case.observe])
     of_drives = {
         name + suffix
-        for suffix in case.driven
+        for suffix in case.driven_segments
         for name in (*DRIVE_VARIABLES, *ELASTIC_DRIVE_VARIABLES)
     }
     for number, table in enumerate(case.observe, start=1):

@@ -355,7 +355,7 @@ class Case(CaseKeys, CaseHeading):
         )
 
     @property
-    def driven(self) -> dict[str, str]:
+    def driven_segments(self) -> dict[str, str]:
         """The name of the inner segment of each drive, by the suffix of the drive's results."""
         return {
             "" if number == 1 else f"-{number}": joint.inner

@@ -108,7 +108,7 @@ def beam_results(
         whole = summary_table(results)
         assert whole is not None
         limits = [
-            (f"Limit: {check.limit}", f"{check.limit.shown(value)} {'✓' if check.holds else '✗'}")
+            (f"Limit: {check.limit}", f"{check.limit.format(value)} {'✓' if check.holds else '✗'}")
             for check in check_limits(results)
             for value in check.values.values()
         ]

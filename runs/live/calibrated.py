@@ -43,7 +43,7 @@ def build_beam(
     case, boom, (model,) = checked.case, checked.boom, checked.case.models
     with_loads = case.model_copy(update={name: getattr(original, name) for name in _LOADS})
     plates = all(segment.section is not None for segment in boom.segments)
-    for shell in shells if plates and not boom.driven else ():
+    for shell in shells if plates and not boom.telescopes else ():
         unused: dict[str, object] = dict.fromkeys(OF_MOTION)
         by = shell.model_copy(update=unused)
         beam = model.model_copy(update={"calibrated_by": by, "contact": shell.contact})

@@ -152,7 +152,7 @@ class ModelEvaluation:
             # Shapes are left out, since play hardly changes them.
             modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
         )
-        if boom.driven:
+        if boom.telescopes:
             # A boom without play cannot telescope.
             return results
         try:
@@ -175,7 +175,7 @@ def _bonded_model(
     initial = [
         position for time, position in equilibria.items() if _at_initial_extension(boom, time)
     ]
-    initial_system = played.system.at_time(0.0) if boom.driven else played.system
+    initial_system = played.system.at_time(0.0) if boom.telescopes else played.system
     system, basis = bonded_system(initial_system, initial)
     system = with_initial_slack(system, case)
     return LoadedModel(without, system, [line.transform(basis) for line in played.lines])

@@ -252,7 +252,7 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         ]
     if any(used):
         columns.append(Column("utilisation", used, ".3g", "%"))
-    more = ["Drives stay where they are at t = 0."] if boom.driven else []
+    more = ["Drives stay where they are at t = 0."] if boom.telescopes else []
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
     kinds = (
         "Stresses are outer-fibre stresses. Contact forces act on the outer segment, upwards "

@@ -118,8 +118,8 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Ar
         whole = sum(other.stiffness for other in joint.pads if other.side == pad.side)
         there = law.one_sided(side)
         assert there is not None
-        part = there.shared(pad.stiffness / whole)
-        laws.append(part.behind(-pad.shim))
+        part = there.with_weight(pad.stiffness / whole)
+        laws.append(part.with_clearance(-pad.shim))
     if not laws:
         return []
 

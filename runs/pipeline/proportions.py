@@ -100,7 +100,7 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
                 f"joint[{number}].normal_forces: they have no effect, since friction is 0; give "
                 "friction, usual is 0.05 to 0.3, or leave them out"
             )
-    moves = (case.loads, case.base, case.driven, case.hoist, case.slew, case.luff)
+    moves = (case.loads, case.base, case.driven_segments, case.hoist, case.slew, case.luff)
     if case.gravity is not None and not case.start.at_rest and any(moves):
         yield (
             "start.state: the boom starts straight and falls under its weight while other loads "

@@ -151,14 +151,14 @@ class Limit:
 
     def __str__(self) -> str:
         """Return quantity, relation and permitted value: ``tip deflection ≤ 900 mm``."""
-        return f"{self.quantity.title} {self.sign} {self.shown(self.permitted)}"
+        return f"{self.quantity.title} {self.sign} {self.format(self.permitted)}"
 
-    def shown(self, value: float | None) -> str:
+    def format(self, value: float | None) -> str:
         """Return a value in SI units as text in the displayed unit; empty without a value."""
         unit = self.quantity.shown_unit
         return "" if value is None else f"{self.quantity.factor * value:.4g} {unit}"
 
-    def permits(self, value: float) -> bool:
+    def is_met_by(self, value: float) -> bool:
         """Return True if a value in SI units is within the limit."""
         return value >= self.permitted if self.least else value <= self.permitted
 
@@ -178,7 +178,7 @@ class LimitCheck:
     @property
     def holds(self) -> bool:
         """True if the decisive value is within the limit; False without a value."""
-        return self.decisive is not None and self.limit.permits(self.decisive[1])
+        return self.decisive is not None and self.limit.is_met_by(self.decisive[1])
 
 
 def case_limits(table: LimitsTable | None) -> list[Limit]:

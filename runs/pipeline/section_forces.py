@@ -81,7 +81,7 @@ def section_forces(
     aside = _ASIDE * max(1.0, float(np.ptp(line.x)))
     x = line.x + aside * (np.append(False, jump).astype(float) - np.append(jump, False))
     pressed = axial_force(boom.segments, boom.joints, number, x, time, boom.axial_changes)
-    if boom.driven or boom.axial_changes:
+    if boom.telescopes or boom.axial_changes:
         # Lines already include the shear force at the start due to axial forces.
         more = pressed - boom.segments[number].compression(x)
         for deflection, shear in _ACROSS:

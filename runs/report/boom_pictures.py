@@ -182,7 +182,7 @@ def draw_boom(
                 instant.heading(scene),
                 f"{'seen from above; ' if scene.from_above else ''}displacements and play × "
                 f"{view.scale:g}, sections × {SECTION_DRAWN:g}\ngrey: undeformed"
-                f"{', as at t = 0' if scene.boom.driven else ''}"
+                f"{', as at t = 0' if scene.boom.telescopes else ''}"
                 f"{f'; symbols: {symbols}' if symbols else ''}{pace}",
             )
             if crane is not None:

@@ -161,7 +161,7 @@ class FigureContext:
         column[-1].set(xlabel="time (s)", xlim=(0.0, self.time[-1] if end is None else end))
         # Segments with the same extension share a line.
         together: dict[tuple[float, ...], list[str]] = {}
-        for suffix, inner in self.case.driven.items():
+        for suffix, inner in self.case.driven_segments.items():
             if f"extension{suffix}" in self.data:
                 travel = self.result(self.models[0], f"extension{suffix}")
                 together.setdefault(tuple(travel.tolist()), []).append(inner)
@@ -268,10 +268,10 @@ def highest(values: Sequence[float] | Array) -> float:
 
 def initial_position_note(case: Case) -> str:
     """Return a note that x is the position at t = 0; empty without telescoping."""
-    return " Positions x are at t = 0 and move with their segments." if case.driven else ""
+    return " Positions x are at t = 0 and move with their segments." if case.driven_segments else ""
 
 
 def extension_note(case: Case, rests: Iterable[StaticResult]) -> str:
     """Return a note on the extensions of static states; empty without telescoping."""
     times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
-    return f" Extension as at {join_words(times)} s." if case.driven and times else ""
+    return f" Extension as at {join_words(times)} s." if case.driven_segments and times else ""

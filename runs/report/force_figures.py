@@ -155,7 +155,7 @@ def drives(run: FigureContext) -> list[Figure]:
     """Draw force and power of each drive, and force and deflection of each elastic drive."""
     return [
         draw(run, suffix, inner)
-        for suffix, inner in run.case.driven.items()
+        for suffix, inner in run.case.driven_segments.items()
         for name, draw in (("drive_power", _drive), ("drive_force", _stick_slip))
         if f"{name}{suffix}" in run.data
     ]

@@ -20,7 +20,7 @@ def limit_table(results: Results) -> Table | None:
         Column("satisfied", ["✓" if check.holds else "✗" for check in checks]),
     ]
     columns += [
-        Column(name, [check.limit.shown(check.values.get(name)) for check in checks])
+        Column(name, [check.limit.format(check.values.get(name)) for check in checks])
         for name in results.main_models
     ]
     notes = [f"{results.main_models[0]} governs; if it has no value, the next model governs."]
@@ -35,5 +35,5 @@ def limit_faults(results: Results) -> Iterator[str]:
         what = "no model has such a result"
         if check.decisive is not None:
             model, value = check.decisive
-            what = f"{check.limit.shown(value)} in {model}; the case demands {check.limit}"
+            what = f"{check.limit.format(value)} in {model}; the case demands {check.limit}"
         yield f"limits.{check.limit.quantity.name}: {what}"

@@ -214,8 +214,8 @@ def _contacts(
             law = pad.joint.law(pad.direction).one_sided(side)
             if law is None:
                 continue
-            law = law.shared(pad.weight)
-            law = law.behind(-pad.shim) if pad.shim else law
+            law = law.with_weight(pad.weight)
+            law = law.with_clearance(-pad.shim) if pad.shim else law
             yield {"outer": outer, "inner": inner, "points": points(law)}
     for _, stop in boom.numbered_stops:
         node = [stop.segment, parts[stop.segment].node(stop.x)]

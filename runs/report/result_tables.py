@@ -215,7 +215,7 @@ def drive_table(results: Results) -> Table | None:
     data = results.trajectories
     rows = [
         (str(model), inner, *_effort(results, str(model), suffix))
-        for suffix, inner in results.case.driven.items()
+        for suffix, inner in results.case.driven_segments.items()
         if f"drive_power{suffix}" in data
         for model in data["model"].values
     ]
@@ -286,7 +286,7 @@ def stick_slip_table(results: Results) -> Table | None:
     """Return the table of stick-slip results; None without elastic drives."""
     rows = [
         (model, inner, model_summary.stick_slip[name])
-        for suffix, inner in results.case.driven.items()
+        for suffix, inner in results.case.driven_segments.items()
         for model, model_summary in results.summary.models.items()
         if (name := f"drive_force{suffix}") in model_summary.stick_slip
     ]

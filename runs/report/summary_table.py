@@ -238,7 +238,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if "Tip travel from t = 0, mm" in rows:
         yield "Tip travel: largest distance of the tip from its position at t = 0."
     if any("×" in cell for cells in rows.values() for cell in cells):
-        extended = ", at any extension" if results.case.driven else ""
+        extended = ", at any extension" if results.case.driven_segments else ""
         yield f"φ (×): maximum in motion over the static value under the maximum load{extended}."
     if "Residual vibration of the tip, mm" in rows:
         yield (

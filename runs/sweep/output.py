@@ -113,7 +113,7 @@ def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
     lines = []
     for limit, name in product(plan.limits, data["model"].values):
         numbers = data[limit.quantity.name].sel(model=name).values.ravel()
-        held = sum(limit.permits(value) for value in numbers)
+        held = sum(limit.is_met_by(value) for value in numbers)
         lines.append(f"{name}: {limit} at {held} of {numbers.size} points")
     for name, one in vibration_curves(data).items():
         lines += describe(name, one)

@@ -109,14 +109,17 @@ def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float
 def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int, int]:
     """Return the indices of the values on both sides of the bound."""
     values = numbers(plan, outcomes, bound)
-    within = [bound.permits(value) for value in values]
+    within = [bound.is_met_by(value) for value in values]
     changes = [pair for pair in pairwise(range(len(values))) if within[pair[0]] != within[pair[1]]]
     if len(changes) == 1:
         return changes[0]
-    key, span = plan.variations[0].key, f"{bound.shown(min(values))} to {bound.shown(max(values))}"
+    key, span = (
+        plan.variations[0].key,
+        f"{bound.format(min(values))} to {bound.format(max(values))}",
+    )
     passes, times = ("passes", f" {len(changes)} times") if changes else ("does not pass", "")
     what = (
-        f"{bound.quantity.title} {passes} {bound.shown(bound.permitted)}{times} over {key}, where "
+        f"{bound.quantity.title} {passes} {bound.format(bound.permitted)}{times} over {key}, where "
         f"it is {span}; give values of {key} around one place where it does"
     )
     raise BadInput(plan.file, OPTION, what)
@@ -130,7 +133,7 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
         (
             f"{values[i]:.6g}",
             quantity.factor * results[i],
-            "✓" if bound.permits(results[i]) else "✗",
+            "✓" if bound.is_met_by(results[i]) else "✗",
         )
         for i in _bracket(plan, outcomes, bound)
     ]

@@ -122,7 +122,7 @@ def _on_wall(
     if options.stiffness is not None:
         area = width * (end - start)
         share = options.stiffness * area / max(term.stiffness for term in law.terms)
-    pressing = one_sided.shared(share)
+    pressing = one_sided.with_weight(share)
     along, across = gauss(start, end, options.points[0]), gauss(0.0, 0.5 * width, options.points[1])
     # Fraction of the area of the wall that a pair of points represents.
     weights = np.outer(along[1], across[1]).ravel()
@@ -140,12 +140,12 @@ def _on_wall(
     points = zip(approaches(1), approaches(-1), weights, stations.tolist(), strict=True)
     for right, left, weight, station in points:
         if boom.spatial:
-            part = pressing.shared(0.5 * weight)
+            part = pressing.with_weight(0.5 * weight)
             yield SurfacePoint(right, part, station, wall.side, 1)
             yield SurfacePoint(left, part, station, wall.side, -1)
         else:
             mean = 0.5 * right + 0.5 * left
-            yield SurfacePoint(mean, pressing.shared(weight), station, wall.side, 0)
+            yield SurfacePoint(mean, pressing.with_weight(weight), station, wall.side, 0)
 
 
 def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) -> ReducedSegment:

@@ -137,7 +137,9 @@ def ball_on_beam() -> Problem:
     duration, step = 0.03, 1.0e-6
     mass, stiffness = impacting_beam.beam(impacting_beam.ELEMENTS)
     height = impacting_beam.HEIGHT
-    motion = impacting_beam.falling(impacting_beam.ELEMENTS, SOFT.lower().behind(height), duration)
+    motion = impacting_beam.falling(
+        impacting_beam.ELEMENTS, SOFT.lower().with_clearance(height), duration
+    )
 
     def move(step: float) -> Array:
         data = FixedStep(step)(motion).data

@@ -24,7 +24,7 @@ from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Segment
 from geometry.joint import Drive
 
-LAW = PowerContact(1.0e6, 1.0).behind(7.0e-3)
+LAW = PowerContact(1.0e6, 1.0).with_clearance(7.0e-3)
 DRIVE = Drive(SCurve(4.0, 5.0), ("inner", "outer"))
 
 

@@ -27,7 +27,7 @@ Models = Callable[..., list[SegmentModel]]
 
 SPRING, DASHPOT = 2.0e6, 900.0
 # A spring both ways, since no play is between its sides.
-BOTH_WAYS = PowerContact(SPRING, exponent=1.0).behind(0.0)
+BOTH_WAYS = PowerContact(SPRING, exponent=1.0).with_clearance(0.0)
 
 
 def decrements(system: GapSystem, position: Array, duration: float, name: str) -> Array:
@@ -136,7 +136,7 @@ def test_dashpots_keep_the_ledger(paper_boom: Boom, elements: Models) -> None:
     """Reference: analytic, conservation of energy, while the play is crossed again and again."""
     (joint,) = paper_boom.joints
     boom = replace(paper_boom, joints=(replace(joint, dashpot=2.0e4),))
-    law = PowerContact(1.0e9, exponent=1.0).behind(0.5 * joint.play)
+    law = PowerContact(1.0e9, exponent=1.0).with_clearance(0.5 * joint.play)
     run = AdaptiveStep()(Motion(gap_system(touching(boom, law), elements(1.0)), 1.0))
     loss = np.diff(run.data["damping_loss"].values)
     assert loss.min() >= 0.0

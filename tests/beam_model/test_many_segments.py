@@ -33,7 +33,7 @@ def chain(boom: Boom, count: int) -> Boom:
 def test_the_size_grows_with_the_number_of_segments(paper_boom: Boom, kind: str) -> None:
     """Reference: the paper's 5.3. Each segment adds as many equations and two forces, nothing
     square."""
-    law = PowerContact(1.0e9, 1.0).behind(7.0e-3)
+    law = PowerContact(1.0e9, 1.0).with_clearance(7.0e-3)
 
     def model(boom: Boom, number: int, segment: Segment) -> SegmentModel:
         if kind == "series":

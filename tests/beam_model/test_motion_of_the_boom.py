@@ -86,7 +86,7 @@ def test_with_friction_the_complete_series_follows_the_elements(
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
-    law = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
+    law = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
     beams, complete, printed = (
         FixedStep(4.0e-6)(Motion(gap_system(touching(boom, law), models), 0.6))
         for models in (elements(1.0), series((12, 12), "complete"), series((2, 3)))
@@ -132,10 +132,10 @@ def test_units_do_not_matter(paper_boom: Boom, kind: str) -> None:
     for boom, unit in ((paper_boom, 1.0), (small, 1000.0)):
         if kind == "series":
             models = kantorovich_segments(boom, (2, 3), "as printed", True)
-            law = PowerContact(1.0e13 / unit**2, 2.0).behind(7.0e-3 * unit)
+            law = PowerContact(1.0e13 / unit**2, 2.0).with_clearance(7.0e-3 * unit)
         else:
             models = finite_element_segments(boom, unit, "euler-bernoulli", True)
-            law = PowerContact(1.0e10 / unit, 1.0).behind(7.0e-3 * unit)
+            law = PowerContact(1.0e10 / unit, 1.0).with_clearance(7.0e-3 * unit)
         system = gap_system(touching(boom, law), models)
         runs.append(AdaptiveStep()(Motion(system, 0.122, output_step=1.0e-3)))
     metres, millimetres = runs
@@ -149,7 +149,7 @@ def test_units_do_not_matter(paper_boom: Boom, kind: str) -> None:
         assert error < 1e-9 * np.abs(expected).max(), name
 
 
-LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
+LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
 
 
 @pytest.fixture(scope="module")
@@ -206,7 +206,9 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
 
 def test_free_segment_decays_at_the_ratio_of_the_first_mode(heavy: GapSystem) -> None:
     """Reference: analytic, exp(−ζω₁t)."""
-    wide = replace(heavy, load=0.0 * heavy.load, laws=[LINEAR.law.behind(10.0)] * len(heavy.laws))
+    wide = replace(
+        heavy, load=0.0 * heavy.load, laws=[LINEAR.law.with_clearance(10.0)] * len(heavy.laws)
+    )
     damped = with_modal_damping(wide, 0.05)
     bonded = closed_contact_modes(wide)[0][0]
     thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)

@@ -17,7 +17,7 @@ from dynamics.motion import Motion
 from geometry.boom import Boom, PointMass, Support
 from tests.touching import touching
 
-LAW = PowerContact(stiffness=2.0e6, exponent=1.0).behind(7.0e-3)
+LAW = PowerContact(stiffness=2.0e6, exponent=1.0).with_clearance(7.0e-3)
 
 
 def rigid(boom: Boom, laws: list[PowerContact]) -> GapSystem:

@@ -60,7 +60,7 @@ def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
     bending add 1e-3."""
     thrust, boom = 5.0e3, telescope(5.0e3)
     fly = boom.segments[1]
-    system = gap_system(touching(boom, PowerContact(1e9, 1.0).behind(5e-3)), build(boom))
+    system = gap_system(touching(boom, PowerContact(1e9, 1.0).with_clearance(5e-3)), build(boom))
     tipping = system.omega2[system.omega2 < 0.0]
     np.testing.assert_allclose(tipping, -12.0 * thrust / (fly.mass_per_length * 8.0**2), rtol=2e-3)
     # Its fall stays what it was, and the arm has none.
@@ -84,7 +84,7 @@ def test_a_rigid_segment_tips_over_too() -> None:
     boom = telescope(5.0e3)
     fly = boom.segments[1]
     system = gap_system(
-        touching(boom, PowerContact(1e9, 1.0).behind(5e-3)),
+        touching(boom, PowerContact(1e9, 1.0).with_clearance(5e-3)),
         [rigid_segment(s) for s in boom.segments],
     )
     inertia = fly.mass_per_length * 8.0**3 / 12.0 + fly.rotary_inertia * 8.0
@@ -135,7 +135,7 @@ def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
     """Reference: analytic. A rigid fly leans on both stations: the bonded boom's tip and the tilt
     by 2Δ over 2 m."""
     boom = telescope(2.0e4)
-    system = gap_system(touching(boom, PowerContact(1e12, 1.0).behind(5e-3)), build(boom))
+    system = gap_system(touching(boom, PowerContact(1e12, 1.0).with_clearance(5e-3)), build(boom))
     bonded = gap_system(boom.bonded, build(boom))
     tip = float(system.observers["tip"].row @ equilibrium(system, system.load))
     held = float(bonded.observers["tip"].row @ equilibrium(bonded, bonded.load))
@@ -160,7 +160,7 @@ def test_no_force_leaves_every_number_as_it_was(build: Build) -> None:
     plain = telescope(0.0)
     assert not plain.compressed
     systems = [
-        gap_system(touching(boom, PowerContact(1e9, 1.0).behind(5e-3)), build(boom))
+        gap_system(touching(boom, PowerContact(1e9, 1.0).with_clearance(5e-3)), build(boom))
         for boom in (plain, Boom(plain.segments, plain.joints))
     ]
     np.testing.assert_array_equal(systems[0].omega2, systems[1].omega2)

@@ -62,7 +62,7 @@ def test_rigid_motions_stay_where_pushes_leave_no_room() -> None:
         system(),
         omega2=system().omega2[::-1],
         rows=rows,
-        laws=[PowerContact(1e7, 1.0).behind(0.01)] * 24,
+        laws=[PowerContact(1e7, 1.0).with_clearance(0.01)] * 24,
         station_of_row=np.arange(24) % 2,
     )
     few, _ = condense(whole, 24)

@@ -141,7 +141,10 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
     second = replace(joint, outer=1, inner=2, stations=(17.5, 19.0))
     boom = Boom((outer, middle, last), (joint, second))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-    laws = [PowerContact(1e13, 2.0).behind(7e-3), PowerContact(1e10, 1.0).behind(5e-3)]
+    laws = [
+        PowerContact(1e13, 2.0).with_clearance(7e-3),
+        PowerContact(1e10, 1.0).with_clearance(5e-3),
+    ]
     system = gap_system(touching(boom, laws), models)
     assert [law.terms[0].exponent for law in system.laws] == [2.0, 2.0, 1.0, 1.0]
     assert list(system.stations) == [9.0, 10.0, 17.5, 19.0]
@@ -186,7 +189,7 @@ def test_bonded_halves_have_the_frequencies_of_the_whole(
 ) -> None:
     """Reference: analytic. What both do alike is the whole segment; what they do against each
     other is zero at the ties."""
-    law = PowerContact(1e13, 2.0).behind(7e-3)
+    law = PowerContact(1e13, 2.0).with_clearance(7e-3)
     whole = gap_system(touching(paper_boom, law), elements(1.0))
     halves = gap_system(touching(leaves[0], law), leaves[1])
     assert list(halves.stations) == [9.0, 10.0]
@@ -206,7 +209,7 @@ def test_bonded_halves_move_as_the_whole(
     paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
 ) -> None:
     """Reference: analytic, until the rounding of the first presses has grown."""
-    law = PowerContact(1e9, 1.0).behind(7e-3)
+    law = PowerContact(1e9, 1.0).with_clearance(7e-3)
     step = 2.0e-5
     whole = FixedStep(step)(Motion(gap_system(touching(paper_boom, law), elements(1.0)), 0.2))
     halves = FixedStep(step)(Motion(gap_system(touching(leaves[0], law), leaves[1]), 0.2))
@@ -230,7 +233,7 @@ def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:
     loose = Joint(1, 2, (8.0, 10.0), play=0.002)
     boom = Boom((one, two, three), (bonded, loose))
     models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-    system = gap_system(touching(boom, PowerContact(1e9, 1.0).behind(1e-3)), models)
+    system = gap_system(touching(boom, PowerContact(1e9, 1.0).with_clearance(1e-3)), models)
     assert (system.omega2 == 0.0).sum() == 2
     assert np.sort(system.omega2)[2] > 1.0
     # Raised by 1 m at its tail and not tilted, "two" takes the end of "one" along.

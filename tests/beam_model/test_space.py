@@ -25,8 +25,8 @@ from tests.touching import touching
 
 Beam = Callable[..., Segment]
 
-LAW = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
-LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0).behind(5.0e-3)
+LAW = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
+LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0).with_clearance(5.0e-3)
 
 
 def beams(

@@ -23,7 +23,7 @@ from geometry.load import Moment, PartialLoad
 from studies.reference_models.statics import static_response
 from tests.touching import touching
 
-LAW = PowerContact(1.0e9, 1.0).behind(7.0e-3)
+LAW = PowerContact(1.0e9, 1.0).with_clearance(7.0e-3)
 
 
 def test_reactions_of_supports_and_stations_follow_the_lever_rule(paper_boom: Boom) -> None:
@@ -73,7 +73,7 @@ def test_the_tip_turns_by_the_play(paper_boom: Boom) -> None:
     """Reference: by hand. The play of 7 mm each way at 1 m lifts the tip by 7 + 14 · 9 mm."""
     stiff = replace(paper_boom.segments[0].material, youngs_modulus=2.1e14)
     segments = tuple(replace(segment, material=stiff) for segment in paper_boom.segments)
-    hard = PowerContact(1.0e12, 1.0).behind(7.0e-3)
+    hard = PowerContact(1.0e12, 1.0).with_clearance(7.0e-3)
     found = static_state(touching(replace(paper_boom, segments=segments), hard))
     assert found.tip == pytest.approx(0.007 + 0.014 * 9.0, rel=1e-3)
 
@@ -161,7 +161,7 @@ def test_joint_with_play_transfers_forces_of_the_lever_rule(paper_boom: Boom) ->
     """Reference: by hand, 550.7 N at 14 m on 9 and 10 m: M = 55.07 · 9²/2 N m at 10 m, V jumps
     there by 2753.5 N."""
     models = finite_element_segments(paper_boom, 0.25, "euler-bernoulli", False)
-    system = gap_system(touching(paper_boom, PowerContact(1e9, 1.0).behind(7e-3)), models)
+    system = gap_system(touching(paper_boom, PowerContact(1e9, 1.0).with_clearance(7e-3)), models)
     inner = lines(paper_boom, models)[1]
     found = inner.read(equilibrium(system, system.load))
     head = inner.x == 10.0

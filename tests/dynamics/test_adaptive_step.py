@@ -163,7 +163,7 @@ def test_unresolved_peak_is_marked(
     """Reference: analytic, k pⁿ at ½ m v² = k pⁿ⁺¹/(n + 1), and half of √(m/F′(p)) for the step."""
     depth = ((exponent + 1.0) * 0.5 * speed**2 / stiffness) ** (1.0 / (exponent + 1.0))
     force, slope = stiffness * depth**exponent, exponent * stiffness * depth ** (exponent - 1.0)
-    system = one_mass(2.0, PowerContact(stiffness, exponent).behind(1e-3))
+    system = one_mass(2.0, PowerContact(stiffness, exponent).with_clearance(1e-3))
     motion = Motion(system, 0.02, 1e-3, velocity=np.array([speed]))
     coarse = FixedStep(1e-3)(motion)
     told = coarse.data.attrs["resolving_step"]

@@ -16,13 +16,13 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 
 POWER = PowerContact(stiffness=1.0e13, exponent=2.0, stiffness_below=4.0e12)
-LAW = POWER.behind(7.0e-3)
+LAW = POWER.with_clearance(7.0e-3)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
 def test_force_is_the_gradient_of_the_energy(exponent: float) -> None:
     """Reference: analytic. A central difference of the potential, second order in its step."""
-    law = PowerContact(1.0e13, exponent, stiffness_below=3.0e12).behind(7.0e-3)
+    law = PowerContact(1.0e13, exponent, stiffness_below=3.0e12).with_clearance(7.0e-3)
     y = np.linspace(-8.0e-3, 8.0e-3, 41)
     y = y[np.abs(np.abs(y) - law.onset(1.0)) > 1.0e-5]
     errors = []
@@ -65,7 +65,7 @@ def test_sides_add_up_to_the_whole() -> None:
 
 def test_parts_of_a_law_are_damped_as_it_is() -> None:
     law = replace(POWER, damping=0.3)
-    assert {part.damping for part in (law.upper(), law.lower(), law.shared(0.25))} == {0.3}
+    assert {part.damping for part in (law.upper(), law.lower(), law.with_weight(0.25))} == {0.3}
     assert POWER.damping == 0.0
 
 
@@ -74,7 +74,7 @@ def test_parts_of_a_law_are_damped_as_it_is() -> None:
 )
 def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
     y = np.linspace(-9.0e-3, 9.0e-3, 19)
-    total = sum(law.shared(weight).force(y) for weight in (0.125, 0.25, 0.625))
+    total = sum(law.with_weight(weight).force(y) for weight in (0.125, 0.25, 0.625))
     np.testing.assert_allclose(total, law.force(y), rtol=1e-14)
 
 
@@ -104,7 +104,7 @@ def test_bad_values_are_refused(arguments: dict[str, float], message: str) -> No
 def test_the_slope_is_known_at_any_force(exponent: float, force: float) -> None:
     """Reference: analytic, k pⁿ = F on the stiffer side, of extreme forces too."""
     n, k = exponent, 1.0e13
-    law = PowerContact(0.5 * k, n, stiffness_below=k).behind(7.0e-3)
+    law = PowerContact(0.5 * k, n, stiffness_below=k).with_clearance(7.0e-3)
     assert law.slope_at(force) == pytest.approx(n * k * (force / k) ** ((n - 1.0) / n), rel=1e-9)
 
 
@@ -117,7 +117,7 @@ def test_a_linear_law_has_its_slope_at_no_force_and_at_any(force: float) -> None
 OneMass = Callable[..., GapSystem]
 
 SOFT_ABOVE = PowerContact(1.0e6, 2.0, stiffness_below=2.0e9)
-UNEQUAL = SOFT_ABOVE.behind(4.0e-3, 10.0e-3)
+UNEQUAL = SOFT_ABOVE.with_clearance(4.0e-3, 10.0e-3)
 
 
 def test_each_side_has_its_own_clearance() -> None:
@@ -131,11 +131,13 @@ def test_each_side_has_its_own_clearance() -> None:
 def test_parts_are_those_of_its_law() -> None:
     y = np.linspace(-0.02, 0.02, 41)
     above = UNEQUAL.one_sided(1)
-    assert above.terms == SOFT_ABOVE.upper().behind(4.0e-3, 10.0e-3).terms
+    assert above.terms == SOFT_ABOVE.upper().with_clearance(4.0e-3, 10.0e-3).terms
     assert above.one_sided(-1) is None
-    assert SOFT_ABOVE.upper().behind(4.0e-3).one_sided(-1) is None
-    np.testing.assert_allclose(UNEQUAL.shared(0.25).force(y), 0.25 * UNEQUAL.force(y), rtol=1e-12)
-    moved = UNEQUAL.behind(1.0e-3)
+    assert SOFT_ABOVE.upper().with_clearance(4.0e-3).one_sided(-1) is None
+    np.testing.assert_allclose(
+        UNEQUAL.with_weight(0.25).force(y), 0.25 * UNEQUAL.force(y), rtol=1e-12
+    )
+    moved = UNEQUAL.with_clearance(1.0e-3)
     assert (moved.above, moved.below) == pytest.approx((5.0e-3, 11.0e-3))
 
 
@@ -151,14 +153,14 @@ def test_parts_are_those_of_its_law() -> None:
 )
 def test_bad_gaps_are_refused(clearance: float, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        SOFT_ABOVE.behind(clearance)
+        SOFT_ABOVE.with_clearance(clearance)
 
 
 def test_preloaded_mass_leaves_one_contact_side(one_mass: OneMass) -> None:
     """Reference: analytic. √(2 k/m) up to the interference, then √(k/m) about F/k − δ."""
     k, pressed, load = 1.0e4, 2.0e-3, 60.0
     both, one = np.sqrt([2.0 * k, k])
-    system = one_mass(1.0, PowerContact(k, 1.0).behind(-pressed), force=load)
+    system = one_mass(1.0, PowerContact(k, 1.0).with_clearance(-pressed), force=load)
     leaves = np.arccos(1.0 - 2.0 * k * pressed / load) / both
     speed = load / (2.0 * k) * both * np.sin(both * leaves)
     middle = load / k - pressed
@@ -201,7 +203,7 @@ def test_a_mass_rebounds_as_it_should(
     mass, speed = 3.0, 2.0
     damping = restitution_damping(restitution, speed)
     stiffness = {1.0: 1.0e6, 1.5: 1.0e8, 2.0: 1.0e9}[exponent]
-    stop = PowerContact(stiffness, exponent, damping=damping).upper().behind(0.01)
+    stop = PowerContact(stiffness, exponent, damping=damping).upper().with_clearance(0.01)
     errors = []
     motion = Motion(one_mass(mass, stop), 0.05, 1.0e-3, velocity=np.array([speed * np.sqrt(mass)]))
     for step in (4.0e-5, 1.0e-5):
@@ -244,7 +246,7 @@ def test_bad_restitutions_are_refused(restitution: float, speed: float, message:
 
 # Softer after the first millimetre, then stiff: a pad that gives way and bottoms out.
 DEPTHS, FORCES = (1.0e-3, 3.0e-3, 4.0e-3), (2.0e3, 3.0e3, 9.0e3)
-TABLE = TableContact(DEPTHS, FORCES).behind(7.0e-3)
+TABLE = TableContact(DEPTHS, FORCES).with_clearance(7.0e-3)
 
 
 def test_the_force_is_the_table_and_its_last_line() -> None:
@@ -268,15 +270,17 @@ def test_parts_are_tables_again() -> None:
     above, below = TABLE.one_sided(1), TABLE.one_sided(-1)
     assert above.one_sided(-1) is None
     np.testing.assert_allclose(above.force(y) + below.force(y), TABLE.force(y), atol=1e-8)
-    np.testing.assert_allclose(TABLE.shared(0.25).force(y), 0.25 * TABLE.force(y), atol=1e-8)
-    np.testing.assert_allclose(TABLE.behind(7.0e-3).force(y + 7.0e-3), above.force(y), atol=1e-8)
+    np.testing.assert_allclose(TABLE.with_weight(0.25).force(y), 0.25 * TABLE.force(y), atol=1e-8)
+    np.testing.assert_allclose(
+        TABLE.with_clearance(7.0e-3).force(y + 7.0e-3), above.force(y), atol=1e-8
+    )
 
 
 def test_one_line_is_a_linear_stop() -> None:
     """Reference: other code, the linear law; stiffnesses for the step among it."""
     table, power = (
-        TableContact((1.0e-3,), (2.0e3,)).behind(5.0e-3),
-        PowerContact(2.0e6, 1.0).behind(5.0e-3),
+        TableContact((1.0e-3,), (2.0e3,)).with_clearance(5.0e-3),
+        PowerContact(2.0e6, 1.0).with_clearance(5.0e-3),
     )
     y = np.linspace(-9.0e-3, 9.0e-3, 19)
     np.testing.assert_allclose(table.force(y), power.force(y), rtol=1e-14)

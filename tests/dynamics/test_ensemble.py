@@ -53,7 +53,7 @@ def test_a_member_is_a_run_of_the_changed_system(vary: Vary) -> None:
         system = replace(
             CHAOTIC,
             load=factor["load"] * CHAOTIC.load,
-            laws=[law.law.behind(factor["clearance"] * law.above)],
+            laws=[law.law.with_clearance(factor["clearance"] * law.above)],
         )
         run = FixedStep(1e-3)(Motion(system, 5.0, 1e-2, velocity=factor["velocity"] * THROWN))
         one = ensemble.isel(member=member)
@@ -85,7 +85,7 @@ def test_all_loads_vary_and_nothing_else() -> None:
 def test_unequal_plays_vary_by_equal_fractions(above: float, expected: float) -> None:
     """Reference: by hand. 1.001 times 2 and 12 mm are 2.002 and 12.012 mm, and nothing stays so."""
     (law,) = CHAOTIC.laws
-    sided = law.law.behind(above, 0.012)
+    sided = law.law.with_clearance(above, 0.012)
     motion = Motion(replace(CHAOTIC, laws=[sided]), 1.0)
     check_varied(motion, "clearance")
     (found,) = vary_motion(motion, "clearance", 1.001).system.laws

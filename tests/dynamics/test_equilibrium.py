@@ -47,7 +47,7 @@ def test_spring_carries_the_load_before_contact() -> None:
 @pytest.mark.parametrize(("weight", "expected"), [(0.0, 1.0e-3), (4.0, 1.0e-3 - 4.0 / 3.0e6)])
 def test_shim_preload_displaces_an_unloaded_mass(weight: float, expected: float) -> None:
     """Reference: analytic. A shim 1 mm beyond the play below lifts a mass until it is free."""
-    below = PowerContact(3.0e6, 1.0).lower().behind(-1.0e-3)
+    below = PowerContact(3.0e6, 1.0).lower().with_clearance(-1.0e-3)
     above = mass_over_stop(1.0, 0.0)
     row, laws, places = above.rows[0], [*above.laws, below], np.zeros(2, dtype=np.int64)
     system = replace(above, rows=np.vstack([row, row]), laws=laws, station_of_row=places)
@@ -77,7 +77,7 @@ def test_the_inner_segment_hangs_on_its_stations(paper_boom: Boom, exponent: flo
         finite_element_segment(segment, 0.5, (9.0, 10.0), "euler-bernoulli", False)
         for segment in paper_boom.segments
     ]
-    law = PowerContact(1.0e9 if exponent == 1.0 else 1.0e13, exponent).behind(7.0e-3)
+    law = PowerContact(1.0e9 if exponent == 1.0 else 1.0e13, exponent).with_clearance(7.0e-3)
     system = gap_system(touching(paper_boom, law), models)
     at_rest = equilibrium(system, system.load)
     forces = [law.force(y) for law, y in zip(system.laws, system.rows @ at_rest, strict=True)]
@@ -88,7 +88,7 @@ def test_the_inner_segment_hangs_on_its_stations(paper_boom: Boom, exponent: flo
 
 MASS, NEGATIVE, STIFFNESS, CLEARANCE = 3.0, -48.0, 1.0e6, 0.01
 GROWTH = np.sqrt(-NEGATIVE / MASS)
-STOPS = PowerContact(STIFFNESS, 1.0).behind(CLEARANCE)
+STOPS = PowerContact(STIFFNESS, 1.0).with_clearance(CLEARANCE)
 
 
 @pytest.fixture(name="tipping")

@@ -47,7 +47,7 @@ def test_histories_by_hand() -> None:
 def test_a_step_is_a_load(one_mass: OneMass) -> None:
     """Reference: other code path, the same load as a constant."""
     plain = one_mass(
-        3.0, PowerContact(1.0e4, 2.0).behind(0.02), spring=40.0, force=7.0, dashpot=0.8
+        3.0, PowerContact(1.0e4, 2.0).with_clearance(0.02), spring=40.0, force=7.0, dashpot=0.8
     )
     stepped = driven(replace(plain, load=np.zeros(1)), 7.0, Step())
     one, two = (AdaptiveStep()(Motion(s, 2.0, output_step=0.01)) for s in (plain, stepped))
@@ -90,7 +90,7 @@ def test_linear_fit_of_a_history_keeps_its_moments() -> None:
 def test_a_half_sine_leaves_its_swing(one_mass: OneMass) -> None:
     """Reference: analytic, the residual amplitude after a pulse (Clough and Penzien 1975, 5-2)."""
     natural, duration, force, spring = 9.0, 0.5, 5.0, 81.0
-    system = one_mass(1.0, PowerContact(1.0e4, 1.0).behind(1.0e3), spring=spring, force=0.0)
+    system = one_mass(1.0, PowerContact(1.0e4, 1.0).with_clearance(1.0e3), spring=spring, force=0.0)
     pulse = driven(system, force, Sine(0.5 / duration, end=duration))
     data = AdaptiveStep()(Motion(pulse, 4.0, output_step=0.002)).data
     ratio = np.pi / duration / natural

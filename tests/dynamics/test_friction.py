@@ -254,7 +254,7 @@ def test_a_bounce_takes_its_impulse_times_friction() -> None:
 
 def test_no_friction_is_no_friction(one_mass: OneMass) -> None:
     """Reference: the same system without rows. μ = 0 changes nothing but round-off."""
-    plain = one_mass(4.0, PowerContact(1.0e4, 1.0).behind(0.05), spring=100.0, force=30.0)
+    plain = one_mass(4.0, PowerContact(1.0e4, 1.0).with_clearance(0.05), spring=100.0, force=30.0)
     one, two = (
         FixedStep(1e-4)(Motion(system, 2.0, output_step=0.01))
         for system in (plain, rubbing(plain, DryFriction(0.0, 0, 1e3)))

@@ -13,7 +13,7 @@ from dynamics.excitation import Excitation, PiecewiseLinear, Step
 from dynamics.gap_system import GapSystem, Observer
 from studies.reference_models.statics import static_response
 
-LAW = PowerContact(stiffness=1.0e6, exponent=1.0).behind(1.0e-3)
+LAW = PowerContact(stiffness=1.0e6, exponent=1.0).with_clearance(1.0e-3)
 RUB = DryFriction(0.2, station=1, normal_force=10.0, normal_rows=(0, 1))
 
 

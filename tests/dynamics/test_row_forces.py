@@ -24,12 +24,12 @@ from tests.modal import modal_system
 TOLERANCE = 1.0e-10
 
 LAWS: list[ContactLaw] = [
-    PowerContact(1.0e4, 1.0).behind(1.0e-3),
-    PowerContact(1.0e7, 2.0, damping=0.3).behind(1.0e-3),
+    PowerContact(1.0e4, 1.0).with_clearance(1.0e-3),
+    PowerContact(1.0e7, 2.0, damping=0.3).with_clearance(1.0e-3),
     PowerContact(1.0e5, 1.5).upper(),
-    TableContact((1.0e-4, 1.0e-3), (20.0, 300.0)).behind(1.0e-3),
-    PowerContact(1.0e9, 3.0, stiffness_below=1.0e4).behind(1.0e-3, 2.0e-3),
-    PowerContact(1.0e4, 1.0).behind(-1.0e-3),
+    TableContact((1.0e-4, 1.0e-3), (20.0, 300.0)).with_clearance(1.0e-3),
+    PowerContact(1.0e9, 3.0, stiffness_below=1.0e4).with_clearance(1.0e-3, 2.0e-3),
+    PowerContact(1.0e4, 1.0).with_clearance(-1.0e-3),
 ]
 
 
@@ -139,7 +139,7 @@ def test_the_discrete_gradient(exponent: float, before: float, after: float) -> 
     """Reference: analytic, ΔV/Δy, and the force itself where nothing moves; its slope by central
     differences where it is exact."""
     term = np.array([(0, -1.0, 1.0e6, 1.0e-3, exponent)], TERM)[0]
-    law = PowerContact(1.0e6, exponent).lower().behind(1.0e-3)
+    law = PowerContact(1.0e6, exponent).lower().with_clearance(1.0e-3)
     mean, slope = discrete_gradient(term, -before, -after)
     if abs(after - before) > 1e-4:
         gained = law.energy(np.array([-before, -after])) @ [-1.0, 1.0]

@@ -87,7 +87,7 @@ def rider(
 
 def lossy(history: History, **changes: Any) -> GapSystem:
     """Return a mass that moves along the beam, with friction, dampers, a ramped load and play."""
-    law = PowerContact(1.0e6, 1.5, damping=0.5).behind(1.0e-4)
+    law = PowerContact(1.0e6, 1.5, damping=0.5).with_clearance(1.0e-4)
     rubbing = DryFriction(0.3, 0, normal_force=400.0)
     system = rider(history, law, mass=20.0, weight=2.0e3, start=2.0, frictions=[rubbing], drag=50.0)
     load = Excitation(np.append(300.0 * sines(3.0, 8), 0.0), Ramp(0.1))
@@ -151,7 +151,7 @@ def test_a_slow_drive_passes_through_places_of_rest() -> None:
 
 def test_it_runs_back_as_it_came() -> None:
     """Reference: analytic, the symmetry of the step, in presses and by the drive."""
-    law = PowerContact(1.0e6, 1.5).behind(1.0e-4)
+    law = PowerContact(1.0e6, 1.5).with_clearance(1.0e-4)
     there = rider(SCurve(5.0, 0.2), law, mass=20.0, weight=2.0e3, start=2.0)
     out = FixedStep(1.0e-4)(Motion(with_rates(there), 0.2, 1.0e-3))
     assert out.data.attrs["contact_changes"] > 0

@@ -37,7 +37,7 @@ from tests.modal import modal_system
 OneMass = Callable[..., GapSystem]
 
 THROWN = np.array([0.8, -0.5, 0.3, 0.4])
-POWER = PowerContact(1.0e6, 1.0).behind(1.0e-3)
+POWER = PowerContact(1.0e6, 1.0).with_clearance(1.0e-3)
 ROWS = np.array([[0.9, 0.5, -0.3, 0.2], [0.4, -0.8, 0.5, 0.3]])
 ACROSS = np.array([[0.3, 0.6, 0.8, -0.5], [-0.7, 0.4, 0.2, 0.6]])
 
@@ -66,16 +66,22 @@ PRESSED = DryFriction(0.4, 0, 0.0, (0, 1)), DryFriction(0.3, 1, 5.0, (1,))
 # What moves, and the energy that it has to exchange.
 MOVED: dict[str, tuple[GapSystem, str]] = {
     "linear": (boom(), "contact_energy"),
-    "Hertz": (boom(PowerContact(1.0e8, 1.5).behind(1.0e-3)), "contact_energy"),
-    "quadratic": (boom(PowerContact(1.0e10, 2.0).behind(1.0e-3)), "contact_energy"),
-    "cubic": (boom(PowerContact(1.0e13, 3.0).behind(1.0e-3)), "contact_energy"),
-    "table": (boom(TableContact((1e-4, 1e-3), (200.0, 500.0)).behind(1e-3)), "contact_energy"),
-    "unlike sides": (
-        boom(PowerContact(1e9, 2.0, stiffness_below=2e9).behind(4e-4, 1e-3)),
+    "Hertz": (boom(PowerContact(1.0e8, 1.5).with_clearance(1.0e-3)), "contact_energy"),
+    "quadratic": (boom(PowerContact(1.0e10, 2.0).with_clearance(1.0e-3)), "contact_energy"),
+    "cubic": (boom(PowerContact(1.0e13, 3.0).with_clearance(1.0e-3)), "contact_energy"),
+    "table": (
+        boom(TableContact((1e-4, 1e-3), (200.0, 500.0)).with_clearance(1e-3)),
         "contact_energy",
     ),
-    "shims": (boom(PowerContact(1.0e6, 1.0).behind(-1.0e-4)), "contact_energy"),
-    "Hunt-Crossley": (boom(PowerContact(1e8, 1.5, damping=0.5).behind(1e-3)), "contact_loss"),
+    "unlike sides": (
+        boom(PowerContact(1e9, 2.0, stiffness_below=2e9).with_clearance(4e-4, 1e-3)),
+        "contact_energy",
+    ),
+    "shims": (boom(PowerContact(1.0e6, 1.0).with_clearance(-1.0e-4)), "contact_energy"),
+    "Hunt-Crossley": (
+        boom(PowerContact(1e8, 1.5, damping=0.5).with_clearance(1e-3)),
+        "contact_loss",
+    ),
     "prescribed friction": (
         rubbing(DryFriction(0.2, 0, 20.0), DryFriction(0.3, 1, 10.0)),
         "friction_loss",
@@ -114,7 +120,7 @@ def test_energy_balances_at_every_step(what: str, step: float, duration: float) 
 
 def pressed(exponent: float, **changes: Any) -> Motion:
     """Return the motion of a boom that its small initial velocity does not lift off the stops."""
-    law = PowerContact({1.0: 1.0e4, 2.0: 5.0e6}[exponent], exponent).behind(1.0e-3)
+    law = PowerContact({1.0: 1.0e4, 2.0: 5.0e6}[exponent], exponent).with_clearance(1.0e-3)
     system = boom(law, load=np.array([-80.0, 30.0, 2.0, 1.0]), **changes)
     held = replace(system, omega2=np.maximum(system.omega2, [0.0, 1.0, 1.0, 1.0]))
     return Motion(system, 0.4, 0.04, equilibrium(held, system.load), 0.02 * THROWN)
@@ -145,7 +151,7 @@ def driven() -> Motion:
 
 def lossy_press() -> Motion:
     motion = pressed(2.0, damping=np.array([0.5, 1.0, 2.0, 20.0]), **DRAGGED)
-    laws = [PowerContact(1e4, 1.0, damping=5.0).behind(1e-3)] * 2
+    laws = [PowerContact(1e4, 1.0, damping=5.0).with_clearance(1e-3)] * 2
     return replace(motion, system=replace(motion.system, laws=laws), velocity=0.05 * THROWN)
 
 
@@ -225,7 +231,7 @@ def crossings(time: Array, y: Array, level: float) -> Array:
 
 def test_falling_mass(one_mass: OneMass) -> None:
     """Reference: external, SDND108 of the Code_Aster validation manual."""
-    stop = PowerContact(stiffness=100.0, exponent=1.0).lower().behind(2.0)
+    stop = PowerContact(stiffness=100.0, exponent=1.0).lower().with_clearance(2.0)
     system = one_mass(1.0, stop, force=-10.0)
     run = FixedStep(1e-3)(Motion(system, 1.2, 1.0e-3, velocity=np.array([-1.0])))
     assert run.first_contact == pytest.approx(0.5403124, rel=1e-4)
@@ -237,7 +243,7 @@ def test_falling_mass(one_mass: OneMass) -> None:
 
 def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
     """Reference: analytic. Flights of 2Δ/v and presses of π √(m/k) on either side."""
-    law = PowerContact(stiffness=4.0e4, exponent=1.0, stiffness_below=9.0e4).behind(0.1)
+    law = PowerContact(stiffness=4.0e4, exponent=1.0, stiffness_below=9.0e4).with_clearance(0.1)
     period = 2.0 * 0.2 / 2.0 + np.pi / 200.0 + np.pi / 300.0
     motion = Motion(one_mass(1.0, law), 3.0 * period, period / 1e3, velocity=np.array([2.0]))
     run = FixedStep(2e-5)(motion)
@@ -272,7 +278,7 @@ def test_bouncing_ball_keeps_its_height(
 ) -> None:
     """Reference: analytic. 1 kg falls 1 mm again and again on a hard floor, and comes up to where
     it was, whether or not the step resolves the blow of 10 to 100 µs."""
-    floor = PowerContact(stiffness, exponent).lower().behind(1.0e-3)
+    floor = PowerContact(stiffness, exponent).lower().with_clearance(1.0e-3)
     run = FixedStep(step)(Motion(one_mass(1.0, floor, force=-10.0), 3.0, 1e-3))
     assert run.data.attrs["contact_changes"] > 60
     tip = run.data["tip"].values
@@ -286,7 +292,7 @@ def test_bouncing_ball_keeps_its_height(
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-2, 1.0e-3, 1.0e-4])
 def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: float) -> None:
     """Reference: analytic. The line through two places of a fall misses by g h²/8 at most."""
-    stop = PowerContact(stiffness=100.0, exponent=1.0).lower().behind(2.0)
+    stop = PowerContact(stiffness=100.0, exponent=1.0).lower().with_clearance(2.0)
     motion = Motion(one_mass(1.0, stop, force=-10.0), 1.0, 2.0e-2, velocity=np.array([-1.0]))
     exact = (np.sqrt(41.0) - 1.0) / 10.0
     found = FixedStep(step)(motion).first_contact
@@ -296,8 +302,8 @@ def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: floa
 def test_first_contact_is_the_earliest_of_all_rows() -> None:
     """Reference: analytic. Two rows close within one step; the second in the list does so first."""
     system = replace(
-        boom(), laws=[POWER.law.behind(0.0105), POWER.law.behind(0.0102)], rows=np.eye(4)[[0, 0]],
-        load=np.zeros(4),
+        boom(), laws=[POWER.law.with_clearance(gap) for gap in (0.0105, 0.0102)],
+        rows=np.eye(4)[[0, 0]], load=np.zeros(4),
     )  # fmt: skip
     run = FixedStep(0.01)(Motion(system, 0.1, 0.01, velocity=np.eye(4)[0]))
     assert run.first_contact == pytest.approx(0.0102, rel=1e-9)
@@ -310,7 +316,7 @@ def test_first_contact_late_at_once_or_never(
     one_mass: OneMass, place: float, speed: float, first: float
 ) -> None:
     """Reference: analytic. A mass comes to a stop at 0.1 m, lets go of it, or stays away."""
-    system = one_mass(1.0, PowerContact(stiffness=1.0, exponent=1.0).upper().behind(0.1))
+    system = one_mass(1.0, PowerContact(stiffness=1.0, exponent=1.0).upper().with_clearance(0.1))
     run = FixedStep(3e-4)(Motion(system, 0.5, 0.01, np.array([place]), np.array([speed])))
     assert run.first_contact == pytest.approx(first, rel=1e-6, nan_ok=True)
     assert run.data.attrs["contact_changes"] == (0 if np.isnan(first) else 1)
@@ -319,7 +325,9 @@ def test_first_contact_late_at_once_or_never(
 def test_units_do_not_matter() -> None:
     """Reference: analytic. The same system in mm, t and s, before chaos; √t·mm are √1000 √kg·m."""
     si, scale = two_modes(), np.sqrt(1000.0)
-    law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0).behind(1e3 * si.laws[0].above)
+    law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0).with_clearance(
+        1e3 * si.laws[0].above
+    )
     small = replace(
         si, load=si.load * scale, rows=si.rows * scale, laws=[law.one_sided(1)],
         observers={"first": Observer(np.array([scale, 0.0]))},
@@ -380,7 +388,7 @@ def test_energy_residual_gives_a_warning() -> None:
 
 def test_unloaded_segments_stay_at_rest(one_mass: OneMass) -> None:
     """Reference: analytic. A boom may have segments without load, whose gaps close at no speed."""
-    run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0).behind(0.1)), 0.1))
+    run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0).with_clearance(0.1)), 0.1))
     assert not run.states.any()
     assert np.isnan(run.first_contact)
 
@@ -400,11 +408,11 @@ def test_a_peak_is_no_less_than_the_mean(what: str, step: float) -> None:
 def test_shims_touch_from_the_start() -> None:
     """Reference: analytic, two one-sided rows: what shims press from both sides is closed at t = 0,
     and opens and closes on a side as that side does alone."""
-    shims = PowerContact(1.0e4, 1.0).behind(-1.0e-3)
+    shims = PowerContact(1.0e4, 1.0).with_clearance(-1.0e-3)
     both = boom(shims)
     apart = boom(
-        laws=[PowerContact(1.0e4, 1.0, stiffness_below=0.0).behind(-1.0e-3)] * 2
-        + [PowerContact(0.0, 1.0, stiffness_below=1.0e4).behind(-1.0e-3)] * 2,
+        laws=[PowerContact(1.0e4, 1.0, stiffness_below=0.0).with_clearance(-1.0e-3)] * 2
+        + [PowerContact(0.0, 1.0, stiffness_below=1.0e4).with_clearance(-1.0e-3)] * 2,
         rows=np.concatenate([ROWS, ROWS]), station_of_row=np.array([0, 1, 0, 1]),
     )  # fmt: skip
     runs = [FixedStep(1e-4)(Motion(each, 0.3, 1e-2, velocity=THROWN)) for each in (both, apart)]
@@ -416,7 +424,7 @@ def test_shims_touch_from_the_start() -> None:
 def test_a_ball_rides_on_a_cantilever() -> None:
     """Reference: other code, scheme and data of Siconos' ImpactingEulerBernouilliBeam in steps of
     20 µs. Both chatter, and so does the time at which the ball leaves, after 50 ms."""
-    stop = PowerContact(1.0e7, 1.0, damping=5.0).lower().behind(HEIGHT)
+    stop = PowerContact(1.0e7, 1.0, damping=5.0).lower().with_clearance(HEIGHT)
     run = FixedStep(1e-4)(falling(ELEMENTS, stop, 0.06))
     expected = moreau_jean(2e-5)[::50] - [HEIGHT, 0.0]
     found = np.column_stack([run.data["ball"], run.data["tip"]])
@@ -426,7 +434,7 @@ def test_a_ball_rides_on_a_cantilever() -> None:
 
 def test_blows_of_a_coarse_cantilever() -> None:
     """Reference: other code, scipy's DOP853 with the same contact, through its blows."""
-    motion = falling(2, PowerContact(1.0e6, 1.0).lower().behind(HEIGHT), 0.03)
+    motion = falling(2, PowerContact(1.0e6, 1.0).lower().with_clearance(HEIGHT), 0.03)
     expected = runge_kutta(motion, 2e-5)
     errors = errors_in_the_step(motion, expected, 4e-5 * 0.5 ** np.arange(4))
     assert FixedStep(5e-6)(motion).data.attrs["contact_changes"] >= 6

@@ -18,7 +18,7 @@ from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory, prominent_peaks
 from tests.modal import modal_system
 
-STOP = PowerContact(stiffness=1.0e4, exponent=1.0).behind(1.0e-2)
+STOP = PowerContact(stiffness=1.0e4, exponent=1.0).with_clearance(1.0e-2)
 
 
 def deflections(tip: Array, end: float) -> Trajectory:
@@ -63,7 +63,7 @@ def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> Non
     shared = replace(
         whole,
         rows=row[[0, 1, 0]],
-        laws=[STOP.shared(0.25), whole.laws[1], STOP.shared(0.75)],
+        laws=[STOP.with_weight(0.25), whole.laws[1], STOP.with_weight(0.75)],
         station_of_row=np.array([0, 1, 0]),
     )
     one, two = (FixedStep(1e-4)(Motion(s, 2.0, output_step=1.0e-2)) for s in (whole, shared))

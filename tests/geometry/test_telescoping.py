@@ -56,7 +56,7 @@ def test_travel_may_reach_the_least_overlap(
     steel: Material, start: float, end: float, travel: float, least: float
 ) -> None:
     """1.2 - 0.7 = 0.5 m of overlap are left, 0.3 m of the fly are out; both less by round-off."""
-    assert drawn(steel, start, end, travel, least).driven
+    assert drawn(steel, start, end, travel, least).telescopes
 
 
 def test_no_segment_is_drawn_in_through_a_diaphragm(steel: Material) -> None:
@@ -90,7 +90,7 @@ def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
     assert room(joint, base, fly, 4.0)[0] == pytest.approx(0.010)
     for travel, clearance in ((3.0, 0.007), (4.0, 0.005)):
         drive = Drive(SCurve(travel, 2.0), ("inner", "outer"))
-        assert Boom((base, fly), (replace(joint, play=2.0 * clearance, drive=drive),)).driven
+        assert Boom((base, fly), (replace(joint, play=2.0 * clearance, drive=drive),)).telescopes
     drive = Drive(SCurve(4.0, 2.0), ("inner", "outer"))
     with pytest.raises(BoomError) as caught:
         Boom((base, fly), (replace(joint, drive=drive),))
@@ -125,7 +125,7 @@ def test_pads_stay_on_both_segments(
 ) -> None:
     """1.2 m of overlap at first. A pad at 5.38 m ends at 5.42 m, and 0.02 m beyond the base."""
     place = 6.5 + 4.8 - 6.0
-    assert drawn(steel, place, 11.3, 1.0, **joint).driven
+    assert drawn(steel, place, 11.3, 1.0, **joint).telescopes
     with pytest.raises(BoomError) as caught:
         drawn(steel, place, 11.3, 1.1, **joint)
     assert (caught.value.where, caught.value.what) == (f"joints[0].{key}", message)

@@ -17,7 +17,7 @@ from tests.touching import touching
 def test_it_tells_stiffness_and_springs() -> None:
     """Reference: analytic, 1/D of a diagonal residual compliance, and the factors given."""
     boom = build_boom(friction_case())
-    law = PowerContact(1.0e9, 1.0).behind(0.007)
+    law = PowerContact(1.0e9, 1.0).with_clearance(0.007)
     system = gap_system(
         touching(boom, law, ()), finite_element_segments(boom, 2.0, "timoshenko", True), EACH_SIDE
     )

@@ -113,8 +113,8 @@ def test_a_section_goes_inwards_through_all_joints(tmp_path: Path) -> None:
 def test_a_model_s_own_contact_law_keeps_the_joint_s_clearance() -> None:
     case = shipped("coarse")
     laws = {model.name: contact_laws(case, model)[0] for model in case.models}
-    assert laws["kantorovich-4"] == PowerContact(1e13, 2.0).behind(7.0e-3)
-    assert laws["beam-fe"] == PowerContact(1e9, 1.0).behind(7.0e-3)
+    assert laws["kantorovich-4"] == PowerContact(1e13, 2.0).with_clearance(7.0e-3)
+    assert laws["beam-fe"] == PowerContact(1e9, 1.0).with_clearance(7.0e-3)
 
 
 def test_a_beam_s_case_does_without_sections(tmp_path: Path) -> None:

@@ -31,7 +31,7 @@ def test_table_approximates_the_sampled_law(tmp_path: Path) -> None:
     """Reference: analytic, chords of p² lie above it by k (Δp)²/4 at most."""
     case = case_with(tmp_path, f"force_table = {POINTS}\n")
     (law,) = contact_laws(case, case.models[0])
-    power = PowerContact(1e13, 2.0).behind(7.0e-3)
+    power = PowerContact(1e13, 2.0).with_clearance(7.0e-3)
     y = np.concatenate([[-1.0], [1.0]]) * (7.0e-3 + np.linspace(0.0, 5.0e-4, 999)[:, None])
     above = np.abs(law.force(y)) - np.abs(power.force(y))
     assert -1e-6 < above.min() < 1e-6

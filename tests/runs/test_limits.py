@@ -129,7 +129,7 @@ def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
 def test_permitted_values_themselves_are_permitted() -> None:
     (limit,) = case_limits(reading.load(write("first_frequency = 2.0")).limits)
     assert isinstance(limit, Limit)
-    assert limit.permits(2.0)
-    assert not limit.permits(1.99)
-    assert not limit.permits(float("nan"))
+    assert limit.is_met_by(2.0)
+    assert not limit.is_met_by(1.99)
+    assert not limit.is_met_by(float("nan"))
     assert decay_time(0.0, 2.0) is None

@@ -116,7 +116,7 @@ def test_chaos_note_names_chaotic_models_only() -> None:
     assert [one.what for one in quality_notes(none, DesignResults({}), 10.0)] == ["energy"]
 
 
-LAW = PowerContact(1e6, 1.0).behind(0.01)
+LAW = PowerContact(1e6, 1.0).with_clearance(0.01)
 
 
 @pytest.fixture

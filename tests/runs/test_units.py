@@ -28,8 +28,8 @@ pytestmark = pytest.mark.slow
 MM, T = 1.0e3, 1.0e-3
 
 # n = 1, so that the shell's contacts are no stiffer than a run's.
-LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).behind(7.0e-3)
-QUADRATIC = PowerContact(stiffness=1.0e13, exponent=2.0).behind(7.0e-3)
+LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
+QUADRATIC = PowerContact(stiffness=1.0e13, exponent=2.0).with_clearance(7.0e-3)
 
 
 def law_in_mm(law: Gap) -> Gap:
@@ -41,7 +41,7 @@ def law_in_mm(law: Gap) -> Gap:
         stiffness=power.stiffness / MM**power.exponent,
         stiffness_below=power.below / MM**power.exponent,
         damping=power.damping / MM,
-    ).behind(law.above * MM)
+    ).with_clearance(law.above * MM)
 
 
 def boom_in_mm(boom: Boom) -> Boom:
@@ -153,7 +153,7 @@ def test_beams_do_not_know_the_units(
 def test_steps_by_tolerance_do_not_know_the_units() -> None:
     """Reference: this model in SI, without play and without friction, until chaos takes over."""
     boom = flat_boom()
-    law = LINEAR.law.behind(0.0)
+    law = LINEAR.law.with_clearance(0.0)
     runs = [
         AdaptiveStep()(Motion(series(*data), 0.3))
         for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))

@@ -9,8 +9,8 @@ from geometry.section import BoxSection, Section, infer_inner_section, infer_out
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 HELD = (Support(0.0), Support(2.0))
-LAW = PowerContact(stiffness=1.0e13, exponent=2.0).behind(7.0e-3)
-LATERAL_LAW = PowerContact(stiffness=1.0e13, exponent=2.0).behind(5.0e-3)
+LAW = PowerContact(stiffness=1.0e13, exponent=2.0).with_clearance(7.0e-3)
+LATERAL_LAW = PowerContact(stiffness=1.0e13, exponent=2.0).with_clearance(5.0e-3)
 
 
 def box_segment(

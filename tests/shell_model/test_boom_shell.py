@@ -82,7 +82,7 @@ def test_a_shell_needs_a_section() -> None:
 
 def test_a_side_without_stiffness_never_touches() -> None:
     """One station, pressing up alone: one row, one-sided, above."""
-    law = replace(LAW.law, stiffness_below=0.0).behind(LAW.above)
+    law = replace(LAW.law, stiffness_below=0.0).with_clearance(LAW.above)
     system = reduced(flat_boom(), 0.5, law=law).system
     assert system.station_of_row.tolist() == [0, 1]
     assert all(row.one_sided(-1) is None for row in system.laws)

@@ -40,14 +40,14 @@ def luffed(cylinder: Cylinder = CYLINDER) -> Boom:
 
 @cache
 def shell(boom: Boom, size: float = 0.2) -> GapSystem:
-    laws = [PowerContact(1.0e9, 1.0).behind(0.5 * joint.play) for joint in boom.joints]
+    laws = [PowerContact(1.0e9, 1.0).with_clearance(0.5 * joint.play) for joint in boom.joints]
     options = ShellOptions(size, krylov=KrylovOptions(moments=2))
     return reduce_boom(touching(boom, laws, laws), options, MPI.COMM_WORLD).system
 
 
 def beam(boom: Boom) -> GapSystem:
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
-    laws = [PowerContact(1.0e9, 1.0).behind(0.5 * joint.play) for joint in boom.joints]
+    laws = [PowerContact(1.0e9, 1.0).with_clearance(0.5 * joint.play) for joint in boom.joints]
     return gap_system(touching(boom, laws, laws), models)
 
 

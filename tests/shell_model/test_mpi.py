@@ -69,7 +69,7 @@ def spatial(comm: MPI.Comm) -> dict[str, Any]:
 
 def rubbing(comm: MPI.Comm) -> dict[str, Any]:
     """All that decides how the paper's friction case moves, on a coarse mesh."""
-    law = replace(LAW.law, stiffness=1.0e8, exponent=1.0).behind(LAW.above)
+    law = replace(LAW.law, stiffness=1.0e8, exponent=1.0).with_clearance(LAW.above)
     options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))
     system = reduce_boom(touching(flat_boom(friction=0.2), law), options, comm).system
     parts = {
@@ -96,7 +96,7 @@ def stresses(comm: MPI.Comm) -> list[Any]:
 
 def moved(comm: MPI.Comm) -> dict[str, Any]:
     """Return the motion of the unreduced shell with friction."""
-    law = replace(LAW.law, stiffness=1.0e9, exponent=1.0).behind(LAW.above)
+    law = replace(LAW.law, stiffness=1.0e9, exponent=1.0).with_clearance(LAW.above)
     full = assemble_boom(touching(flat_boom(friction=0.2), law), ShellOptions(1.0), comm)
     motion = integrate_directly(full, 0.04, 5.0e-4)
     return {"tip": motion.observed["tip"].tolist(), "residual": motion.energy_residual}

@@ -29,7 +29,7 @@ from tests.touching import touching
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.016, web=0.012)
 INNER = BoxSection(height=0.33, width=0.23, flange=0.012, web=0.010)
 HELD = (Support(4.5), Support(10.5))
-LAW = PowerContact(1e9, 1.0).behind(5e-3)
+LAW = PowerContact(1e9, 1.0).with_clearance(5e-3)
 OPTIONS = ShellOptions(mesh_size=0.4)
 THRUST = 1.0e5
 
@@ -44,7 +44,7 @@ def telescope(thrust: float, lateral: float | None = None) -> Boom:
 
 @cache
 def shell(lateral: float | None = None) -> ReducedShell:
-    laws = [PowerContact(1e9, 1.0).behind(lateral)] if lateral is not None else []
+    laws = [PowerContact(1e9, 1.0).with_clearance(lateral)] if lateral is not None else []
     return reduce_boom(touching(telescope(THRUST, lateral), LAW, laws), OPTIONS, MPI.COMM_SELF)
 
 

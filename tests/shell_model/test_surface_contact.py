@@ -129,7 +129,7 @@ def test_a_tilted_approach_presses_as_its_integral() -> None:
 def test_every_point_has_its_share_of_the_penalty() -> None:
     """Reference: analytic. Weights are positive and add up; points belong to the nearest
     station."""
-    law = replace(LAW.law, stiffness_below=0.5e13).behind(LAW.above)
+    law = replace(LAW.law, stiffness_below=0.5e13).with_clearance(LAW.above)
     system = _system(flat_boom(), law=law)
     sides, stiffnesses = np.array([one.terms[0][:2] for one in system.laws]).T
     assert all(len(one.terms) == 1 for one in system.laws)
@@ -140,7 +140,7 @@ def test_every_point_has_its_share_of_the_penalty() -> None:
 
 @pytest.mark.slow
 def test_one_sided_law_has_no_points_below() -> None:
-    law = replace(LAW.law, stiffness_below=0.0).behind(LAW.above)
+    law = replace(LAW.law, stiffness_below=0.0).with_clearance(LAW.above)
     assert len(_system(flat_boom(), law=law).laws) == 8
 
 

@@ -129,8 +129,8 @@ def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
 def test_motion_of_a_tapered_boom_follows_its_beam(lateral: float | None) -> None:
     """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
     boom = tapered_boom(None, lateral)
-    law = [LAW.behind(4e-3)]
-    sides = [LAW.behind(5e-3)] if lateral else []
+    law = [LAW.with_clearance(4e-3)]
+    sides = [LAW.with_clearance(5e-3)] if lateral else []
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     shell = reduce_boom(
         touching(boom, law, sides), ShellOptions(0.2, contact_tolerance=0.05), MPI.COMM_SELF

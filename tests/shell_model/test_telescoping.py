@@ -30,7 +30,7 @@ from tests.dynamics.reference import table_slope
 from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
 from tests.touching import touching
 
-LAW = PowerContact(1.0e8, 1.0).behind(7.0e-3)
+LAW = PowerContact(1.0e8, 1.0).with_clearance(7.0e-3)
 DRIVE = Drive(SCurve(2.0, 1.0), ("inner", "outer"))
 SIZE = 0.25
 

@@ -68,7 +68,7 @@ def test_every_model_of_the_case_has_the_interpretation(paper: Case) -> None:
     assert [model.name for model in case.models] == list(MODELS)
     for model in case.models:
         (law,) = contact_laws(case, model)
-        assert law == PowerContact(1.01e6, 1.5).behind(0.014)
+        assert law == PowerContact(1.01e6, 1.5).with_clearance(0.014)
         assert not isinstance(model, Kantorovich) or model.base == "pinned"
     assert [one.load for one in build_boom(case).segments] == [1.5 * 83.16, 1.5 * 55.07]
 

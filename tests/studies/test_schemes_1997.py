@@ -33,7 +33,7 @@ DEEP = 100.0
 
 def sprung() -> GapSystem:
     """1 kg without a spring of its own that two stops never leave, which are 1 N/m together."""
-    contact = PowerContact(0.5, 1.0).behind(-DEEP)
+    contact = PowerContact(0.5, 1.0).with_clearance(-DEEP)
     return replace(
         oscillator(),
         omega2=np.zeros(1),
@@ -116,7 +116,7 @@ def test_a_lagged_contact_gains_energy() -> None:
 
 def test_iterated_impacts_come_near_the_converged_ones() -> None:
     """Reference: other code, splitting; one blow in 60 steps, within 1 % of the way back."""
-    stop = replace(sprung(), laws=[PowerContact(100.0, 1.0).behind(0.5)])
+    stop = replace(sprung(), laws=[PowerContact(100.0, 1.0).with_clearance(0.5)])
     motion = Motion(stop, 2.0, 0.005, velocity=np.ones(1))
     found = integrate(motion, NEWMARK, True).trajectory.states[-1]
     assert found == pytest.approx(FixedStep(1e-4)(motion).states[-1], abs=1e-2)

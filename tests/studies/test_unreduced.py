@@ -34,7 +34,7 @@ from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_s
 from tests.shell_model.conftest import box_shell
 from tests.touching import touching
 
-_SOFT = replace(LAW.law, stiffness=1.0e9, exponent=1.0).behind(LAW.above)
+_SOFT = replace(LAW.law, stiffness=1.0e9, exponent=1.0).with_clearance(LAW.above)
 
 
 def _dense(matrix: PETSc.Mat) -> Array:
@@ -192,7 +192,7 @@ def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
          "the unreduced shell moves in the plane, under constant loads, without bonded joints"),
         (three_segments(bonded=True), LAW,
          "the unreduced shell moves in the plane, under constant loads, without bonded joints"),
-        (flat_boom(), replace(LAW.law, damping=0.5).behind(LAW.above),
+        (flat_boom(), replace(LAW.law, damping=0.5).with_clearance(LAW.above),
          "the unreduced shell takes contacts without damping"),
         (replace(flat_boom(), joints=(replace(flat_boom().joints[0], dashpot=1.0),)), LAW,
          "the unreduced shell takes joints without dashpots"),
@@ -224,7 +224,7 @@ def test_bad_steps_are_refused(step: float, radius: float, message: str) -> None
 def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
     """Reference: analytic, (4) and Coulomb's law; dependent rows slide by their mean."""
     random = np.random.default_rng(1)
-    law = PowerContact(10.0 ** (5.0 + 3.0 * exponent), exponent).behind(1.0e-3)
+    law = PowerContact(10.0 ** (5.0 + 3.0 * exponent), exponent).with_clearance(1.0e-3)
     laws = [law.one_sided(side) for side in (1, -1, 1, -1)]
     mean = np.array([[0.5, 0.5, 0.0, 0.0], [0.0, 0.0, 0.5, 0.5]])
     states = set()

@@ -257,7 +257,7 @@ class ModelTable(CaseTable):
             try:
                 for law in (joint.law(direction) for direction in boom.directions):
                     for pad in joint.pads:
-                        law.behind(-pad.shim)
+                        law.with_clearance(-pad.shim)
             except BoomError as error:
                 raise BoomError(f"joint[{number}].contact", error.what) from None
             except ValueError:

@@ -110,7 +110,7 @@ class Shell(ModelTable):
         standard_shell = load_or_compute(context.cache, (boom, options), context.comm, compute)
         shell = with_plays_and_loads(standard_shell, model_boom.boom)
         factor = shell.critical_factor
-        if (boom.driven or model_boom.boom.axial_changes) and factor is not None:
+        if (boom.telescopes or model_boom.boom.axial_changes) and factor is not None:
             # The reduced shell gives the factor at t = 0, the beam over the whole motion.
             on_the_way = self.critical_factor(model_boom)
             factor = min(factor, on_the_way or factor)
