@@ -31,7 +31,7 @@ STANDARD_GRAVITY = 9.80665
 def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     """Return all loads across the boom: weights, applied and released loads, and impulses.
 
-    Released loads and impulses act through the state at t = 0.
+    Released loads and impulses determine the state at t = 0.
 
     Raises:
         BoomError: a segment is unknown, a history is invalid, or a payload has its own gravity

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A checked case with its boom, and the boom as each model sees it."""
+"""A checked case with its boom, and the boom with the contact laws of each model."""
 
 from __future__ import annotations
 

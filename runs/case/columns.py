@@ -145,7 +145,7 @@ class _Row:
         return any(map(_is_number, self.cells))
 
     def check_columns(self, chosen: Sequence[int], names: Sequence[str] | None) -> None:
-        """Check that the chosen columns exist. A file without headings has no others."""
+        """Check that the chosen columns exist, and that a file without headings has no others."""
         count = len(self.cells)
         if count <= max(chosen) or (names is None and count != len(chosen)):
             columns = "1 column" if count == 1 else f"{count} columns"

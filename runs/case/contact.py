@@ -38,7 +38,7 @@ _POWER_LAW_KEYS = ("stiffness", "stiffness_below", "exponent")
 
 
 def table_law(points: Sequence[tuple[float, float]], damping: float = 0.0) -> TableContact:
-    """Return the contact law through tabulated pairs of penetration in m and force in N.
+    """Return the contact law of tabulated pairs of penetration in m and force in N.
 
     Raises:
         ValueError: the law is invalid.
@@ -58,14 +58,16 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
 
 
 def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
-    """Check that power laws have a stiffness, and that tables and pads with a thickness do not.
+    """Check that power laws have a stiffness, and other laws have none.
+
+    Other laws are tables, and pads with a thickness.
 
     Args:
         table: the table of a contact or a joint.
         of_power: keys that only power laws may have.
 
     Raises:
-        ValidationError: a key is missing or superfluous_error.
+        ValidationError: a key is missing or superfluous.
     """
     tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
     pad = table.elastic_pads_key if isinstance(table, JointTable) else None

@@ -24,7 +24,8 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
 
     Args:
         case: a checked case.
-        boom: boom of the case."""
+        boom: boom of the case.
+    """
     return {
         number: ElasticDrive(
             _moved_mass(boom, number),
@@ -58,7 +59,8 @@ def check_elastic_drives(case: Case, boom: Boom) -> None:
     """Check the data of elastic drives.
 
     Raises:
-        BoomError: data of an elastic drive are invalid."""
+        BoomError: data of an elastic drive are invalid.
+    """
     for number, joint, drive in _drives(case):
         where = f"joint[{number + 1}].drive"
         if drive.stiffness is None:
@@ -112,7 +114,7 @@ def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:
 
 
 def _moved_mass(boom: Boom, *joints: int) -> float:
-    """Return the mass in kg of the segments that every one of these joints' drives moves."""
+    """Return the mass in kg of the segments that the drives of all these joints move."""
     return sum(
         segment.mass
         for number, segment in enumerate(boom.segments)

@@ -208,7 +208,7 @@ def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
 
 
 def with_initial_slack(system: GapSystem, case: Case) -> GapSystem:
-    """Return a system with the initial slack of its rope, if its load lies on the ground.
+    """Return the system with initial slack of the rope if the load lies on the ground.
 
     The slack of the case counts from the tip in its initial position. The last contacts of the
     system are rope and ground.

@@ -93,7 +93,7 @@ class GroundAccelerationTable(HistoryTable):
 
 
 class LoadCaseTable(CaseTable):
-    """A load case of the boom at rest; its keys replace keys of the case."""
+    """A load case of the boom at rest. Its keys replace keys of the case."""
 
     name: Name
     """the name of the load case"""

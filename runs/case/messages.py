@@ -79,7 +79,7 @@ class BadInput(Exception):
     def from_validation(cls, file: str, error: ValidationError) -> BadInput:
         """Return the most informative error of a validation.
 
-        A misspelled key causes two errors, an unknown and a missing key. The unknown key is named.
+        A misspelled key causes two errors, for an unknown and a missing key. The first one counts.
         """
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] in _UNKNOWN), faults[0])
@@ -160,7 +160,7 @@ def _without_kind(location: Sequence[int | str]) -> list[int | str]:
 
 
 def _table(location: Sequence[int | str]) -> type:
-    """Return the class of the table in which a path ends."""
+    """Return the class of the innermost table of a path."""
     names = [step for step in location[:-1] if isinstance(step, str)]
     if names[:2] == ["start", "velocity"]:
         # The next step of the path is the name of a segment.

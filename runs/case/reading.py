@@ -177,7 +177,7 @@ def select(
 def _with_shells(
     models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
 ) -> tuple[Model, ...]:
-    """Return the models with an option of the command line set in their shells."""
+    """Set an option of the command line in the shells of models."""
     if not any(model.needs_shell for model in models):
         raise BadInput(path, option, "no shell is to be run; leave it out")
     return tuple(model.with_shells(update) for model in models)

@@ -209,7 +209,7 @@ class BucklingTable(CaseTable):
 
 
 class LimitsTable(CaseTable):
-    """Limits of results; the exit status of a run is 1 where its leading model exceeds one."""
+    """Limits of results; the exit status of a run is 1 if its leading model exceeds one."""
 
     tip: Annotated[Positive, In("m")] | None = None
     """the largest permitted tip deflection in m, of the motion"""

@@ -100,7 +100,7 @@ class _FoldedTable(ShapeTable):
 
 
 class HexagonTable(_FoldedTable):
-    """Keys of a hexagon with flat top and bottom, whose sides are folded in the middle."""
+    """Keys of a hexagon with flat top and bottom, and sides that are folded at mid-height."""
 
     make = hexagon
     shape: Literal["hexagon"]

@@ -108,7 +108,7 @@ def frame_motion(case: Case, segments: Sequence[Segment]) -> FrameMotion:
 def turning_loads(
     frame: FrameMotion, segments: Sequence[Segment], joints: Sequence[Joint]
 ) -> Iterator[Load]:
-    """Yield the inertia loads across the boom by slewing and luffing, and changes of its weight."""
+    """Yield inertia loads across the boom by slewing and luffing, and changes of its weight."""
     if not (frame.slew.kinks or frame.luff.kinks):
         return
     directions: tuple[Direction, ...] = ("z", "y")

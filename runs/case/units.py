@@ -43,7 +43,7 @@ class Unit:
 
     @classmethod
     def of(cls, text: str) -> Unit:
-        """Return the unit with a name such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m``, ``g``.
+        """Return the unit of a text such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m`` or ``g``.
 
         Raises:
             ValueError: the unit is unknown.

@@ -17,7 +17,7 @@ MAX_BYTES = 16_000_000
 
 
 def check_regular(path: Path) -> None:
-    """Check that a path is a regular file. Reading a pipe may block, and a device may never end.
+    """Check that a path is a regular file, since a pipe may block and a device may never end.
 
     Raises:
         OSError: the file is missing, or is no regular file.
@@ -32,7 +32,7 @@ def check_regular(path: Path) -> None:
 def check_not_working_folder(folder: Path, file: str, key: str) -> None:
     """Check that a folder to replace is not the working folder.
 
-    After the replacement the user's shell would be in the old folder, which is empty.
+    After a replacement, the user's terminal would remain in the deleted folder.
 
     Args:
         folder: the folder to replace.

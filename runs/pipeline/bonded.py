@@ -37,7 +37,7 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
 
     Args:
         system: gap system with its contacts; no segment telescopes.
-        rests: equilibria (num_modes,) in which contacts are closed or open.
+        rests: equilibria (num_modes,); contacts that are closed in one of them are bonded.
     """
     on_ground = np.isin(system.station_of_row, system.grounded)
     pressing = np.zeros(len(system.laws), dtype=bool)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Statics of all combinations of a case in their load cases, side by side, and their envelope.
+"""Statics of all combinations of a case in their load cases, and their envelope.
 
 The boom consists of beam elements with play and axial forces, as in
 :mod:`runs.pipeline.largest_loads`; each combination has a system of its own, since axial forces

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Statics of all combinations of a case by a shell.
 
-Combinations with the same geometry share one reduced shell, which is reduced under unit loads of
-all of them and the largest axial forces. The geometric stiffness of each combination is
-the geometric stiffness of the shell, corrected for the difference of the axial forces with the
-deflections of the axes.
+Combinations with the same geometry share one shell. It is reduced under unit loads of all of them,
+and under the largest axial forces. A combination with other axial forces changes its geometric
+stiffness; the change follows from the deflections of the axes.
 """
 
 from __future__ import annotations
@@ -67,7 +66,7 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
 
 
 def _shared(booms: Sequence[Boom]) -> list[Boom]:
-    """Return a boom with unit loads of all booms, and each boom with its loads in the same order.
+    """Return a boom with the unit loads of all booms, and the booms with loads in its order.
 
     The booms differ only in loads and axial forces.
     """
@@ -108,7 +107,7 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
 
 
 def _by_kind(boom: Boom) -> dict[str, Load]:
-    """Return the loads of a boom at rest by place and direction; equal ones have numbers."""
+    """Return the loads of a boom at rest by place and direction, with numbers for equal ones."""
     loads_by_key: dict[str, Load] = {}
     for load in boom.loads:
         if isinstance(load.history, ReleasedLoad | InitialImpulse):
@@ -164,7 +163,7 @@ def _with_buckling(
     built: BuiltModel,
     context: BuildContext,
 ) -> list[CombinationState]:
-    """Return the states, with buckling results for the governing one. Collective.
+    """Return the states, and add the buckling results to the governing state. Collective.
 
     The governing state has the lowest estimate by panel formulas.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Descriptions of drives, predictions of stick-slip, and cautions on lagging segments."""
+"""Descriptions of drives, predictions of stick-slip, and cautions on segments that lag."""
 
 from __future__ import annotations
 
@@ -172,7 +172,7 @@ def stick_slip_cautions(estimates: Iterable[StickSlipEstimate], system: System) 
 
 
 def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
-    """Yield a caution for each segment that lags so far that its pads are at other stations.
+    """Yield a caution for each segment with a large lag behind its drive.
 
     Args:
         boom: boom of the case.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Estimates of the memory and time of a run before it starts.
 
-The memory is an upper bound, about four times too high at most. The time is right within a factor
-of two on an idle AMD EPYC (tests/runs/test_estimates.py). Beams are built for the estimate; a shell
-is not meshed, and a beam replaces it.
+The memory is an upper bound, at most four times the true value. The time is right within a factor
+of two on an idle AMD EPYC (tests/runs/test_estimates.py). The estimate builds beams; it replaces a
+shell by a beam instead of meshing it.
 """
 
 from __future__ import annotations
@@ -65,7 +65,7 @@ class Cost:
 
     @property
     def large(self) -> bool:
-        """True if a run needs more than is allowed without confirmation."""
+        """True if the run needs a confirmation because of its memory or time."""
         return not (self.memory <= MAX_MEMORY and self.seconds <= MAX_TIME)
 
     def __add__(self, other: Cost) -> Cost:
@@ -124,7 +124,7 @@ def sweep_cost(cases: Sequence[Case]) -> Cost:
 
 
 def refuse_large(cost: Cost, file: str) -> None:
-    """Refuse a run or sweep that needs more memory or time than is allowed without confirmation.
+    """Refuse a run or sweep whose memory or time needs a confirmation.
 
     Raises:
         BadInput: the cost exceeds :data:`MAX_MEMORY` or :data:`MAX_TIME`.

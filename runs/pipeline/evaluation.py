@@ -133,7 +133,7 @@ class ModelEvaluation:
         return replace(results, residual_vibration=vibration, hoisting=rope, drives=drives)
 
     def add_bonded(self, results: ModelDesignResults) -> ModelDesignResults:
-        """Return design results with the results of the same model without play, if it has play."""
+        """Add the results of the same model without play, if it has play, to design results."""
         boom, case, model = self.boom, self.case, self.model
         if model.bonded or not boom.joints:
             return results

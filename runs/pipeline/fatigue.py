@@ -29,7 +29,7 @@ _BESIDE = 1.0e-6
 
 
 class Detail(NamedTuple):
-    """A weld detail: name, index of its segment, x in the case's position in m, and category."""
+    """A weld detail: name, index of its segment, x in m at t = 0, and category."""
 
     name: str
     segment: int
@@ -45,7 +45,7 @@ class Damage(NamedTuple):
 
 
 def details(case: Case, boom: Boom) -> Iterator[Detail]:
-    """Yield the details of a boom: at collars, diaphragms and stations, and of the worst weld."""
+    """Yield the details of a boom: at collars, diaphragms and stations, and the worst weld."""
     for number, segment in enumerate(boom.segments):
         name = segment.name
         for collar in segment.collars:
@@ -67,7 +67,7 @@ def details(case: Case, boom: Boom) -> Iterator[Detail]:
 
 
 def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
-    """Return the governing detail per detail name, with its damage under all spectra.
+    """Return the governing detail of each name, with its damage under all spectra.
 
     The result is empty without spectra or without the package ``rainflow``.
 

@@ -110,7 +110,7 @@ class SlowPeaks:
 
     @classmethod
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
-        """Return the peaks of an ensemble, in order, up to the first peak that a member lacks.
+        """Return the first peaks of an ensemble, before any peak that a member lacks.
 
         Peaks of two members match if they are nearer than half a period of the cut-off, since two
         peaks of one filtered motion are farther apart.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Predictability of the motion of a model: ensemble, horizons, and necessary number of steps."""
+"""Predictability of the motion of a model: ensemble, horizons, and required number of steps."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ _FIRST_POWER, _MAX_STEP_SHARE = -4, 0.25
 def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
     """Yield an executor that uses all ranks but the first. Collective.
 
-    It yields None without several ranks, and on the other ranks after their work.
+    It yields None if there is one rank only. On other ranks it yields None after their work.
     """
     if comm is None or comm.size == 1:
         yield None
@@ -100,7 +100,7 @@ def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> Ensembl
 
 
 def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
-    """Return tip and head of all ensembles in one dataset, in single precision; None for none.
+    """Return tip and head of all ensembles in a single-precision dataset; None without ensembles.
 
     Args:
         ensembles: ensembles by model name, with the same members and times.

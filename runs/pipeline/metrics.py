@@ -53,7 +53,7 @@ def metrics(kind: type) -> dict[str, Metric]:
 
 
 def records(kind: type) -> dict[str, type[Record]]:
-    """Return the record class of each field of a class whose type is a :class:`Record` or None."""
+    """Return the :class:`Record` classes among the types of a class's fields, by field name."""
     return {
         name: one
         for name, hint in get_type_hints(kind).items()

@@ -95,7 +95,7 @@ class ShellOutput:
         return cls(fields, stresses, summarise(shell, stresses), meshes, buckling)
 
     def write_files(self, folder: Path, prefix: str) -> None:
-        """Write stresses, field series and meshes; the folder already has the fields.
+        """Write stresses, field series and meshes to a folder that already has the fields.
 
         Args:
             folder: folder of the run.

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Accuracy of the results of a run: comparison of models, notes on accuracy, cautions.
 
-Every model is compared with one reference. Ensembles are compared at three levels. Motions that
-friction makes regular are compared over the whole run.
+All models are compared with one reference: chaotic motions by ensembles at three levels, motions
+that friction makes regular over the whole run.
 """
 
 from __future__ import annotations
@@ -169,7 +169,7 @@ def quality_notes(
 
 
 def _percent(part: float) -> str:
-    """Return a percentage with two decimals, or more up to the first digit that is not 0."""
+    """Return a fraction in % with two decimals, or more up to the first nonzero digit."""
     return f"{TO_PERCENT * part:.2g} %"
 
 
@@ -201,7 +201,7 @@ def _agreement(design: DesignResults) -> Iterator[str]:
 
 
 def static_deviation(results: ModelDesignResults, other: ModelDesignResults) -> float | None:
-    """Return the relative difference of the static tips under the largest loads, or None."""
+    """Return the relative difference of the largest static tip deflections, or None."""
     tips = [
         max((rest.tip for rest in one.static), key=abs, default=None) for one in (results, other)
     ]

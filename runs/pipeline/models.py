@@ -74,7 +74,7 @@ def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[L
 
 
 def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Iterator[Travel]:
-    """Yield the changes of axial forces, as travels that move no row."""
+    """Yield changes of axial forces, as travels without moving rows."""
     deflections = [dict(line.deflections) for line in lines]
     # Contacts count as stiff as the softest segment, so that no direction lacks stiffness.
     least = min(system.omega2[system.omega2 > 0.0], default=1.0)
@@ -89,7 +89,7 @@ def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Itera
 
 
 def initial_motion(system: GapSystem, case: Case) -> Motion:
-    """Return the motion of a system that is to be integrated, from the data of a case.
+    """Return the motion of a system by the initial state and times of a case, before integration.
 
     Raises:
         NumericsError: there is no equilibrium to start from.

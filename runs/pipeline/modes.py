@@ -122,7 +122,7 @@ def modes(model: LoadedModel, rest: Array) -> list[Mode]:
 
 
 def inertia(segment: Segment, motion: Quantity) -> float:
-    """Return the inertia of a motion: mass per length in kg/m, or for a twist in kg·m."""
+    """Return the mass per length in kg/m, or for a twist its polar moment of inertia in kg·m."""
     if motion != "twist":
         return segment.mass_per_length
     assert segment.lateral is not None

@@ -91,7 +91,7 @@ class MotionAndStatics:
 
 
 def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[StressHistory]]:
-    """Return the extreme values of a motion except wall stresses, and stress histories for fatigue.
+    """Return extreme values of a motion without wall stresses, and stress histories for fatigue.
 
     The stress history of a segment belongs to the point where the stress varies most.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Share of wall compliance under slide pads in the tip deflection, and remedies."""
+"""Tip deflection by the compliance of walls under slide pads, and remedies."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ GOVERNING_SHARE = 0.5
 def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     """Yield the share of walls under pads in the largest static deflection of the tip.
 
-    Remedies follow if the share is large.
+    Remedies follow if the part is large.
 
     Args:
         beam: static states of the boom with the contact laws of the first model with play.

@@ -143,7 +143,7 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Ar
 def loaded_pads(
     joint: Joint, direction: Direction, sides: Sequence[float]
 ) -> list[tuple[PadSize, float]]:
-    """Return the pads of a station that have a size, each with the force on it in N.
+    """Return the pads of a station with given sizes, and the force on each in N.
 
     Args:
         joint: the joint of the station.

@@ -71,11 +71,11 @@ class Proof(NamedTuple):
     Args:
         kind: kind of the proof, a key of :data:`FORMULAS`.
         part: the part of the boom.
-        place: the part with the governing wall or detail.
+        place: name of the part and of its governing wall or detail.
         x: position of the governing cross-section in m; None for other parts.
         demand, resistance: both in the unit; the resistance is divided by its factor.
         unit: SI unit.
-        combination: combination and load case, or spectrum, that governs.
+        combination: governing combination and load case, or governing spectrum.
     """
 
     kind: str
@@ -194,7 +194,7 @@ def _wall_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Itera
 def reduced_stress(
     wall: WallStresses, strength: float, curve: Sequence[tuple[float, float]] = ()
 ) -> Array:
-    """Return the equivalent stress (num_places,) of a wall in Pa with reductions for buckling.
+    """Return the equivalent stress (num_places,) of a wall in Pa, increased for buckling.
 
     √((σ/ρ)² + 3 (τ/χ)²) with the largest compression σ of the mid-line (EN 1993-1-5, 10 (5) b).
 

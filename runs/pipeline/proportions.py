@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Sanity checks of the proportions of a case, which reveal errors of unit or sign."""
+"""Plausibility checks of a case, which reveal wrong units and signs."""
 
 from __future__ import annotations
 
@@ -79,7 +79,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
 
 
 def _ineffective_inputs(case: Case) -> Iterator[str]:
-    """Yield cautions on inputs that have no effect, or less than the user may intend."""
+    """Yield cautions on inputs without effect, or with less effect than the user may intend."""
     duration = case.time.duration
     ramps = [
         (f"{name}[{i}].{key}", getattr(table, key))
@@ -176,7 +176,7 @@ def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _joints(case: Case) -> Iterator[str]:
-    """Yield a caution for each joint in an outer segment that holds another segment already."""
+    """Yield a caution for each joint with an outer segment that another joint has, too."""
     held: dict[str, str] = {}
     for number, joint in enumerate(case.joints, start=1):
         outer, inner = str(joint.outer), str(joint.inner)
@@ -388,7 +388,7 @@ def _payload_without_gravity(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
-    """Return a caution if the run is shorter than one period of the boom, or has very many.
+    """Return a caution if the run is shorter than one period of the boom, or has very many periods.
 
     Args:
         where: model or source of the frequency in the text, for example ``in MODEL``.

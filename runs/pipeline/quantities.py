@@ -110,7 +110,7 @@ def measure(results: Results, model: str) -> Quantities:
 
 
 def decay_time(ratio: float, frequency: float | None) -> float | None:
-    """Return the time in s in which damping reduces a vibration to 10 %; None if undamped."""
+    """Return the time in s in which a vibration decays to 10 %; None without damping."""
     return (
         log(1.0 / DECAYED_SHARE) / (2.0 * pi * ratio * frequency) if ratio and frequency else None
     )

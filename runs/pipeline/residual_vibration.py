@@ -139,10 +139,10 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
 
 
 def _equilibrium_steps(values: Array, passed: Array) -> Indices:
-    """Return the steps (num_rests,) at which equilibria are computed, in ascending order.
+    """Return the ascending output steps (num_rests,) at which equilibria are computed.
 
-    They divide the accumulated change ``passed`` (num_times,) evenly, and each interval between
-    two reversals of the values (num_changes, num_times).
+    They divide the accumulated change ``passed`` (num_times,) evenly, and so divide each interval
+    between two reversals of the values (num_changes, num_times).
     """
     turns = sorted({step for change in values for step in _reversals(change).tolist()})
     if len(turns) > _MOST_TURNS:
@@ -173,7 +173,7 @@ def _speed(travel: Travel) -> float:
 
 
 def _vibration_at_constant_extension(system: GapSystem, case: Case, model: Model) -> float | None:
-    """Return the largest distance of the tip from equilibrium in m at constant extension."""
+    """Return the largest distance of the tip from equilibrium in m at the extension of a system."""
     try:
         plan = MotionPlan.of(system, case, model)
         changes = system.excitations or system.released_load.any() or plan.motion.velocity.any()

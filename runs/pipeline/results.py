@@ -123,7 +123,7 @@ class Results:
         summary.cautions = cautions(case, boom, data, summary)
 
     def save(self, folder: Path | str) -> None:
-        """Write a folder that :meth:`load` and ``report`` can read; it replaces an earlier run's.
+        """Write a folder for :meth:`load` and ``report``; it replaces the folder of an earlier run.
 
         Raises:
             BadInput: the folder cannot be written, contains other files, or is the current one.
@@ -211,7 +211,7 @@ class Results:
 
 
 def prepare(out: str, file: str) -> Path:
-    """Return the folder of a run, which may contain an earlier run.
+    """Return the path of the folder for a run; it may contain an earlier run.
 
     Args:
         out: folder as the user gave it.
@@ -314,7 +314,7 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
 
 
 def _read(path: Path, how: Callable[[Path], Any]) -> Any:
-    """Read a file of a run with a given reader.
+    """Read a file of a run with the function ``how``.
 
     Raises:
         BadInput: the file is missing, damaged, or written by another version.

@@ -59,7 +59,7 @@ class Run:
     def evaluate(self) -> None:
         """Add the design results and the cautions to the summary.
 
-        A model whose design results cannot be computed becomes one of the ``failures``.
+        A model without design results becomes one of the ``failures``.
 
         Raises:
             NumericsError: a comparison of the models is not finite.
@@ -71,7 +71,7 @@ class Run:
         check_finite(summary)
 
     def evaluate_with_play(self) -> None:
-        """Add pad forces and the design results with play alone to the summary."""
+        """Add pad forces and design results to the summary, but no results without play."""
         results, summary = self.results, self.results.summary
         summary.design = DesignResults(models=self._evaluate_models(lambda _, design: design))
         summary.pads = list(pad_loads(results.case, results.boom, results.trajectories))

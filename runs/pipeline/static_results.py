@@ -119,7 +119,7 @@ def instants(system: GapSystem, duration: float) -> list[float]:
 
 
 def extended_instants(system: GapSystem, duration: float) -> list[float]:
-    """Return the times in s of the largest and smallest extension, and of extreme loads there.
+    """Return the times in s of the largest and smallest extension, and of extreme loads meanwhile.
 
     Args:
         system: gap system whose ``load`` includes all constant loads.
@@ -253,7 +253,7 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
 
 
 def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> float:
-    """Return the play in m that walls close: mean approach on the right less the left one."""
+    """Return the reduction of the play by walls in m: mean approach, right less left."""
     right, left = (
         [gaps[row] for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
     )
@@ -261,7 +261,7 @@ def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> float:
 
 
 def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
-    """Return a caution if walls that bulge at rest close lateral plays.
+    """Return a caution if bulging walls reduce lateral plays at rest.
 
     Args:
         where: model in the text, for example ``in MODEL``.

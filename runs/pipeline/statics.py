@@ -37,7 +37,7 @@ class Reaction:
 class Statics(NamedTuple):
     """Static states under the loads at t = 0 of beam elements, with and without play.
 
-    ``with_play`` is without play, too, if no model of the case has play.
+    If no model of the case has play, ``with_play`` has none either.
     """
 
     with_play: StaticState

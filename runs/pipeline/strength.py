@@ -162,8 +162,8 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
 def outer_corners(section: Section) -> tuple[Array, Array]:
     """Return y and z (num_corners,) in m of the outer corners of the plates, from the centroid.
 
-    Half the thickness is added to the mid-line. In each direction, it is the thickness of the plate
-    at the corner whose normal is nearer to the direction.
+    A corner is half a thickness outside the mid-lines, along y and along z. The plate with the
+    normal nearer to the direction gives the thickness.
     """
     places, beyond = [], []
     for before, after in zip(
@@ -196,7 +196,7 @@ def largest_stresses(
     forces_at_rest: Mapping[Quantity, Array],
     time: Array,
 ) -> tuple[FibreStress, StressHistory]:
-    """Return the largest stress of a segment, and the stress history at the fibre that varies most.
+    """Return the largest stress of a segment, and the stress history with the largest variation.
 
     Args:
         segment: the segment.
@@ -294,7 +294,7 @@ def endurance(sizes: Array, category: float) -> Array:
 
 
 def life(varying: StressHistory, table: LifeTable) -> Life:
-    """Return the fatigue damage of a segment at the fibre whose stress varies most.
+    """Return the fatigue damage of a segment at the fibre with the largest stress variation.
 
     Args:
         varying: stress history of the fibre.

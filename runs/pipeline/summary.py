@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Content of ``summary.json``: results of a run and of each model, in SI units.
 
-Fields are the keys of the file, in this order. A field that is not set has no key. None becomes
-null.
+Fields are the keys of the file, in this order. The file has no key of a field that is not set. None
+becomes null.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ class FirstPeak(NamedTuple):
 class EnsembleSummary(SummaryTable):
     """Summary of the ensemble of a model.
 
-    ``horizons`` has the times in s after which the tips of members differ by a share of the range,
-    by share. ``energy_residual`` is the maximum over the members.
+    ``horizons`` has, for each share of the range, the time in s at which the tips of members differ
+    by this share. ``energy_residual`` is the maximum over the members.
     """
 
     horizons: dict[str, FiniteNumber]
@@ -140,14 +140,15 @@ class CalibrationCard(SummaryTable):
 class ModelSummary(SummaryTable):
     """Results of one model: ``frequencies`` in Hz, wall times in ``seconds`` by stage.
 
-    ``wall_time`` in s excludes the compilation of the time loop; a stage with results of an earlier
-    run has the time of that run. ``first_peak`` has the first peak by output. If the step does not
-    resolve an impact, ``peak_contact_force`` in N is a mean over a step, and ``resolving_step`` in
-    s would resolve it. ``step_error`` is the error of the tip by the time step, as a fraction of
-    its range. ``static_tip`` in m is the tip deflection under the constant loads. The axial forces
-    times ``critical_factor`` cause buckling with closed joints. ``stick_slip`` has the results of
-    elastic drives by the names of their forces in trajectories. Shells have ``reduction_errors``
-    by kind, ``local_compliance`` in m/N, ``mesh_error`` as a fraction of it, and ``stress``.
+    ``wall_time`` in s excludes the compilation of the time loop. If a stage reuses results of an
+    earlier run, it has the wall time of that run. ``first_peak`` has the first peak of each output.
+    If the step is too long for an impact, ``peak_contact_force`` in N is a mean over a step, and
+    ``resolving_step`` in s is short enough. ``step_error`` is the error of the tip by the step, as
+    a fraction of its range. ``static_tip`` in m is the tip deflection under the constant loads. The
+    axial forces times ``critical_factor`` cause buckling with closed joints. ``stick_slip`` has the
+    results of elastic drives by the names of their forces in trajectories. Shells have
+    ``reduction_errors`` by kind, ``local_compliance`` in m/N, ``mesh_error`` as a fraction of it,
+    and ``stress``.
     """
 
     kind: str

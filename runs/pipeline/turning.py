@@ -153,7 +153,7 @@ def turning_lines(case: Case) -> Iterator[str]:
 
 
 def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[str]:
-    """Yield the shapers that leave no vibration of the modes that slewing and luffing excite most.
+    """Yield the shapers against vibration of the modes that slewing and luffing excite most.
 
     Args:
         case: a checked case.
@@ -182,8 +182,8 @@ def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[
 def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[Array, Array]]:
     """Return moment (num_times,) in N·m and power in W of slewing and of luffing, by key.
 
-    It is empty for a boom that does neither. The boom counts as rigid. A load on a rope acts by the
-    computed rope force and swing.
+    The result is empty without slewing and luffing. The boom counts as rigid. A load on a rope acts
+    by the computed rope force and swing.
 
     Args:
         case: a checked case.

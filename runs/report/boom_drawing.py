@@ -62,7 +62,7 @@ class Panel:
         angle: angle of the boom in degrees.
         larger: factor by which heights are exaggerated.
         whole: True for the whole boom without details.
-        meanings: symbol of each text of the legend.
+        meanings: symbol of each legend text.
     """
 
     axes: Axes
@@ -285,7 +285,7 @@ def _draw_stations(panel: Panel, joint: Joint) -> None:
 
 
 def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
-    """Draw a cylinder from lug to ground; the detailed panel omits its lower part."""
+    """Draw a cylinder from lug to ground, without its lower part in the detailed panel."""
     lug, ground = np.array([cylinder.x, -cylinder.depth]), np.array(cylinder.ground)
     if not panel.whole:
         ground = lug + (ground - lug) * min(1.0, 0.6 / panel.larger)
@@ -299,7 +299,7 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
 
 
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
-    """Return the lowest and the highest point (2,) of a boom at an angle in degrees, in m."""
+    """Return the corners (2,) in m of the box around a boom at an angle in degrees."""
     ends = [(x, z) for s in boom.segments for x in s.ends for z in edges(boom, s, x)]
     ends.append((boom.tip + _farthest(boom), 0.0))
     places = np.array([*ends, *(one.ground for one in boom.cylinders)])

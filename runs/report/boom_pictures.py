@@ -33,7 +33,7 @@ SIGN, CYLINDER = 30.0, 70.0
 
 @dataclass(frozen=True, slots=True)
 class BoomView:
-    """View settings that all pictures of a boom share, so that they can be compared.
+    """View settings that all pictures of a boom have in common for comparison.
 
     Args:
         scene: scene of the boom in motion.
@@ -61,7 +61,7 @@ class BoomView:
         pixels: tuple[int, int] = PIXELS,
         displacement: float = DISPLACEMENT_DRAWN,
     ) -> BoomView:
-        """Return the view for pictures of given instants.
+        """Return the common view of pictures at given instants.
 
         Displacements are magnified up to a fraction ``displacement`` of the length of the boom.
         """

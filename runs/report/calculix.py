@@ -2,10 +2,10 @@
 """Export of the shells of a boom at rest as an input deck for CalculiX, in the form of Abaqus.
 
 Each triangle is an S6 element. Elastic supports, cylinders and pads act on weighted means of
-displacements: each mean is a node with an equation for its displacement, and a spring to the
-ground. A contact that is closed in the static state is a spring with the tangent stiffness of its
-law, and a force that gives the static contact force. Axial forces act by loads K_G w of the static
-deflection w. Open contacts and friction are left out. So the deck is linear.
+displacements. A mean is the displacement of an additional node, by an equation, and the node has a
+spring to the ground. A contact that is closed in the static state is a spring with the tangent
+stiffness of its law, and a force that gives the static contact force. Axial forces act by loads
+K_G w of the static deflection w. Open contacts and friction are left out. So the deck is linear.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ def deck(
 
     Args:
         title: heading.
-        shells: shells of the segments, with their own springs.
+        shells: shells of the segments, including springs of elastic supports.
         springs: further springs, whose displacements CalculiX prints.
         loads: load (num_owned,) of each segment in N.
         step: lines of the analysis step.
@@ -175,7 +175,7 @@ def exported(case: Case, file: str, name: str | None = None) -> Shell:
 
 
 def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache | None) -> None:
-    """Write the deck of the shell that :func:`exported` returns, under the loads of t = 0.
+    """Write the deck of the shell from :func:`exported` under the loads at t = 0.
 
     Args:
         case: a checked case.

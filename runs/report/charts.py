@@ -171,7 +171,7 @@ def _axis(name: str, panel: int) -> str:
 
 
 def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Return the indices (num_kept,), ascending, of the extreme samples of each interval."""
+    """Return the ascending indices (num_kept,) of the extreme samples in each interval."""
     ends = np.linspace(0, values.size, stretches + 1).astype(int)
     finite = np.nan_to_num(values)
     kept = {

@@ -41,7 +41,7 @@ class CranePosition(NamedTuple):
 
     @classmethod
     def of(cls, case: Case, boom: Boom, motion: xr.Dataset) -> CranePosition | None:
-        """Return the positions in a motion; None for a boom that does no work of a crane."""
+        """Return the positions in a motion; None without hoisting, slewing and luffing."""
         if case.hoist is None and case.slew is None and case.luff is None:
             return None
         time, frame = motion["time"].values, frame_motion(case, boom.segments)

@@ -149,7 +149,7 @@ class FigureContext:
     def over_time(
         self, panels: int, height: float, end: float | None = None, share_y: bool = False
     ) -> tuple[Sheet, list[Axes]]:
-        """Return a sheet over time with panels, and below them the extension by drives, if any.
+        """Return a sheet over time with panels, and a panel of the drives' extensions, if any.
 
         Args:
             panels: number of panels.

@@ -102,7 +102,7 @@ def _draw_some(figures: Draw, results: Results, folder: Path) -> list[Figure]:
 
 
 def draw_in_folder(results: Results, folder: Path, helper: Executor | None = None) -> list[Figure]:
-    """Draw the figures into the folder of a run, and remove figures of other data."""
+    """Draw the figures in the folder of a run, and remove figures of other data."""
     figures, digest_file = folder / FOLDER, folder / FIGURE_DIGEST
     figure_digest = _figure_digest(results, folder)
     figures.mkdir(exist_ok=True)
@@ -117,7 +117,7 @@ def draw_in_folder(results: Results, folder: Path, helper: Executor | None = Non
 
 
 def _figure_digest(results: Results, folder: Path) -> str:
-    """Return the SHA-256 of the data and the program from which figures follow."""
+    """Return the SHA-256 of the data of figures and of the program."""
     bare = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
     digest = sha256(json.dumps([str(bare), program(), matplotlib.__version__]).encode())
     for path in (folder / name for name in (CASE, TRAJECTORIES, ENSEMBLES)):

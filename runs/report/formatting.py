@@ -64,10 +64,10 @@ def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
 
 
 def repeated(values: Sequence[float]) -> str:
-    """Return the median of repeated measurements as text, rounded to the first digit of the spread.
+    """Return the median of repeated measurements as text, to the leading digit of the spread.
 
     The spread is half the range. If it exceeds the median, the text starts with ``~``. A single
-    value has one digit.
+    value is rounded to one digit.
     """
     middle = median(values)
     if middle == 0.0 or not math.isfinite(middle):

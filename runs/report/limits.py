@@ -11,7 +11,7 @@ from runs.report.tables import Column, Table
 
 
 def limit_table(results: Results) -> Table | None:
-    """Return the table of the limits of a case and the values of the main models."""
+    """Return the table of the limits of a case, with the values of the main models."""
     checks = list(check_limits(results))
     if not checks:
         return None

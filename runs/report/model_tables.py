@@ -101,7 +101,7 @@ def _peak_force(model: ModelSummary) -> Cell:
 def horizon_column(models: list[ModelSummary], share: float, duration: float) -> Column:
     """Return the column of the times at which members differ by a share of the range of the tip.
 
-    A cell is ``> 10`` if they do not differ so much within a run of 10 s.
+    A cell is ``> 10`` if the difference stays smaller during a run of 10 s.
     """
 
     def horizon(model: ModelSummary) -> Cell:
@@ -263,7 +263,7 @@ def wall_table(results: Results) -> Table | None:
 
 
 def _largest(boom: Boom, stress: StressSummary) -> str:
-    """Return the largest mean stress over a patch, and the stress of a triangle at that time."""
+    """Return the largest mean stress over a patch, and a triangle's stress at this time."""
     triangle = (
         f"single element, which grows with mesh refinement beside a line of contact: "
         f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_yield_utilisation(boom, stress)} at "

@@ -204,7 +204,7 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
 
 
 def slow_peaks(run: FigureContext) -> list[Figure]:
-    """Draw the peaks of the slow motion that all members of an ensemble have, with spreads."""
+    """Draw the slow-motion peaks of ensembles, with their spreads over the members."""
     peaks_of_models = {
         name: peaks
         for name in run.with_play

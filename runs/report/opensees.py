@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Export of a boom of beam elements as an independent OpenSeesPy script.
 
-The script has beam elements with nodal loads, and a truss for each cylinder. Contacts are zero-
-length elements, whose elastic material follows points of the contact law in series with the spring
-of a calibrated station. Friction under given normal forces is elastic-plastic. Coupling between
-springs of different stations and section fields are left out.
+The script has beam elements with nodal loads, and a truss for each cylinder. Contacts are
+zero-length elements. Their elastic material follows points of the contact law, in series with the
+spring of a calibrated station. Friction under given normal forces is elastic-plastic. The script
+leaves out section fields, and coupling between the springs of different stations.
 """
 
 from __future__ import annotations
@@ -310,7 +310,7 @@ def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
 def write(
     case: Case, file: str, comm: MPI.Intracomm | None, path: Path, cache: Cache | None
 ) -> None:
-    """Write the script of the model that :func:`exported` returns.
+    """Write the script of the model from :func:`exported`.
 
     Args:
         case: a checked case.

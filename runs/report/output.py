@@ -40,7 +40,7 @@ def rerender_report(
 ) -> Iterator[tuple[Results, Addition, Path]]:
     """Yield results, additions of the client, and a copy of the folder of a run.
 
-    At the end the report is rendered in the copy, and the copy replaces the folder.
+    Afterwards the report is rendered in the copy, and the copy replaces the folder.
 
     Args:
         folder: folder of a run.

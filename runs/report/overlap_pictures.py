@@ -125,7 +125,7 @@ class OverlapView:
 
     @cached_property
     def scale(self) -> float:
-        """The magnification of displacements and play by both limits."""
+        """The largest magnification of displacements and play within the limits for both."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
         half = 0.5 * np.ptp(self.stations) + MARGIN
         near = np.abs(self.scene.points[:, 0] - self.middle) <= half
@@ -234,7 +234,7 @@ class OverlapView:
             sheet.arrow(camera.project(outside), side * length, text)
 
     def explain_forces(self, time: float) -> str:
-        """Return a sentence on the numbers at the arrows, or that no forces act at a time in s."""
+        """Return a sentence on the forces at a time in s and the numbers at their arrows."""
         now = self.motion.sel(time=time, method="nearest")
         forces = np.nan_to_num(now["contact_force"].values)
         if not forces.any():
@@ -372,7 +372,7 @@ def draw_stress(
 
 
 def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> Any:
-    """Return a surface with stresses. Its triangles share no points, so that colours may jump.
+    """Return a surface with stresses, and with separate triangles, so that colours may jump.
 
     Args:
         points: (num_points, 3) in m.
@@ -386,7 +386,7 @@ def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> An
 
 
 def smooth_corners(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:
-    """Return corner values (num_triangles, 3): means over triangles of a wall at a point."""
+    """Return corner values (num_triangles, 3): means over the triangles of a wall at each point."""
     walls = int(shell.wall.max()) + 1
     of = (triangles.astype(np.int64) * walls + shell.wall[:, None]).ravel()
     _, number = np.unique(of, return_inverse=True)
@@ -407,7 +407,7 @@ def _largest(view: OverlapView, time: float) -> str:
 
 
 def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array) -> str:
-    """Mark the largest smoothed stress of the visible walls with a circle; return its legend."""
+    """Mark the largest smoothed stress of visible walls with a circle, and return its legend."""
     scene = view.scene
     visible = view.behind & np.isin(scene.segment, view.numbers)
     triangle = int(np.where(visible, values.max(axis=1), 0.0).argmax())

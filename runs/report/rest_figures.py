@@ -138,7 +138,7 @@ def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
 
 
 def rest_lines(rest: StaticResult, name: str, color: str) -> dict[str, list[Line]]:
-    """Return the lines of each quantity of a static state, with a name for the legend."""
+    """Return the lines of each quantity of a static state, with ``name`` in the legend."""
     lines: dict[str, list[Line]] = {what: [] for what in _PANELS}
     dashes = "--" if color == theme.PLAY_FREE else "-"
     for diagram in rest.diagrams:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables of design results: rest, modes, motion, drives, pads, stresses, fatigue."""
+"""Tables of design results: static states, modes, motion, drives, pads, stresses, fatigue."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def _reaction_table(results: Results) -> Table | None:
 
 
 def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
-    """Yield a column of forces with round-off set to zero; nothing if all are zero."""
+    """Yield a column of forces, with 0 in place of round-off; nothing if all forces are 0."""
     most = max(map(abs, carried), default=0.0)
     if most > 0.0:
         cells = [each if abs(each) > ROUND_OFF * most else 0.0 for each in carried]

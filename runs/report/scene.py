@@ -158,7 +158,7 @@ class Scene:
     def of_beam(
         cls, case: Case, boom: Boom, output: BeamOutput, motion: xr.Dataset
     ) -> tuple[Scene, Array]:
-        """Return a beam as tubes along its axis, with bending stresses in Pa.
+        """Return the scene of a beam as tubes along its axis, with bending stresses in Pa.
 
         Sections stay plane and keep their shape: a point at (y, z) moves along x by −z w′ − y v′,
         and with the section's twist. Stresses (num_frames, num_points) apply at the mid-lines of
@@ -263,7 +263,7 @@ class Scene:
         return float(np.min(places)), float(np.max(places))
 
     def relative_displacements(self, t: float, segment: int, between: tuple[float, float]) -> Array:
-        """Return the displacements (num_points, 3) in m relative to a part of a segment.
+        """Return displacements (num_points, 3) in m relative to a part of a segment.
 
         The in-plane rigid motion of the part ``between`` two x in m is subtracted from all points,
         since its magnification would tilt the boom.
@@ -281,7 +281,7 @@ class Scene:
     def at(self, places: Array, segment: int, x: float, z: float) -> tuple[Array, int]:
         """Return the displayed position (3,) in m of a point in the plane of symmetry.
 
-        The second result is the number of the lowest mesh point of the nearest cross-section.
+        The second result is the number of the lowest mesh point in the nearest cross-section.
 
         Args:
             places: (num_points, 3) displayed points in m.
@@ -357,7 +357,7 @@ class Scene:
         )
 
     def _section_factors(self, scale: float, section: float) -> Array:
-        """Return magnifications (num_segments,) of sections; inner ones leave space for play."""
+        """Return magnifications (num_segments,) of sections, with space for play around inner ones."""
         factors = np.full(len(self.boom.segments), section)
         for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
             x = float(np.mean(np.array([at for at, _ in self.boom.stations])[overlap.stations]))

@@ -157,7 +157,7 @@ class Sheet:
         )
 
     def mark_x(self, camera: Camera, first: float, last: float) -> None:
-        """Draw the x axis with ticks at round values, in the plane of the camera's centre."""
+        """Draw the x axis with ticks at round values, in the plane through the camera's centre."""
         _, y, z = camera.centre
         ticks = np.asarray(MaxNLocator(20, steps=[1, 2, 5, 10]).tick_values(first, last))
         ticks = ticks[(ticks > first - 1.0e-9) & (ticks < last + 1.0e-9)]
@@ -166,7 +166,7 @@ class Sheet:
         self.picture.set_xlabel("x along the boom (m)")
 
     def show(self, pixels: Pixels, left: int = 0, bottom: int | None = None) -> None:
-        """Show rendered pixels in the picture, or at a position on the sheet."""
+        """Show rendered pixels in the picture, or at a position in pixels on the sheet."""
         up = self._floor if bottom is None else bottom
         self._seen.append((pixels, round(self._part * left), round(self._part * up)))
 

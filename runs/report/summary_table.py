@@ -192,7 +192,7 @@ def governing_pads(results: Results) -> dict[str, PadLoad]:
 
 
 def pad_text(pad: PadLoad) -> str:
-    """Return text with force, pressure and position of a pad."""
+    """Return force, pressure and position of a pad as text."""
     used = _used(pad.utilisation, "allowable")
     force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")
     return f"{force}\n{pressure}{used}\n{pad.inner} {_FACES[pad.side]}, x = {pad.x:g} m"
@@ -275,7 +275,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
 
 
 def _span(values: Iterable[float | None]) -> str:
-    """Return text with minimum and maximum in MPa; empty without values."""
+    """Return the minimum and maximum in MPa as text; empty without values."""
     millions = sorted({TO_MEGA * value for value in values if value is not None})
     return (
         f"{' to '.join(map(number, dict.fromkeys((millions[0], millions[-1]))))} MPa"
@@ -285,13 +285,13 @@ def _span(values: Iterable[float | None]) -> str:
 
 
 def _farthest(results: ModelDesignResults, tip: Array) -> str:
-    """Return text with the signed maximum tip deflection, and its ratio to the value at rest."""
+    """Return the signed maximum tip deflection and its ratio to the value at rest as text."""
     peak = largest_peak(results, "deflection")
     return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
 def _vibration(results: ModelDesignResults) -> str | None:
-    """Return text with the residual vibration, and the vibration at the final extension."""
+    """Return the residual vibration, and the vibration at the final extension, as text."""
     if (vibration := results.residual_vibration) is None:
         return None
     static = f"{_milli(vibration.initial)}, {_milli(vibration.final)}"
@@ -307,7 +307,7 @@ def _each(results: Sequence[ModelDesignResults], what: str) -> list[str | None]:
 
 
 def _largest(results: ModelDesignResults, what: str, at: str = "") -> str | None:
-    """Return text with the maximum of a kind in kN or mm, and its position."""
+    """Return the maximum of a kind in kN or mm, and its position, as text."""
     if (peak := largest_peak(results, what)) is None:
         return None
     return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"

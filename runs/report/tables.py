@@ -102,7 +102,7 @@ class Column:
         return cell if isinstance(cell, str) or cell is None else self._number(cell)
 
     def _number(self, value: float) -> float | None:
-        """Return a number in the displayed unit; an integer that is not converted stays one."""
+        """Return a number in the displayed unit; without conversion an integer stays an integer."""
         if isinstance(value, int) and self.factor == 1.0:
             return value
         return float(self.factor * value) if math.isfinite(value) else None
@@ -136,7 +136,7 @@ class Table:
         rows: Sequence[Sequence[Cell]],
         notes: Sequence[str] = (),
     ) -> Table:
-        """Return the table of rows whose numbers are already in the units of the headings.
+        """Return a table from rows with numbers in the units of the headings.
 
         Args:
             name: name of the anchor in the report.

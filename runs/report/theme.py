@@ -75,7 +75,7 @@ PAGE_RC: dict[Any, Any] = {
 
 
 class Canvas(FigureCanvasAgg):
-    """Canvas that draws a figure once to save it, while matplotlib draws it twice."""
+    """Canvas that draws a figure only once when it is saved; matplotlib's own draws it twice."""
 
     def print_figure(self, filename: Any, *_: Any, **__: Any) -> None:
         """Write a PNG file, whatever the suffix of its name."""

@@ -275,8 +275,8 @@ def _figure(view: View, lines: Sequence[Lines], reach: Array) -> dict[str, Any]:
 def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
     """Return moved points and travel of each drive, by the name of the inner segment.
 
-    The first array (num_points,) is 1 for points that the drive moves and 0 for others. The second
-    is the travel (num_frames,) in m at given times (num_frames,) in s.
+    The first array (num_points,) is 1 for points that the drive moves, else 0. The second is the
+    travel (num_frames,) in m at the times (num_frames,) in s.
     """
     boom, travels = scene.boom, {}
     for number, joint in enumerate(boom.joints):
@@ -293,10 +293,10 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
 
 
 def few_shapes(moved: Array) -> tuple[Array, Array]:
-    """Return factors (num_frames, num_shapes) and shapes (num_shapes, num_values) of a motion.
+    """Return a motion as factors (num_frames, num_shapes) and shapes (num_shapes, num_values).
 
-    They are the singular value decomposition (Eckart and Young 1936), by eigenvectors of the Gram
-    matrix of the frames. The truncation error is at most 0.2 % of the largest value.
+    This is a truncated singular value decomposition (Eckart and Young 1936), by eigenvectors of the
+    Gram matrix of the frames. The truncation error is at most 0.2 % of the largest value.
 
     Args:
         moved: displacements (num_frames, num_values).
@@ -313,7 +313,7 @@ def few_shapes(moved: Array) -> tuple[Array, Array]:
 
 
 def _typed(values: Array) -> dict[str, str]:
-    """Return an array in the format of the script of the page."""
+    """Return an array in the format of the page's script."""
     return {
         "kind": values.dtype.name,
         "bytes": base64.b64encode(values.tobytes()).decode("ascii"),

@@ -143,7 +143,7 @@ class CalibratedTable(BeamTable):
         )
 
     def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
-        """Return the model whose motion is integrated: by default the calibrated beam."""
+        """Return the model for time integration: by default the calibrated beam."""
         return built
 
     def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:

@@ -159,7 +159,7 @@ class ModelTable(CaseTable):
 
     @property
     def needs_shell(self) -> bool:
-        """True if the model needs FEniCSx and a build context."""
+        """True if the model needs FEniCSx and a :class:`BuildContext`."""
         return self.meshed
 
     @property
@@ -169,7 +169,7 @@ class ModelTable(CaseTable):
 
     @property
     def plates_remedy(self) -> str:
-        """The end of a message on missing sections: a remedy other than to give them."""
+        """The end of a message on missing sections: a remedy besides giving them."""
         return ""
 
     def with_shells(self, update: Mapping[str, object]) -> Self:
@@ -177,7 +177,7 @@ class ModelTable(CaseTable):
         return self.model_copy(update=update) if self.meshed else self
 
     def coarsen(self, boom: Boom) -> Self:
-        """Return a model that is coarse enough for fast checks; the model itself if it is.
+        """Return a coarse model for fast checks; the model itself if it is coarse enough.
 
         Args:
             boom: boom of the case.
@@ -337,7 +337,7 @@ class ModelTable(CaseTable):
         """Return the lines along the segments of the built model, on the first rank."""
 
     def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        """Return gap system and lines of the bonded boom; None to bond the contacts instead."""
+        """Return gap system and lines of the bonded boom; None if its contacts must be bonded."""
         return None
 
     @abstractmethod

@@ -246,7 +246,8 @@ def check_mesh_size(where: str, size: float, boom: Boom) -> None:
         boom: the boom to mesh.
 
     Raises:
-        BoomError: the mesh would have too many triangles."""
+        BoomError: the mesh would have too many triangles.
+    """
     smallest = float(np.sqrt(2.0 * _surface(boom) / MOST_TRIANGLES))
     if size < smallest:
         raise BoomError(
