@@ -146,8 +146,8 @@ def report(folder: str | Path, *, excel: bool = False) -> Results:
     """Render the report of a run again from its data, as ``protractile report``.
 
     Args:
-        folder: folder of a run, or of :meth:`Results.save`; gets ``report.html`` and figures.
-        excel: whether it also gets ``results.xlsx``, a workbook of the design results.
+        folder: folder of a run, or of :meth:`Results.save`, for ``report.html`` and figures.
+        excel: whether it also receives ``results.xlsx``, a workbook of the design results.
 
     Returns:
         The results of the run.
@@ -191,12 +191,13 @@ def sweep(
         vary: values by key, in the units of the case; all combinations are run.
         models: names of the models; all unless given.
         against: name of the model with which the others are compared.
-        until: bound of a quantity, ``"tip<0.9"``, to which the values of the one key are bisected.
-        folder: folder for the files of the sweep, whose finished points are not run again.
+        until: bound of a quantity, such as ``"tip<0.9"``; bisection finds the value of the only
+            key at this bound.
+        folder: folder for the files of the sweep; its finished points are not run again.
 
     Returns:
         Dims: the keys and ``model``; the quantities of :attr:`Results.quantities` in SI units.
-        ``failed`` is 1 where a model could not be computed.
+        ``failed`` is 1 if a model could not be computed.
 
     Raises:
         BadInput: a key, a value, a model or the bound is invalid.
@@ -239,7 +240,7 @@ def frequencies(
 
     Returns:
         ``frequency`` in Hz; dims: the keys, ``model``, ``joints`` (``"in contact"``, ``"bonded"``),
-        ``mode``; NaN where a model has none.
+        ``mode``; NaN if a model has none.
 
     Raises:
         BadInput: a key, a value or a model is invalid.

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Output of ``check``: tables and sentences on the data that follow from a case file.
+"""Output of ``check``: tables and sentences on the data of a case.
 
-Beams stand for shells, which are not computed here.
+No shell is computed here; beams take its place.
 """
 
 from __future__ import annotations
@@ -196,7 +196,7 @@ def _segments(case: Case, boom: Boom) -> Table:
 
 
 def _size(section: Section) -> str:
-    """Return the dimensions of a section in two lines: height and width, plate thicknesses."""
+    """Return the dimensions of a section in two lines: height and width, then plate thicknesses."""
     size, plates = str(section).rsplit(" x ", 1)
     return f"{size}\nt {plates}"
 
@@ -404,7 +404,7 @@ def _at_rest(preview: Preview, model: Model) -> tuple[GapSystem, Array | None]:
 
 
 def _shaper_lines(preview: Preview) -> Iterator[str]:
-    """Yield the shapers that leave no vibration after slewing and luffing, by the first model."""
+    """Yield the shapers against vibration after slewing and luffing, by the first model."""
     case, (model, *_) = preview.checked.case, preview.checked.case.models
     if case.slew is None and case.luff is None:
         return
@@ -435,7 +435,7 @@ def _reactions(state: StaticState, system: System) -> Table:
 
 
 def _cylinders(state: StaticState, system: System) -> Table:
-    """Return the table of cylinder axes and forces; a pair side by side counts together."""
+    """Return the table of cylinder axes and forces, with a pair side by side as one cylinder."""
     cylinders, segments = state.boom.cylinders, state.boom.segments
     arms: list[Cell] = []
     for cylinder in cylinders:

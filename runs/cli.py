@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The command line.
 
-Exit status: 0 success, 1 a demand or a limit of the case is not met, 2 bad input, 3 numerical
-failure.
+Exit status: 0 for success, 1 if a demand or a limit of the case is not met, 2 for bad input, 3 for
+a numerical failure.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Interface to the client that evaluates runs, here :mod:`runs.paper`.
 
-The client adds parts to reports and prints lines. Only this module imports it, and
-:mod:`runs.case.schema`, which adds the keys of the client to every case.
+The client adds parts to reports and prints lines. Only this module and :mod:`runs.case.schema`
+import it; the latter adds the keys of the client to every case.
 """
 
 from __future__ import annotations

@@ -203,7 +203,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
 
 
 def _check_plays(where: str, table: JointTable) -> None:
-    """Check that the play of one side is within the whole play, and that interference has no play."""
+    """Check that a side's play is within the whole play, and that interference has no play."""
     for key, of, pressed in (
         ("play_above", "play", "interference"),
         ("lateral_play_right", "lateral_play", "lateral_interference"),

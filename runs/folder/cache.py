@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cache of results under the hash of their inputs.
 
-An entry is a file whose first line is the SHA-256 of its key and its content, which detects disk
-errors and foreign files. Entries are written atomically and never change. The cache removes the
-least recently used entries.
+An entry is a file. Its first line, the SHA-256 of its key and content, reveals disk errors and
+foreign files. Entries are written atomically and never change. The cache removes the least recently
+used entries.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ _HEAD = 65
 
 
 def key(*content: Any) -> str:
-    """Return the SHA-256 of exact content and of the version of the program.
+    """Return the SHA-256 of the content, to the last bit, and of the version of the program.
 
     Raises:
         TypeError: a record cannot have this content, see :func:`runs.folder.records.write`.
@@ -208,5 +208,5 @@ def load_or_compute(
 
 
 def _head(key: str, file: BufferedIOBase) -> bytes:
-    """Return the SHA-256 of a key and of the rest of a file, as a line."""
+    """Return the first line of an entry: the SHA-256 of its key and of the rest of the file."""
     return file_digest(file, lambda: sha256(key.encode())).hexdigest().encode() + b"\n"

@@ -74,8 +74,8 @@ def atomic_folder(folder: Path) -> Iterator[Path]:
 def modified_folder(folder: Path) -> Iterator[Path]:
     """Yield a copy of ``folder`` to modify, and replace the folder by it at the end.
 
-    Files in the copy are links: replace them, do not write to them. Files that the user has added
-    are kept, and are not in the manifest. Call it within :func:`folder_lock`.
+    Files in the copy are links: replace them, but do not write to them. Files of the user are kept,
+    without an entry in the manifest. Call it within :func:`folder_lock`.
     """
     with scratch_folder(folder) as part:
         for source in folder.rglob("*"):
@@ -153,7 +153,7 @@ def scratch_folder(path: Path) -> Iterator[Path]:
 
 
 def find_damaged_file(folder: Path) -> str | None:
-    """Return the first file whose checksum differs from the manifest; None if all agree.
+    """Return the first file with another checksum than in the manifest; None if all agree.
 
     Missing files and added files do not count.
     """
@@ -165,7 +165,7 @@ def find_damaged_file(folder: Path) -> str | None:
 
 
 def _hidden(path: Path) -> str:
-    """Return the prefix of the names of hidden folders beside a path."""
+    """Return the common prefix of the names of hidden folders beside a path."""
     return f".{path.name[:50]}.protractile-"
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Records: results as a line of JSON, followed by arrays in the format of numpy.
 
-Reading restores objects exactly, with validation: tuples, dataclasses, named tuples and pydantic
-models of this program. Files contain only data: an untrusted file cannot run code.
+Tuples, dataclasses, named tuples and pydantic models of this program are restored exactly, with
+validation. Files contain only data: an untrusted file cannot run code.
 """
 
 from __future__ import annotations
@@ -91,7 +91,7 @@ def _encode(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
 
 
 def _decode(written: Any, file: IO[bytes]) -> Any:
-    """Return the object for JSON types, with its arrays from the file."""
+    """Return the object of data in JSON types, with its arrays from the file."""
     match written:
         case None | bool() | int() | float() | str():
             return written
@@ -113,7 +113,7 @@ def _decode(written: Any, file: IO[bytes]) -> Any:
 
 
 def _class(module: str, name: str) -> type:
-    """Return a class of this program whose objects consist of fields only."""
+    """Return a class of this program; its objects must consist of fields only."""
     if module.partition(".")[0] in {package.name for package in packages()}:
         content = vars(import_module(module)).get(name)
         if (
@@ -126,7 +126,7 @@ def _class(module: str, name: str) -> type:
 
 
 def _names(kind: type) -> list[str] | None:
-    """Return the fields of a class; None if its objects may have other data."""
+    """Return the field names of a class; None if its objects may have other data."""
     if issubclass(kind, BaseModel):
         return list(kind.model_fields)
     if is_dataclass(kind):

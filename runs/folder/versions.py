@@ -37,7 +37,7 @@ def versions() -> dict[str, str | None]:
 
 @cache
 def packages() -> list[Path]:
-    """Return the package folders of this program, in the source tree or installed."""
+    """Return the folders of this program's packages, in the source tree or as installed."""
     top = Path(__file__).parents[2]
     if (top / "pyproject.toml").is_file():
         return [path.parent for path in sorted(top.glob("*/__init__.py"))]

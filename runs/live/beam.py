@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results of the live page's beam model for edited values: static results first, then motion."""
+"""Results of the live page's beam for edited values: static results, then the motion."""
 
 from __future__ import annotations
 
@@ -152,7 +152,7 @@ def _fibres(loaded: LoadedModel, rests: Sequence[Any]) -> Iterator[FibreStress]:
 
 
 def _plain(chart: Chart) -> Any:
-    """Return a chart for the page, without a legend where one curve is shown."""
+    """Return a chart for the page, without a legend if it has one curve only."""
     figure = chart.plain
     names = {trace["name"] for trace in figure["data"]}
     for trace in figure["data"]:

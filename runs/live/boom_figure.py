@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Figure of plotly with the boom of a case to scale, its deflection, supports and loads."""
+"""Plotly figure of a boom to scale, with its deflection, supports and loads."""
 
 from __future__ import annotations
 
@@ -76,7 +76,7 @@ def boom_figure(case: Case, boom: Boom, rest: StaticResult) -> dict[str, Any]:
 
 
 def _segments(boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[str, Any]]:
-    """Yield the axis of the unloaded boom, then each segment, the inner ones first."""
+    """Yield the traces of the unloaded axis, then of each segment, the innermost first."""
     yield {
         "along": [boom.segments[0].start, boom.tip],
         "across": [0.0, 0.0],

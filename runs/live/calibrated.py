@@ -31,9 +31,9 @@ _LAST: dict[str, Calibration] = {}
 def build_beam(
     checked: CheckedCase, original: Case, shells: Sequence[Shell]
 ) -> tuple[CheckedCase, BuiltModel, str]:
-    """Return the case, its beam as built, and a text on the stiffness of the beam.
+    """Return the case, its built beam, and a text on the stiffness of the beam.
 
-    The beam of the case is a calibrated one if the cache has a shell for it.
+    The beam is calibrated if the cache has a shell of its geometry.
 
     Args:
         checked: the checked case.

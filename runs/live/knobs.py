@@ -99,7 +99,7 @@ class Draft:
         return cls(file, hold_plates(case, infer_plates(case)), build_boom(case))
 
     def _label(self, keys: Sequence[str]) -> str:
-        """Return the label of a knob; the key of a number that has no label."""
+        """Return the label of a knob; the key if its number has no label."""
         segments, joints = self.boom.segments, self.boom.joints
         owners = {f"segment[{i}]": one.name for i, one in enumerate(segments, 1)}
         owners |= {f"joint[{i}]": segments[one.inner].name for i, one in enumerate(joints, 1)}
@@ -179,7 +179,7 @@ class Draft:
         )
 
     def _range(self, place: Place, value: float) -> tuple[float, float]:
-        """Return a range in SI units, within the limits of the schema and of the checks."""
+        """Return the range of a number in SI units, within the limits of schema and checks."""
         low, high = _limits(self.case, place)
         if not (math.isfinite(low) and math.isfinite(high)):
             ends = sorted((_LEAST * value, _MOST * value))
@@ -195,7 +195,7 @@ class Draft:
         return low, high
 
     def _range_that_fits(self, place: Place, value: float, low: float, high: float) -> list[float]:
-        """Return the range in which a number of a joint fits the segments, or the given range."""
+        """Return the part of a range in which a number of a joint fits the segments."""
         joint = self.boom.joints[int(place.steps[1])]
         outer, inner = (self.boom.segments[number] for number in (joint.outer, joint.inner))
         match place.steps[2:]:
@@ -266,7 +266,7 @@ class Draft:
 
 
 def _field(case: Case, place: Place) -> Any:
-    """Return the field of a place in its innermost table; None within a plain mapping."""
+    """Return the field of a number in its innermost table; None within a plain mapping."""
     here: Any = case
     field = None
     for step in place.steps:

@@ -39,7 +39,7 @@ _LARGEST = 1_000_000
 
 
 class Superseded(Exception):
-    """Error for a request that a newer one of the same page replaces."""
+    """Error for a request if a newer request of the same page replaces it."""
 
 
 @dataclass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The run of the shell of a changed case, in a process of its own, beside the beam of the page."""
+"""Run of a changed case's shell in a process of its own, while the page computes its beam."""
 
 from __future__ import annotations
 
@@ -98,7 +98,7 @@ class ShellRuns:
             self._folder = None
 
     def _wait(self) -> int | None:
-        """Wait a short while for the process; return its status, None while it runs."""
+        """Wait a short while for the process, and return its status; None while it runs."""
         assert self._process is not None
         try:
             return self._process.wait(_EVERY)

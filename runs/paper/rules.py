@@ -85,7 +85,7 @@ def judge(results: Results) -> list[Verdict]:
 def _s1(run: RunQuery) -> Finding:
     """Measure: largest difference of both tips before the earlier first contact, as a part of
     the five-term tip's range. Threshold: 1e-6. Until then both have the same outer functions and a
-    rigid inner motion, so that only round-off may differ; chaos has not amplified it yet.
+    rigid inner motion. So they differ only by round-off, which chaos has not amplified yet.
     """
     run.without_friction()
     four, five = run.four_terms(), run.five_terms()
@@ -414,13 +414,13 @@ def _share(shows: Mask) -> tuple[float, float]:
 
 
 def _largest_differences(run: RunQuery, models: Sequence[Model], place: str) -> Array:
-    """Return the largest difference (num_times,) of any two models, as a fraction of the range."""
+    """Return the largest difference (num_times,) of any two models over the largest range."""
     curves = np.array([run.curve(model, place) for model in models])
     return np.asarray(np.ptp(curves, axis=0) / max(map(_range, curves)))
 
 
 def _half_part(middle: float) -> str:
-    """Return a sentence on the median time of divergence, which is infinite without any."""
+    """Return a sentence on the median time of divergence; it is infinite without divergence."""
     if not np.isfinite(middle):
         return "In most members no peaks are further apart."
     return f"In half of them the first such peak is at {middle:.1f} s or before."

@@ -116,7 +116,7 @@ class RunQuery:
         return self.one("kantorovich-4", lambda model: terms(model) == (2, 2))
 
     def five_terms(self) -> Model:
-        """Return the series with one more function, for bending of the inner segment."""
+        """Return the series with an additional function for bending of the inner segment."""
         four = self.four_terms()
         return self.one(
             "kantorovich-5",

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Start of MPI for cases with shells, error messages, and the common end of all ranks.
+"""Start of MPI for cases with shells, error messages, and the end of all ranks together.
 
-Classes of errors are imported where they are used, since a process without memory cannot import.
+Functions that handle errors do not import, since a process without memory cannot import.
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def end_all_ranks_on_error(comm: MPI.Comm | None) -> Iterator[None]:
 
 
 def _check_temporary_folder(file: str) -> None:
-    """Check the space in the temporary folder. Without space MPI aborts with a long message.
+    """Check the space in the temporary folder, since MPI aborts with a long message without space.
 
     Raises:
         BadInput: the folder has too little space, or is not writable.

@@ -44,7 +44,7 @@ def prepare() -> None:
 
 @contextmanager
 def flush_output() -> Iterator[None]:
-    """Flush all output at the end of the context, where errors can still be reported.
+    """Flush all output at the end of the context, while errors can still be reported.
 
     Raises:
         OSError: the output cannot be written.
@@ -74,7 +74,7 @@ def message(text: str) -> str:
 
 
 def shorten(text: str, longest: int = LONGEST_PART) -> str:
-    """Return a text in printable form, without the middle of a long text."""
+    """Return a text in printable form; a long text loses its middle part."""
     # Escaping never shortens a text, so that two ends of this length suffice.
     safe = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])
     if len(safe) <= longest:

@@ -30,14 +30,14 @@ class _SignalProofPool(ProcessPoolExecutor):
     """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *positional: Any, **named: Any) -> Future[Any]:
-        """Submit work. A process that starts for it inherits the signal mask and the variables."""
+        """Submit work; new processes inherit the signal mask and the environment variables."""
         with _worker_environment():
             return super().submit(work, *positional, **named)
 
 
 @contextmanager
 def _worker_environment() -> Iterator[None]:
-    """Block signals, and set the variables of processes that start in this context."""
+    """Block signals and set environment variables for processes that start in this context."""
     signals = {signal.SIGINT, signal.SIGTERM}
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)
     outside = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
@@ -98,7 +98,7 @@ def end() -> None:
 
 
 def _start(prepare: Callable[[], object]) -> None:
-    """Initialise a worker that is not an MPI rank, exits with its parent, ignores interrupts."""
+    """Initialise a worker: it is no MPI rank, ends with its parent, and ignores interrupts."""
     show_notices()
     for name in [name for name in os.environ if name.startswith(_RANK_PREFIXES)]:
         del os.environ[name]

@@ -357,7 +357,7 @@ class Scene:
         )
 
     def _section_factors(self, scale: float, section: float) -> Array:
-        """Return magnifications (num_segments,) of sections, with space for play around inner ones."""
+        """Return magnifications (num_segments,) of sections; inner ones leave room for play."""
         factors = np.full(len(self.boom.segments), section)
         for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
             x = float(np.mean(np.array([at for at, _ in self.boom.stations])[overlap.stations]))

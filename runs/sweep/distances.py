@@ -54,7 +54,7 @@ LEVELS = (1.0, 5.0, 20.0)
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """Results of a model that are compared with the reference."""
+    """Results of a model for comparison with the reference."""
 
     tip: Array  #: tip deflection (num_times,) in m up to the end of the comparison
     first_peak: float  #: height of the first peak in m

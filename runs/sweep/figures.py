@@ -126,7 +126,7 @@ def _varying_quantities(data: xr.Dataset) -> list[Metric]:
 
 
 def in_display_units(data: xr.Dataset) -> xr.Dataset:
-    """Return the data with the values of keys in display units, such as mm or kN."""
+    """Return the data with keys in displayed units, such as mm or kN."""
     coordinates = {}
     for name, along in data.coords.items():
         unit = along.attrs.get("units", "")
@@ -333,7 +333,7 @@ def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
 
 
 def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
-    """Write the time up to which tips are compared at points where it is shorter than elsewhere."""
+    """Write the end of the comparison of tips at points where it is below the maximum."""
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"
@@ -343,7 +343,7 @@ def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
 
 
 def _inwards(place: int, count: int, outer: tuple[_Word, _Word]) -> _Word | Literal["center"]:
-    """Return the alignment that keeps the text of a value within its panel."""
+    """Return the alignment of a value's text that keeps it within its panel."""
     return outer[0] if place == 0 else outer[1] if place == count - 1 else "center"
 
 
@@ -352,7 +352,7 @@ def _spans_decades(values: Array) -> bool:
 
 
 def _edges(values: Array) -> Array:
-    """Return cell bounds (num_values + 1,) halfway between ascending values on their axis."""
+    """Return the bounds (num_values + 1,) of cells around ascending values on their axis."""
     along: Array = np.log(values) if _spans_decades(values) else values
     between = 0.5 * (along[:-1] + along[1:])
     bounds: Array = np.concatenate(

@@ -62,7 +62,7 @@ class Plan:
 
     @property
     def coordinates(self) -> dict[str, Any]:
-        """The coordinates of data over all points: values of the varied keys, and model names."""
+        """The coordinates of datasets: values of the varied keys, and model names."""
         return {
             variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
             for variation, unit in zip(self.variations, self.units, strict=True)
@@ -133,7 +133,7 @@ def plan(
 
 
 def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
-    """Return the given models; without any, the name of the last beam, if possible with play."""
+    """Return the given models; by default the name of the last beam, if possible with play."""
     if models is not None:
         return list(models)
     beams = [model for model in case.models if not model.needs_shell]

@@ -37,7 +37,7 @@ class VibrationCurve(NamedTuple):
     levels: dict[str, Array]
 
     def with_level(self, end: str) -> VibrationCurve:
-        """Return the curve at those speeds for which the level of an end is available."""
+        """Return the curve at the speeds with a known level of the end ``initial`` or ``final``."""
         finite = np.isfinite(self.levels[end])
         levels = {end: self.levels[end][finite]}
         return VibrationCurve(self.speed[finite], self.vibration[finite], levels)
@@ -67,7 +67,7 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
 def admissible_speed(curve: VibrationCurve, end: str) -> float | None:
     """Return the speed in m/s up to which the vibration does not exceed the level of an end.
 
-    The vibration is interpolated linearly. None means that it exceeds the level at every speed.
+    The vibration is interpolated linearly. The result is None if every speed exceeds the level.
 
 
     >>> speed, vibration = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])

@@ -116,7 +116,7 @@ def run_points(
 
 
 def run_point(case: Case, cache: Cache | None = None, reference: str | None = None) -> Outcome:
-    """Run the models of a case one by one in this process, since one may fail alone."""
+    """Run the models of a case one by one in this process, so that one may fail alone."""
     models: dict[str, Quantities] = {}
     failures: dict[str, str] = {}
     runs: dict[str, Results] = {}

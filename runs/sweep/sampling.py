@@ -108,7 +108,7 @@ def results_of(plan: Plan, outcomes: Sequence[Outcome]) -> dict[str, pd.DataFram
 
 
 def scatter(results: pd.DataFrame) -> pd.DataFrame:
-    """Return mean, standard deviation and quantiles (columns) of each result that scatters."""
+    """Return mean, standard deviation and quantiles (columns) of each result with scatter."""
     parts = np.nanquantile(results, QUANTILES, axis=0, method="hazen")
     table = pd.DataFrame(parts.T, results.columns, QUANTILES)
     table.insert(0, "mean", results.mean())
@@ -149,7 +149,7 @@ def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None
 
 
 def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
-    """Yield the statistics of the main results that scatter."""
+    """Yield the statistics of each main result with scatter."""
     table = scatter(results)
     for one in QUANTITIES:
         if one.name in SHOWN and one.name in table.index:

@@ -65,7 +65,7 @@ def run_until(
     plan_of: Callable[[Sequence[str]], Plan],
     run: Callable[[Plan], list[Outcome]],
 ) -> tuple[Plan, list[Outcome]]:
-    """Run a plan, bisect up to a narrow bracket of the bound, and return plan and outcomes.
+    """Run a plan, bisect to a narrow bracket of the bound, and return plan and outcomes.
 
     Args:
         plan: plan of the first values.

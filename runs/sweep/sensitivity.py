@@ -76,7 +76,7 @@ def plan_changes(
 
 
 def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
-    """Return the relative change of each result (columns) by 1 % of each key (index).
+    """Return the relative change of each result (columns) by a change of each key (index) by 1 %.
 
     Keys are in descending order of their largest effect on the main results. Keys without effect
     are left out.
