@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of a beam that a shell calibrates, relative to the shell.
+"""Accuracy of calibrated beams relative to the shell that calibrates them.
 
 The study runs the paper's boom with friction over plays, and over loads up to ten times the
 paper's, with contact near webs and at pads. It compares textbook beams, the beam with springs, the

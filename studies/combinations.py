@@ -60,7 +60,7 @@ def _cylinder_force(boom: Boom) -> float:
 
 
 def _damage(case: Case) -> Iterator[Verification]:
-    """Yield the fatigue damage at the station of the fly by people who enter the level lift."""
+    """Yield the fatigue damage at the station of the fly, as people enter the level lift."""
     level = next(one for one in case.load_cases if one.name == "level")
     empty = level.model_copy(update={"name": "empty", "payload": 0.0, "loads": ()})
     cycle = {"name": "people", "load_cases": ("empty", "level"), "repeats": REPEATS}

@@ -66,7 +66,7 @@ class PressedBoom:
         return cls(system, rest, omega[:MODES], shapes[:, :MODES])
 
     def measured(self, ratio: float, mode: int) -> tuple[float, float]:
-        """Return the damping ratio by the logarithmic decrement, and the energy residual."""
+        """Return a mode's damping ratio by its logarithmic decrement, and the energy residual."""
         gaps = self.system.rows @ self.rest
         laws = list(zip(self.system.laws, gaps, strict=True))
         pressed = [float(law.force(gap)) != 0.0 for law, gap in laws]

@@ -71,14 +71,15 @@ def design_results_at_rest() -> DesignResults:
 def station_forces() -> tuple[float, float]:
     """Return the contact forces at tail and head in N by the lever rule.
 
-    They act on the outer segment, upwards where positive."""
+    They act on the outer segment; positive forces act upwards.
+    """
     load = INNER * (TIP - TAIL)
     head = load * (0.5 * (TIP + TAIL) - TAIL) / (HEAD - TAIL)
     return load - head, head
 
 
 def support_forces() -> tuple[float, float]:
-    """Return the forces in N at both supports of the outer segment, upwards where positive."""
+    """Return the forces in N at both supports of the outer segment; upward forces are positive."""
     tail, head = station_forces()
     far = -(0.5 * OUTER * HEAD**2 + tail * TAIL + head * HEAD) / SUPPORT
     return -OUTER * HEAD - tail - head - far, far

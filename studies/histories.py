@@ -65,7 +65,8 @@ def response(omega: float, history: Ramp | PiecewiseLinear, time: Array) -> Arra
 def masses(history: Ramp | Sine | PiecewiseLinear) -> GapSystem:
     """Return a system of one mass for each of ``OMEGAS``, under 1 N times a history.
 
-    The name of an output is the ω of its mass."""
+    The name of an output is the ω of its mass.
+    """
     n = len(OMEGAS)
     return GapSystem(
         omega2=np.square(OMEGAS),

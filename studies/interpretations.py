@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of the interpretations of the paper's data that its statements exclude.
+"""Study of interpretations of the paper's data, and their exclusion by its statements.
 
-The paper does not state clearly whether the play of 14 mm is 2Δ or Δ, whether the contact stiffness
-has lost its exponent in print, which functions the series has at its ends, and to which contact law
-a figure belongs. The study runs and judges every combination with the beam models; the authors
-cannot have used a combination that contradicts a statement.
+The paper leaves open whether the play of 14 mm is 2Δ or Δ, whether the contact stiffness has lost
+its exponent in print, which functions the series has at its ends, and which contact law a figure
+has. The study runs and judges every combination with the beam models. The authors cannot have used
+a combination that contradicts a statement.
 """
 
 from __future__ import annotations
@@ -78,8 +78,8 @@ class Interpretation:
     def contact_stiffness(self) -> float:
         """Contact stiffness k in N/mⁿ.
 
-        Its unit depends on n. For other n than the paper's 2, the restored stiffness gives the
-        tangent n k^(1/n) F^(1−1/n) of the quadratic law at the pads' force F.
+        Its unit depends on n. If n is not the paper's 2, the restored stiffness gives the tangent
+        n k^(1/n) F^(1−1/n) of the quadratic law at the force F of the pads.
         """
         if self.stiffness == "literal":
             return LITERAL
@@ -92,7 +92,7 @@ class Interpretation:
 
         Args:
             paper: case of the file.
-            change: relative, of all loads.
+            change: relative change of all loads.
         """
         law: dict[str, Any] = {
             "play": self.play,
@@ -171,11 +171,11 @@ def study(progress: Progress) -> Iterator[Table]:
 def survey(
     interpretations: Sequence[Interpretation], members: int = MEMBERS
 ) -> list[JudgedInterpretation]:
-    """Return interpretations with their findings, runs of two groups side by side.
+    """Return interpretations with their findings; two groups of runs are computed at a time.
 
     Args:
-        interpretations: interpretations, ordered so that those that differ only in the base of the
-            series follow one another and share the motions of beam elements.
+        interpretations: interpretations. Neighbours that differ only in the base of the series
+            share the motions of beam elements.
         members: number of runs of each.
     """
     paper = case_file.load(str(PAPER))

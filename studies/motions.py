@@ -74,7 +74,7 @@ def shell_of(case: Case) -> Shell:
 
 
 def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
-    """Return the gap system of a model; this process alone reduces shells."""
+    """Return the gap system of a model; a shell is reduced in this process only."""
     from mpi4py import MPI
 
     return build(case, boom, model, BuildContext(MPI.COMM_SELF)).system

@@ -26,7 +26,8 @@ def with_pads(case: Case, length: float, width: float) -> Case:
 def upper_rows(system: GapSystem) -> Array:
     """Return rows (num_stations, num_modes) of the mean approach above each station.
 
-    The mean is weighted by the contact laws of the points."""
+    The mean is weighted by the contact laws of the points.
+    """
     above = np.array(
         [sum(term.stiffness for term in law.terms if term.side > 0.0) for law in system.laws]
     )

@@ -86,7 +86,7 @@ class Refined:
         )
 
     def against_limit(self, what: str, size: float, finest: str, allowed: float) -> Verification:
-        """Return the verification of one mesh against the limit of refinement.
+        """Return the verification of a mesh against the limit of refinement.
 
         Args:
             what: the quantity.

@@ -246,7 +246,7 @@ class BoomErrors:
 
 
 def flange_frequency(case: Case) -> float:
-    """Return the frequency in Hz of a strip of the inner segment's flange that the webs support."""
+    """Return the frequency in Hz of a strip of the inner segment's flange between the webs."""
     inner = build_boom(case).segments[1]
     box, material = inner.section, inner.material
     assert isinstance(box, BoxSection)
@@ -255,7 +255,7 @@ def flange_frequency(case: Case) -> float:
 
 
 def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
-    """Return the lowest frequency of the free inner segment in Hz whose mode moves the tip much."""
+    """Return the lowest frequency in Hz of the free inner segment with a large tip motion."""
     own, shown = _moving_tip(beam), _moving_tip(shell)
     bending = min(own)
     near = {f: moves for f, moves in shown.items() if abs(f / bending - 1.0) < _NEAR}

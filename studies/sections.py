@@ -125,7 +125,7 @@ def shell_peak(boom: Boom) -> float:
 
 
 def ring_of_bars(section: Section, length: float) -> float:
-    """Return the compliance in m/N of top and bottom of a ring under forces on the corners.
+    """Return the compliance in m/N between top and bottom of a ring under forces on its corners.
 
     Plates are rigidly joined bars with axial and bending stiffness, without shear (Przemieniecki
     1968).
@@ -161,7 +161,7 @@ def ring_of_bars(section: Section, length: float) -> float:
 
 
 def ring_of_shell(section: Section, length: float, size: float) -> float:
-    """Return this compliance of a shell with edges of a size in m."""
+    """Return the compliance of :func:`ring_of_bars` by a shell with edges of a size in m."""
     segment = Segment.of_section("ring", 0.0, length, STEEL, section)
     shell, stretch = (
         shell_alone(segment, size),

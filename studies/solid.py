@@ -2,9 +2,9 @@
 """Error of the shell relative to a solid for walls of growing thickness.
 
 A short pair of boxes has constant mid-lines and walls of increasing thickness. Every quantity of
-both models is the limit of refinement, so that only the error of the theory remains: walls of a
-shell meet at mid-lines, where a solid has corners. Both models use a quarter of the segment, and
-the same measured displacements.
+both models is the limit of refinement. So only the error of the theory remains: walls of a shell
+meet at mid-lines, but a solid has corners of finite size. Both models use a quarter of the segment,
+and the same measured displacements.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ FREQUENCY = "frequency"
 
 
 class Probe(NamedTuple):
-    """Displacement of a segment, and the force that does work on it."""
+    """Displacement of a segment, and the force with this work-conjugate displacement."""
 
     what: str  #: its name
     family: SymmetryClass  #: symmetry class of the motions

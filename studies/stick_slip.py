@@ -93,7 +93,7 @@ def _cycle() -> Iterator[Verification]:
 
 
 def _critical(ratio: float) -> Verification:
-    """Compare the speed below which the segment sticks again, found by bisection."""
+    """Compare the critical speed by bisection; below it the segment sticks again."""
     pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
     expected = critical_speed(pulled, FRICTION)
     low, high = 0.5 * expected, 2.0 * expected

@@ -124,7 +124,7 @@ def _timoshenko(segment: Segment, x: float) -> float:
 def racking(outline: SectionNodes) -> Row:
     """Return the racking of the section: rotation of the webs less rotation of the flanges.
 
-    Its row is the row of twice the twist with the sign of the flanges reversed.
+    Its row is twice the row of the twist, with reversed signs at the flanges.
     """
     along_y = set(outline.dofs[:, 1].tolist())
     return Row({dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()})
@@ -172,7 +172,7 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
 
 
 def frame_flexibility(section: BoxSection, young: float, collar: float) -> float:
-    """Return this compliance of a frame of Timoshenko beams with the thickness t of the plates.
+    """Return the compliance of :func:`ring_flexibility` by Timoshenko beams as thick as the plates.
 
     A flange is a shear-flexible beam of span b that carries P in its middle. The corner moment
     P b² / 8 (b + h) at its ends gives flange and web the same slope there. The webs shorten under

@@ -80,7 +80,7 @@ class InnerSegmentState:
 
     @classmethod
     def reduced(cls, boom: Boom, size: float) -> InnerSegmentState:
-        """Create the same state from the coordinates of a run.
+        """Create the same state from the reduced coordinates of a run.
 
         Args:
             boom: boom with two stations.
@@ -135,8 +135,8 @@ class InnerSegmentState:
 def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
     """Return side and strength in N of the contact forces on the inner segment by x.
 
-    They follow from equilibrium. Under the upward load the segment presses upwards at the head of
-    the outer segment, and downwards at its own tail.
+    They follow from equilibrium. Under the upward load the inner segment presses upwards at the
+    head of the outer segment, and downwards at its own tail.
     """
     segment, (tail, head) = boom.segments[INNER], boom.joints[0].stations
     lift = segment.load * segment.length

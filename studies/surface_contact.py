@@ -141,7 +141,8 @@ def _density(case: Case, system: GapSystem) -> float:
 def _peaks(contacts: Sequence[ContactModel], notes: Sequence[str], sizes: Sizes) -> Table:
     """Return the first tip peaks without and with friction, and their changes.
 
-    The changes are relative to the first type of contact."""
+    The changes are relative to the first type of contact.
+    """
     both = np.array(
         [
             [move(one, sizes.peak).first_peak()[1] for one in (without_friction(of), of)]

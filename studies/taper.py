@@ -114,7 +114,7 @@ def study(progress: Progress) -> Iterator[Verification]:
 
 
 def _swing_and_force(name: str, model: Model) -> Iterator[Verification]:
-    """Compare frequency and critical force with closed forms, or for shear with other models."""
+    """Compare frequency and critical force with closed forms, or with other models if sheared."""
     exact, sources = (frequency(), critical()), ("Kirchhoff 1879", "Dinnik 1929")
     kind: Kind = "analytic"
     if model.in_shear:

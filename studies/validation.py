@@ -56,7 +56,7 @@ SIDE, NAFEMS_STEEL = 10.0, Material(200.0e9, 0.3, 8000.0)
 
 @define_study("validation", "Measurements, published benchmarks and other programs")
 def study(progress: Progress) -> Iterator[Piece]:
-    """Compute all rows, comparisons with measurements first."""
+    """Compute all rows; comparisons with measurements are first."""
     for what, rows in (
         ("a measured beam on a moving roller", moving_roller),
         ("a boom lift", boom_lift),
@@ -70,7 +70,8 @@ def study(progress: Progress) -> Iterator[Piece]:
 def moving_roller() -> Iterator[Verification]:
     """Compare first frequencies over roller positions, x = offset + scale · voltage.
 
-    Offset and scale are fitted."""
+    Offset and scale are fitted.
+    """
 
     def frequencies(parameters: Array) -> Array:
         return np.array([roller_frequency(x) for x in parameters[0] + parameters[1] * VOLTS])
@@ -99,9 +100,10 @@ def roller_frequency(x: float) -> float:
 
 
 def boom_lift() -> Iterator[Verification]:
-    """Compare the frequency of the most retracted boom, with a fitted tip mass.
+    """Compare the frequency of the most retracted boom lift with another program.
 
-    The tip mass is fitted at the least retraction."""
+    The tip mass is fitted at the least retraction.
+    """
     mass = brentq(lambda mass: lift_frequency(RETRACTED[0], mass) - CHART[0], 10.0, 2000.0)
     what = f"first frequency, {100 * RETRACTED[1]:g} % retracted, {mass:.0f} kg at the tip"
     value = lift_frequency(RETRACTED[1], mass)

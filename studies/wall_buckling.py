@@ -122,7 +122,7 @@ class LoadedBox:
         return shell, buckling_modes(shell, self.membrane_forces(shell), count)
 
     def pressed(self, n: int) -> tuple[SegmentShell, Array, Array]:
-        """Return the shell, its loads (num_owned,) at both ends and its forces under these loads.
+        """Return the shell, its loads (num_owned,) at both ends, and its membrane forces in N/m.
 
         The supports keep the width of the ends, so that stresses near the ends are not uniform.
         """

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Mesh error of the default mesh under high contact forces.
 
-The study runs the paper's boom with friction and constant sections, over plays up to the paper's
-and loads up to ten times the paper's, the order of the weight. Each point is computed on the
-default mesh, and with all edges half and twice as long. One reduction serves all points of a mesh,
-since only contact laws and loads differ.
+The study runs the paper's boom with friction and constant sections. Plays are up to the paper's,
+loads up to ten times the paper's, the order of the weight. Each point is computed on the default
+mesh, and with all edges half and twice as long. One reduction serves all points of a mesh, since
+only contact laws and loads differ.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ class ContactResults:
         return np.array([meshes[-2].changes(meshes[-1]) for meshes in self.moved.values()])
 
     def worst(self, which: int) -> tuple[float, Point]:
-        """Return the largest change of a kind over all points, and its point; or NaN."""
+        """Return the largest change of a kind over all points with its point; NaN without a value."""
         changes = self.changes[:, which]
         points = list(self.moved)
         if np.isnan(changes).all():
@@ -141,7 +141,7 @@ class ContactResults:
 
     @property
     def verifications(self) -> list[Verification]:
-        """Proofs of first peaks, if any, and tips of the default mesh against half of all edges."""
+        """The verifications of first peaks, if any, and tips, against the finest mesh."""
         found = []
         for what, which, allowed in (("first tip peak", 0, PEAK), (TIP_OF_RANGE, -1, TIP)):
             compared = int(np.isfinite(self.changes[:, which]).sum())
@@ -155,7 +155,7 @@ class ContactResults:
 
 
 def set_point(system: GapSystem, point: Point) -> GapSystem:
-    """Return the system with the play and the load of a point, in the same coordinates."""
+    """Return the system with the play and the load of a point, in unchanged coordinates."""
     laws = [law.scale_clearances(0.0).with_clearance(0.5 * point.play) for law in system.laws]
     return replace(system, laws=laws, load=point.load * system.load)
 

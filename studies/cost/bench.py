@@ -106,7 +106,7 @@ def five_terms(case: Case) -> GapSystem:
 
 
 def off(tip: Array, exact: Array) -> float:
-    """Return the largest error of a tip (num_times,) as a fraction of the exact range."""
+    """Return the largest error of a tip deflection (num_times,) over the exact range."""
     return float(np.abs(tip - exact).max() / np.ptp(exact))
 
 

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Telescoped beams with play in Exudyn: ``python exudyn_beams.py < GIVEN.json``.
 
-It runs in an interpreter with Exudyn and without this project. It prints the motion of the tip, and
-the wall seconds, for each step.
+The interpreter needs Exudyn, but not this project. For each step, the script prints the motion of
+the tip and the wall time in s.
 """
 
 from __future__ import annotations
@@ -88,7 +88,7 @@ def build(given: dict[str, Any]) -> tuple[Any, int]:
 
 
 def move(given: dict[str, Any], step: float) -> dict[str, Any]:
-    """Return the tip in m over the output times, and wall seconds, with a step in s."""
+    """Return the tip deflection in m at all output times, and the wall time in s, for a step."""
     mbs, sensor = build(given)
     settings = exu.SimulationSettings()
     settings.timeIntegration.endTime = given["duration"]

@@ -85,7 +85,7 @@ def array_rates(system: GapSystem) -> Rates:
 
 
 def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance: float) -> Array:
-    """Return states (num_times, num_states) from rest by a scipy solver, at the output steps."""
+    """Return states (num_times, num_states) of a motion from rest at the output times, by scipy."""
     times = OUTPUT_STEP * np.arange(round(duration / OUTPUT_STEP) + 1)
     start = np.zeros(num_states)
     tolerances = {"rtol": tolerance, "atol": ABSOLUTE * tolerance}
@@ -98,8 +98,8 @@ def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance
 def match_tolerance(error: Callable[[float], float], target: float) -> tuple[float | None, float]:
     """Return the largest of ``TOLERANCES`` with an error of at most ``target``, and the error.
 
-    Bisection assumes that the error decreases with the tolerance. If all
-    tolerances have larger errors, the result is None and the smallest error.
+    Bisection assumes that the error decreases with the tolerance. If all tolerances have larger
+    errors, the result is None and the smallest error.
 
     Args:
         error: function that returns the error of a tolerance.

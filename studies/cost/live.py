@@ -3,8 +3,8 @@
 
     python -m studies.cost.live [CASE ...]
 
-changes four sliders of each case, 50 times by a click and 50 times by a drag. For each stage of the
-results it prints the median and the 95th percentile of the latency in ms.
+The command changes four sliders of each case, 50 times by a click and 50 times by a drag. For each
+stage of the results it prints the median and the 95th percentile of the latency in ms.
 """
 
 from __future__ import annotations

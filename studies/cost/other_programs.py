@@ -75,7 +75,7 @@ class Problem:
         return float(np.abs(places - self.exact).max() / np.ptp(self.exact[:, -1]))
 
     def elsewhere(self) -> list[tuple[float, float, list[float]]]:
-        """Return step, error and wall seconds of each run of the other program."""
+        """Return step in s, error and wall time in s of each run of the other program."""
         done = subprocess.run(
             [str(self.program.python), str(FOLDER / self.script)],
             input=json.dumps({**self.given, "steps": self.steps}),
@@ -87,7 +87,7 @@ class Problem:
         return [(one["step"], self.off(np.array(one["places"])), [one["seconds"]]) for one in runs]
 
     def here(self, most: int, budget: float) -> list[tuple[float, float, list[float]]]:
-        """Return step, error and wall seconds of each run of the time step."""
+        """Return step in s, error and wall time in s of each run of this program."""
         errors = [self.off(self.move(step)) for step in STEPS]
         seconds = time_in_turns([partial(self.move, step) for step in STEPS], most, budget)
         return list(zip(STEPS, errors, seconds, strict=True))

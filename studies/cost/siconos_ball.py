@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A ball that falls on a cantilever in Siconos: ``python siconos_ball.py < GIVEN.json``.
 
-It runs in an interpreter with Siconos and without this project. It prints the motion of ball and
-tip, and the wall seconds, for each step.
+The interpreter needs Siconos, but not this project. For each step, the script prints the motion of
+ball and tip, and the wall time in s.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from siconos import kernel
 
 
 def move(given: dict[str, Any], step: float) -> dict[str, Any]:
-    """Return the positions of ball and tip in m, and wall seconds, of a motion with a step in s.
+    """Return the positions of ball and tip in m, and the wall time in s, for a step in s.
 
     The scheme is Moreau-Jean with θ = ½ and the restitution 0.
     """

@@ -24,12 +24,12 @@ NOISE = (
 def time_in_turns(
     runs: Sequence[Callable[[], object]], most: int, budget: float
 ) -> list[list[float]]:
-    """Return wall seconds of each run. All runs take turns.
+    """Return the wall times of each run in s. All runs take turns.
 
     Args:
         runs: functions to time.
         most: largest number of repetitions of each run.
-        budget: total wall time in s of one run's repetitions, beyond which it is not repeated.
+        budget: total wall time in s of the repetitions of one run; no repetition starts after it.
     """
     seconds: list[list[float]] = [[] for _ in runs]
     for _ in range(most):

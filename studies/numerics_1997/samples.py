@@ -74,7 +74,7 @@ class ModelRun:
 
     @classmethod
     def of(cls, run: Trajectory, put_in: float = 0.0, unconverged: float = 0.0) -> ModelRun:
-        """Create a run from a trajectory, and from the input energy ``put_in`` in J if given."""
+        """Return the run of a trajectory; ``put_in`` is the input energy in J, if known."""
         kinetic, strain, contact, work, *losses = (run.data[name].values for name in ENERGIES)
         present = kinetic + strain + contact + sum(losses)
         tip, head = (run.data[place].values for place in ("tip", "head"))
@@ -83,7 +83,7 @@ class ModelRun:
 
     @property
     def balance(self) -> Array:
-        """Error of the energy balance (num_times,), relative to the input energy; or NaN."""
+        """The error (num_times,) of the energy balance over the input energy; NaN if unknown."""
         return self.gained / self.put_in
 
     def at(self, time: Array) -> ModelRun:
@@ -99,7 +99,7 @@ class ModelRun:
 
     @property
     def divergence_time(self) -> float:
-        """Time in s at which the energy gain exceeds the input energy; infinite if it does not."""
+        """The time in s at which the energy gain exceeds the input energy, or infinity."""
         gained = ~(self.balance < 1.0)
         return float(self.time[np.argmax(gained)]) if gained.any() else np.inf
 
@@ -198,7 +198,7 @@ class Example:
         ]
 
     def with_accurate_series(self, samples: Sequence[Sample]) -> list[Sample]:
-        """Return the samples with accurate series, as by a general solver with many steps."""
+        """Return the samples with an accurate series, as from a general solver with many steps."""
         members = [self.accurate[i % MEMBERS % len(self.accurate)] for i in range(len(samples))]
         return [
             replace(one, models=[*(run.at(one.elements.time) for run in series), one.elements])

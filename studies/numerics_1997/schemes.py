@@ -3,8 +3,9 @@
 
 Newmark's average acceleration (1959), Wilson's θ (1973) and central differences are one family
 (Hilber and Hughes 1978). The equation of motion holds θ steps ahead, and the acceleration is linear
-up to this time. Contact and friction forces are modal loads: with values of the previous step
-(lagged), or iterated until they agree with the end of the step. The energy is not checked.
+up to this time. Contact and friction forces are modal loads. They have the values of the previous
+step (lagged), or they are iterated until they agree with the end of the step. The energy is not
+checked.
 """
 
 from __future__ import annotations

@@ -172,7 +172,7 @@ class Survey:
 def named(
     example: Example, samples: Mapping[Numerics, Sequence[Sample]]
 ) -> dict[str, Sequence[Sample]]:
-    """Return the statements on all models and on the elements, with their names."""
+    """Return the samples by the name of their method, also with accurately solved series."""
     return {str(how): found for how, found in samples.items()} | {
         f"{how}, the series solved accurately": example.with_accurate_series(found)
         for how, found in samples.items()
@@ -185,7 +185,7 @@ def diverges_near_7_s(sample: Sample) -> bool:
 
 
 def reach(example: Example, friction: bool) -> dict[Way, float]:
-    """Return the end times in s that general solvers reach at each tolerance, for both series."""
+    """Return the end time in s of the general solver at each tolerance, for both series."""
     return {
         (method, tolerance, model, friction): float(
             solve(example.systems[model], INTERVAL, method, tolerance, SERIES_STEPS).time[-1]

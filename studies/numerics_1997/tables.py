@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of statements of the paper that an accurate solution contradicts, by numerics of 1997."""
+"""Study of statements that an accurate solution contradicts, by numerical methods of 1997."""
 
 from __future__ import annotations
 
@@ -170,7 +170,7 @@ def _energies(runs: Sequence[ModelRun]) -> tuple[str, str]:
 
 
 def _parting(peaks: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
-    """Return medians of peak distances before and after six seconds, and the share of S3, in %."""
+    """Return median peak distances before and after six seconds, and the share of S3, in %."""
     early, late = np.median(peaks, axis=0)
     shown = share(before <= DIVERGENCE < after for before, after in peaks)
     return TO_PERCENT * float(early), TO_PERCENT * float(late), TO_PERCENT * shown

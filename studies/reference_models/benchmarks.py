@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shell benchmarks (MacNeal and Harder 1985).
 
-Curved surfaces are made of flat facets between points on them, in a structured grid. Lengths,
-forces and moduli are in the units of the sources, which are consistent.
+Flat facets between points on a structured grid form curved surfaces. Lengths, forces and moduli are
+in the consistent units of the sources.
 """
 
 from __future__ import annotations

@@ -58,7 +58,7 @@ class ConstantStrain:
 
     @property
     def couple(self) -> Array:
-        """Couple (3,) in N·m/m² in equilibrium with the state: e3 × Q with the shear force Q."""
+        """The couple (3,) in N·m/m² in equilibrium: e3 × Q with the shear force Q."""
         q1, q2 = rigidities(PATCH_THICKNESS)[1] * self.shear
         return np.array([-q2, q1, 0.0])
 
@@ -261,7 +261,7 @@ class PressedPlate:
         return float(load @ shell.solve(held, load))
 
     def theory(self, terms: int = 400) -> float:
-        """Return this deflection as a double sine series (Navier 1823).
+        """Return the deflection of :meth:`shell` by a double sine series (Navier 1823).
 
         It includes shear deflection, which adds to the bending deflection on these supports.
         """

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contact and friction forces of one implicit step, accurate to round-off.
 
-Rows that resist read z = free − C p, with their forces p and the compliance C that the step gives
-them. A contact row follows its law, p = F(z), with F as in (4) of Rusiński and Wyciślok (1997); a
-friction row obeys |p| ≤ μN, with p = μN sign(z − place) where it moves from its place: the sign as
-a set. Both are monotone, so the forces are the minimum of a convex function: sweeps row by row go
-down (Gauss-Seidel), and Newton's method ends it where the active rows are the right ones.
+The rows have the displacements z = free − C p, with their forces p and the compliance C of a step.
+A contact row follows its law, p = F(z), with F as in (4) of Rusiński and Wyciślok (1997). A
+friction row obeys |p| ≤ μN, and p = μN sign(z − place) if it moves from its place. Both laws are
+monotone, so that the forces minimise a convex function. Sweeps over the rows (Gauss-Seidel) reduce
+it, and Newton's method finds the minimum for the right active rows.
 """
 
 from __future__ import annotations
@@ -131,7 +131,7 @@ def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
 
 @njit(**LOOP)
 def _excess(compliance: Array, free: Array, force: Array, change: float, j: int) -> float:
-    """Return a change of the force of row j, as a multiple of its round-off."""
+    """Return the ratio of a change of the force of row j to its round-off."""
     reach = abs(free[j])
     for k in range(free.size):
         reach += abs(compliance[j, k] * force[k])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Solid model of a symmetry class of a segment's motions, the reference of the shell.
 
-It has the same interface as a symmetry class of a shell. In place of a displacement of the
-mid-surface of a wall, the solid has the mean over the thickness; at a corner it has the mean over
-the square that two walls share. A force is distributed in the same way.
+It has the interface of a symmetry class of a shell. A displacement of the mid-surface corresponds
+to the mean over the thickness of the solid wall; at a corner, to the mean over the square common to
+two walls. A force is distributed in the same way.
 """
 
 from __future__ import annotations
@@ -65,9 +65,7 @@ def mesh_quarter(
         section: mid-lines and thicknesses.
         places: x in m at which there must be mesh planes; the smallest and the largest are the
             ends of the segment.
-        along: approximate edge lengths in m along x: at the places of forces and supports, and far
-        from
-            them.
+        along: approximate edge lengths in m along x, near forces and supports and far from them.
         around: approximate largest edge length in m around the section. At corners the edge length
             is the wall thickness.
         splits: number of parts of each edge around the section, to refine the mesh evenly.
@@ -117,7 +115,7 @@ def _across(distance: float, wall: float, size: float, splits: int, layers: int)
 
 
 def _walls(planes: tuple[Array, Array, Array], layers: int) -> tuple[Array, Indices]:
-    """Return the points and cells of a lattice that are in the walls, its outermost layers."""
+    """Return the points and cells of a lattice in the walls, which are its outermost layers."""
     shape = tuple(plane.size for plane in planes)
     number = np.arange(np.prod(shape)).reshape(shape)
     j, k = np.indices((shape[1] - 1, shape[2] - 1))
@@ -186,7 +184,7 @@ class SolidFamily(Shell):
         return 0, self.num_dofs
 
     def outline(self, x: float) -> SectionNodes:
-        """Return the means at x, a mesh plane, for operators that :meth:`row` accepts."""
+        """Return the means at a mesh plane x in m; :meth:`row` accepts their operators."""
         at = np.flatnonzero(np.abs(self.middles[:, 0] - x) < ON_LINE)
         return SectionNodes(x, self.middles[at], 3 * at[:, None] + np.arange(3), self.section)
 

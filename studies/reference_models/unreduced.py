@@ -2,10 +2,10 @@
 """Motion of the unreduced shells, the reference of the reduction.
 
 Each segment moves by the generalised-α method; its matrix is factorised once. A step has three
-parts: one back-substitution for each segment without contact and friction; a small problem for the
-forces of contact and friction rows, whose compliance is constant; and the displacements by these
+parts: a back-substitution for each segment without contact and friction; a small problem with
+constant compliance for the forces of contact and friction rows; and the displacements by these
 forces. Forces act at the time of the equilibrium equation of the method. Friction opposes the
-displacement over the whole step, and rows that stick do not move, to round-off.
+displacement over the whole step, and sticking rows do not move, except for round-off.
 
 The generalised-α method (Chung and Hulbert 1993) is
 
@@ -207,9 +207,9 @@ class DirectMotion:
         time: (num_times,) in s.
         observed: outputs (num_times,) by name.
         contact_forces: (num_times, num_contacts) in N, means over the output interval that ends at
-            the time, positive where the inner segment presses up.
-        friction_forces: (num_times, num_frictions) in N, likewise, positive where they push the
-            inner segment along its row.
+            the time, positive if the inner segment presses upwards.
+        friction_forces: (num_times, num_frictions) in N, likewise, positive if they push the inner
+            segment along its row.
         slides: displacements (num_times, num_frictions) of the friction rows in m.
         energies: (num_times, 7), the columns of ``ENERGIES`` in J.
         step: step in s.
