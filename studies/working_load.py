@@ -131,7 +131,7 @@ class ContactResults:
         return np.array([meshes[-2].changes(meshes[-1]) for meshes in self.moved.values()])
 
     def worst(self, which: int) -> tuple[float, Point]:
-        """Return the largest change of a kind over all points with its point; NaN without a value."""
+        """Return the largest change of a kind over all points, and its point; or NaN."""
         changes = self.changes[:, which]
         points = list(self.moved)
         if np.isnan(changes).all():

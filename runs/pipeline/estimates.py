@@ -74,7 +74,7 @@ class Cost:
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """Initial motions of the models of a case, as beams, from which the cost is estimated."""
+    """Initial motions of the models of a case, as beams. The cost is estimated from them."""
 
     checked: CheckedCase  #: checked case. Each of its models is built once.
     _motions: list[tuple[ModelTable, Motion]] = field(default_factory=list, init=False, repr=False)

@@ -36,7 +36,7 @@ _ELEMENTS = 20
 
 
 class StaticExtreme(NamedTuple):
-    """A static result at t = 0, and its extreme value under the loads of other times."""
+    """A static result at t = 0, and its extreme value over the run."""
 
     name: str  #: name of the result, with the part of the boom
     what: str  #: name of the result, with its location

@@ -23,7 +23,7 @@ GOVERNING_SHARE = 0.5
 
 
 def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
-    """Yield the share of walls under pads in the largest static deflection of the tip.
+    """Yield lines on the part of the largest static tip deflection due to walls under pads.
 
     Remedies follow if the part is large.
 

@@ -165,7 +165,7 @@ class Limit:
 
 @dataclass(frozen=True, slots=True)
 class LimitCheck:
-    """Limit and the values of the models in SI units. The first model with a value decides."""
+    """Limit, and the value of each model in SI units. The first model with a value decides."""
 
     limit: Limit
     values: Mapping[str, float]

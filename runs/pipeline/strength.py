@@ -84,7 +84,7 @@ class WallStress:
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """Fatigue damage of a detail at the outer fibre of a segment whose stress varies most."""
+    """Fatigue damage of a detail at the outer fibre with the largest stress variation."""
 
     segment: str  #: name of the segment
     x: float  #: position along the boom in m
@@ -340,7 +340,7 @@ class Utilisation(NamedTuple):
 
 
 def utilisations(results: Results, model: str) -> dict[str, Utilisation]:
-    """Return the governing part of each kind, by utilisation, or by load without a strength."""
+    """Return the part of each kind with the largest utilisation, or load without strengths."""
     governing: dict[str, Utilisation] = {}
     for one in _loads(results, model):
         other = governing.setdefault(one.part, one)

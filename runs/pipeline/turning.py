@@ -76,7 +76,7 @@ class Hoisting(Record):
     Args:
         lift_off: time in s at which the rope force first reaches the weight of a load on the
             ground; None if it does not, or if the load hangs at t = 0.
-        force: largest force of all falls in N.
+        force: largest sum of the forces in all falls of the rope in N.
         factor: this force over the weight of the load.
         by_class: factor φ₂,min + β₂ v of the hoisting class; None without its constants.
         swing_out, swing_aside: largest distances in m of the load from the tip, in the plane of the
