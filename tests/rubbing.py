@@ -36,7 +36,7 @@ def motion_numbers() -> str:
         np.linspace(0.0, 300.0, 12) ** 2,
         random.normal(size=12),
         rows,
-        [PowerContact(1.0e6, 2.0).behind(1.0e-3)] * 2,
+        [PowerContact(1.0e6, 2.0).with_clearance(1.0e-3)] * 2,
         tip=rows[0],
         friction_rows=random.normal(size=(2, 12)),
         frictions=[DryFriction(0.2, 0, 1.0, (0,)), DryFriction(0.2, 1, 2.0)],

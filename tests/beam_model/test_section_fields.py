@@ -20,7 +20,7 @@ def system(num_modes: int = MODES) -> GapSystem:
     random = np.random.default_rng(3)
     rows = random.normal(size=(4, MODES))[:, :num_modes]
     omega = np.concatenate([[0.0], 20.0 * np.arange(1, MODES) ** 1.5])[:num_modes]
-    laws = [PowerContact(1e7, 1.0).behind(0.01)] * 2
+    laws = [PowerContact(1e7, 1.0).with_clearance(0.01)] * 2
     rubbing = {"friction_rows": rows[2:3], "frictions": [DryFriction(0.2, 0, 100.0, ())]}
     return modal_system(omega**2, rows[3], rows[:2], laws, tip=rows[2], **rubbing)
 

@@ -22,7 +22,7 @@ _APART = 1.0e-6
 
 def two_modes(exponent: float = 2.0) -> GapSystem:
     """Two modes under load that swing against a one-sided stop, once within 0.6 s."""
-    law = PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent).upper().behind(0.05)
+    law = PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent).upper().with_clearance(0.05)
     first = {"first": Observer(np.array([1.0, 0.0]))}
     return modal_system([9.0, 60.0], [2.0, 5.0], [1.0, 0.6], [law], observers=first)
 

@@ -25,7 +25,7 @@ from tests.touching import touching
 def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
     """2 kg on a spring, and a stop of 3e6 N/mⁿ after 4 mm above alone."""
     row = np.array([1.0 / np.sqrt(2.0)])
-    law = PowerContact(3.0e6, exponent).upper().behind(4.0e-3)
+    law = PowerContact(3.0e6, exponent).upper().with_clearance(4.0e-3)
     return modal_system([omega2], [0.0], row, [law], tip=row)
 
 

@@ -57,7 +57,7 @@ def pressed_along(history: SCurve | PiecewiseLinear) -> GapSystem:
         [200.0, 300.0, 900.0, 400.0, 2000.0, 5000.0],
         [1.0, -2.0, 0.5, 1.0, 0.2, 0.1],
         row,
-        [PowerContact(1e4, 1.0).behind(1e-4)],
+        [PowerContact(1e4, 1.0).with_clearance(1e-4)],
         tip=row[0],
         damping=np.array([0.1, 0.2, 0.3, 0.1, 0.2, 0.3]),
         travels=[Travel(history, table, (("rows", 0),), "", (thrust(),))],

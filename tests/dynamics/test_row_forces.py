@@ -155,7 +155,7 @@ def test_the_discrete_gradient(exponent: float, before: float, after: float) -> 
 def wedge(friction: float) -> GapSystem:
     """Return a block whose friction increases its own contact force."""
     tilted = np.array([[-0.9, 1.0], [0.9, 1.0]])
-    laws = [PowerContact(1.0e9, 1.0).behind(1.0e-4)] * 2
+    laws = [PowerContact(1.0e9, 1.0).with_clearance(1.0e-4)] * 2
     rubbing = {"friction_rows": tilted, "frictions": [DryFriction(friction, 0, 1.0, (0, 1))] * 2}
     one_place = {"station_of_row": np.array([0, 0]), "stations": [0.0]}
     more = rubbing | one_place

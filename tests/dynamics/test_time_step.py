@@ -348,7 +348,7 @@ def test_a_closed_contact_is_a_spring() -> None:
     weight, stiffness, rise, load = 10.0, 1.0e6, 0.0104, -5.0
     ramp = Excitation(np.array([load]), PiecewiseLinear((0.0, rise), (0.0, 1.0)))
     seen = {"tip": Observer(np.ones(1)), "speed": Observer(np.ones(1), "m/s", 1)}
-    law = PowerContact(stiffness, 1.0).behind(2.0e-3)
+    law = PowerContact(stiffness, 1.0).with_clearance(2.0e-3)
     system = modal_system([0.0], [-weight], [1.0], [law], observers=seen, excitations=[ramp])
     run = FixedStep(1e-5)(Motion(system, 0.2, 1.0e-3, equilibrium(system, system.load)))
     time, omega = run.time, np.sqrt(stiffness)

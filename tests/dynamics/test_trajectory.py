@@ -58,7 +58,7 @@ def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
 def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> None:
     """Three rows at two stops report the forces of two rows. Reference: other code path."""
     row = np.array([[0.8], [-0.5]])
-    laws = [STOP, STOP.law.behind(5.0e-3)]
+    laws = [STOP, STOP.law.with_clearance(5.0e-3)]
     whole = modal_system([10.0], [2.0], row, laws, stations=[9.0, 10.0])
     shared = replace(
         whole,
@@ -80,7 +80,7 @@ def test_stations_have_directions_and_friction_forces() -> None:
         [10.0],
         [2.0],
         [0.8],
-        [STOP.law.behind(1.0)],
+        [STOP.law.with_clearance(1.0)],
         stations=[9.0, 9.0],
         station_directions=["z", "y"],
         friction_rows=np.array([[0.8], [0.8]]),
@@ -96,7 +96,7 @@ def test_stations_have_directions_and_friction_forces() -> None:
 
 
 def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
-    rows, laws = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]], [STOP.law.behind(10.0)] * 3
+    rows, laws = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]], [STOP.law.with_clearance(10.0)] * 3
     shared = {"station_of_row": np.array([1, 1, 0]), "stations": [9.0, 10.0]}
     system = modal_system([4.0, 9.0], [1.0, 1.0], rows, laws, **shared)
     run = FixedStep(0.1)(Motion(system, 1.0, output_step=0.1))

@@ -91,7 +91,7 @@ def test_a_rubber_stop_takes_all_the_energy(example: ModuleType) -> None:
 @of("own_integrator")
 def test_another_integrator_finds_the_same(example: ModuleType) -> None:
     """Reference: other code, the time step; before chaos parts the two."""
-    system = replace(CHAOTIC, laws=[pt.PowerContact(1.0e4, 2.0).behind(0.02)])
+    system = replace(CHAOTIC, laws=[pt.PowerContact(1.0e4, 2.0).with_clearance(0.02)])
     other = simulate(system, 2.0, 1e-2, integrator=example.RungeKutta())
     ours = simulate(system, 2.0, 1e-2, integrator=FixedStep(1e-5))
     assert ours.data.attrs["contact_changes"] >= 2

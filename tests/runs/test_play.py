@@ -127,7 +127,7 @@ def pair() -> GapSystem:
         [100.0, 0.0],
         [0.0, -5.0],
         [[-1.0, 1.0], [0.0, 1.0]],
-        [LAW, PowerContact(1e5, 1.0).behind(0.5)],
+        [LAW, PowerContact(1e5, 1.0).with_clearance(0.5)],
         tip=[0.0, 1.0],
         stations=[1.0, 2.0],
         grounded=[1],
