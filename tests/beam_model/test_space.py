@@ -47,7 +47,6 @@ def rolled(boom: Boom) -> Boom:
     """Return the boom with y and z exchanged."""
     joints = []
     for joint in boom.joints:
-        assert joint.lateral_play is not None
         joints.append(replace(joint, play=joint.lateral_play, lateral_play=joint.play))
     return replace(boom, segments=tuple(s.turned() for s in boom.segments), joints=tuple(joints))
 

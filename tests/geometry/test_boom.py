@@ -304,8 +304,6 @@ def test_a_chain_is_held_from_either_end(steel: Material, paper_boom: Boom) -> N
 def test_boxes_that_fit_to_round_off_are_accepted(paper_boom: Boom) -> None:
     """The inferred boxes leave the play to round-off, and that is enough."""
     outer, inner = paper_boom.segments
-    assert outer.section is not None
-    assert inner.section is not None
     assert free_room(outer.section, inner.section)[0] == pytest.approx(14.0e-3, rel=1e-12)
 
 

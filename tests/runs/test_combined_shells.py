@@ -12,7 +12,6 @@ from mpi4py import MPI
 from runs import cli
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
-from runs.case.kinds.shell import Shell
 from runs.pipeline.combinations import CombinationState
 from runs.pipeline.combined_shells import shell_states
 from runs.pipeline.largest_loads import BeamStates
@@ -51,7 +50,6 @@ pytestmark = pytest.mark.slow
 def states(tmp_path_factory: pytest.TempPathFactory) -> list[CombinationState]:
     case = read_case(tmp_path_factory.mktemp("shell"), TEXT)
     shell = case.models[1]
-    assert isinstance(shell, Shell)
     return shell_states(case, shell, BuildContext(MPI.COMM_WORLD))
 
 

@@ -157,7 +157,6 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
 def test_points_follow_a_law_behind_its_spring() -> None:
     """Reference: analytic, y = Δ + (F/k)^(1/n) + F/K."""
     law = PowerContact(1.0e9, 1.5).with_clearance(0.007).one_sided(-1)
-    assert law is not None
     approaches, forces = np.array(_points(law, 1.0 / 2.0e7))
     pressed = forces < 0.0
     assert (np.diff(approaches) > 0.0).all()

@@ -20,7 +20,6 @@ def short(name: str, model: str, **values: object) -> Run:
     case = change(load(str(CASES / name)), **values)
     models = tuple(one for one in case.models if one.name == model)
     run = run_case(case.model_copy(update={"models": models}), "", RunContext())
-    assert run is not None
     return run
 
 

@@ -205,7 +205,6 @@ def test_arrows_and_their_numbers_stay_above_the_axis(steep: float) -> None:
     """Reference: analytic. Forces of 1 and 0.9 of the largest make arrows of 110 and 104 pixels."""
     shell, instants = moving_scene(state=steep), [Instant(0.5)]
     (overlap,) = shell.overlaps
-    assert shell.stress is not None
     with rc_context(theme.PAGE_RC):
         scale = StressScale.of(shell.stress, [0.5])
         (plain,) = draw_overlap(shell, instants, overlap)

@@ -268,7 +268,6 @@ def _value(case: Case, key: str) -> float:
         "load[2].magnitude": case.loads[1].magnitude,
         "start.velocity.fly": case.start.velocity["fly"].z if case.start.velocity else None,
     }[key]
-    assert there is not None
     return there
 
 

@@ -143,7 +143,9 @@ def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, mo
     vibrations = []
     for shaper, end in (((), 1.5), (((frequency, damping),), 1.5 + longer)):
         slewed = plain.slew.model_copy(update={"shaper": shaper})
-        case = change(plain.model_copy(update={"slew": slewed}), **{"time.duration": 3.6})
+        case = change(
+            plain.model_copy(update={"slew": slewed}), **{"time.duration": 3.6, "time.step": 1e-3}
+        )
         data = run_case(case).trajectories.isel(model=0)
         sway = data["tip_lateral"].sel(time=slice(end, end + 1.5)).values
         vibrations.append(0.5 * np.ptp(sway))

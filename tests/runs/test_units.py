@@ -35,7 +35,6 @@ QUADRATIC = PowerContact(stiffness=1.0e13, exponent=2.0).with_clearance(7.0e-3)
 def law_in_mm(law: Gap) -> Gap:
     """k in N/mmⁿ, Δ in mm, d in s/mm."""
     power = law.law
-    assert isinstance(power, PowerContact)
     return replace(
         power,
         stiffness=power.stiffness / MM**power.exponent,

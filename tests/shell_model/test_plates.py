@@ -92,8 +92,6 @@ def test_a_closed_section_twists_after_bredt() -> None:
 def test_the_drilling_tie_does_not_matter_to_boxes() -> None:
     """Reference: non-regression, the default tie: within 0.1 % from 1e-4 to 1, on two meshes."""
     outer, inner = (segment.section for segment in flat_boom().segments)
-    assert outer is not None
-    assert inner is not None
     box = PlainBox(outer, 10.0)
     ties = (1.0e-4, 1.0e-2, 1.0)
     for size in (0.5, 0.25):

@@ -61,7 +61,6 @@ def test_geometric_stiffness_of_a_rigid_rotation() -> None:
     mesh = segment_mesh(Boom((replace(pressed, supports=HELD),), ()), 0, OPTIONS)
     shell_of = assemble_segment(MPI.COMM_SELF, pressed, mesh)
     geometric = shell_of.geometric
-    assert geometric is not None
     motions = np.zeros((shell_of.free.size, 2))
     rows = shell_of.node_dofs
     motions[rows[:, 2], 0] = shell_of.nodes[:, 0] - 7.0
@@ -123,7 +122,6 @@ def test_a_bonded_shell_buckles_where_its_beam_does(lateral: float | None) -> No
     """Reference: other code, shear-flexible elements; local compliance takes up to 2 %."""
     boom = telescope(THRUST, lateral)
     beam = critical_factor(boom, finite_element_segments(boom, 0.25, "timoshenko", True))
-    assert beam is not None
     assert shell(lateral).critical_factor == pytest.approx(beam, rel=0.02)
 
 
