@@ -81,7 +81,8 @@ def test_segments_in_space_turn_in_both_planes(tmp_path: Path, kind: str) -> Non
     """Reference: analytic, the rigid body's velocities and rates, in every model."""
     text = (CASES / "spatial.toml").read_text(encoding="utf-8")
     text = text.replace("[[model]]", SIDEWAYS + "\n[[model]]", 1)
-    text = text.replace("mesh_size = 0.1", 'mesh_size = 0.25\ncontact_tolerance = "any"')
+    text = text.replace("contact_tolerance = 0.01", 'contact_tolerance = "any"')
+    text = text.replace("mesh_size = 0.1", "mesh_size = 0.25")
     case = read_case(tmp_path, text)
     (model,) = reading.select(case, "case.toml", [kind]).models
     tools = None

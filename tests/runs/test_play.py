@@ -171,7 +171,7 @@ def test_where_nothing_presses_all_is_bonded(pair: GapSystem) -> None:
 def test_lateral_contacts_of_both_walls_are_bonded() -> None:
     """Reference: by hand. 5 N bulge the walls by 50 mm, 4 N move the mass by 40 mm to the right
     wall, where it presses. Without play both stay in place, and 1 N moves the rest by 1/4 m."""
-    law = PowerContact(1e5, 1.0).behind(0.08)
+    law = PowerContact(1e5, 1.0).with_clearance(0.08)
     system = modal_system(
         [100.0, 100.0, 4.0],
         [4.0, 5.0, 1.0],
