@@ -157,12 +157,12 @@ def critical_factor(
                 for force in forces
             )
             geometric = sum(moving, first)
-            moved = {
+            positions = {
                 n: station_positions(boom.joints[n], extension)
                 for n, extension in extensions.items()
             }
             stiffness, rigid = group.stiffness(), []
-            for (number, motion, k), tie in group.ties(moved).items():
+            for (number, motion, k), tie in group.ties(positions).items():
                 compliance = 0.0 if motion == "twist" else walls.get((number, motion, k), 0.0)
                 if compliance:
                     stiffness = stiffness + np.outer(tie, tie) / compliance
@@ -253,13 +253,13 @@ class _CoupledGroup:
         ]
 
     def ties(
-        self, moved: Mapping[int, Sequence[tuple[float, float]]]
+        self, positions: Mapping[int, Sequence[tuple[float, float]]]
     ) -> dict[tuple[int, Motion, int], Array]:
         """Return the constraints of bonded joints, rows (num_dofs,) of zero displacements.
 
         The keys are joint, motion and index of the station.
 
-        ``moved`` has (x on the outer segment, x on the inner segment) in m of each station of a
+        ``positions`` has (x on the outer segment, x on the inner segment) in m of each station of a
         telescoping joint.
         """
         return {
@@ -270,7 +270,7 @@ class _CoupledGroup:
             for motion in dict.fromkeys(motion for _, motion in self.parts)
             if (joint.outer, motion) in self.parts
             for k, (on_outer, on_inner) in enumerate(
-                moved.get(number, [(x, x) for x in joint.stations])
+                positions.get(number, [(x, x) for x in joint.stations])
             )
         }
 

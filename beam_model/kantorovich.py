@@ -167,8 +167,8 @@ def kantorovich_twist(segment: Segment, terms: int) -> Component:
     """Return the component of twist of a segment; supports prevent twist."""
     lateral = segment.lateral
     assert lateral is not None
-    held = [(support.x, 0) for support in segment.supports]
-    basis = _Basis(segment, complete_basis(segment, held, terms))
+    conditions = [(support.x, 0) for support in segment.supports]
+    basis = _Basis(segment, complete_basis(segment, conditions, terms))
     twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
     stiff, heavy = (
         basis.weights * segment.property_ratio(attrgetter(f"lateral.{number}"), basis.x)
@@ -192,13 +192,13 @@ def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
         BoomError: clamped or elastic supports need the complete base.
     """
     if base == "complete":
-        held = [
+        conditions = [
             (support.x, order)
             for support in segment.supports
             for order, rigid in enumerate((support.stiffness is None, support.kind == "clamped"))
             if rigid
         ]
-        return complete_basis(segment, held, terms)
+        return complete_basis(segment, conditions, terms)
     _check_supports(segment, base)
     if segment.supports:
         return outer_basis(segment, terms, base)
@@ -234,32 +234,32 @@ def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
 
 
 def complete_basis(
-    segment: Segment, held: Sequence[tuple[float, int]], terms: int
+    segment: Segment, conditions: Sequence[tuple[float, int]], terms: int
 ) -> list[Legendre]:
     """Return orthonormal polynomials of increasing degree with zero values or slopes at supports.
 
     Args:
         segment: segment; polynomials are orthonormal over its length.
-        held: (x in m, order) of each condition; the order is 0 for a value, 1 for a slope.
+        conditions: (x in m, order) of each condition; the order is 0 for a value, 1 for a slope.
         terms: number of polynomials.
     """
     domain = [segment.start, segment.end]
-    count = terms + len(held)
+    count = terms + len(conditions)
     # Legendre polynomials of unit norm, since ∫ P_k² dx = L/(2k + 1).
     whole = [
         np.sqrt((2 * k + 1) / segment.length) * Legendre.basis(k, domain=domain)
         for k in range(count)
     ]
     admitted = np.eye(count)
-    if held:
-        conditions = np.array(
-            [[(f.deriv() if order else f)(x) for f in whole] for x, order in held]
+    if conditions:
+        rows = np.array(
+            [[(f.deriv() if order else f)(x) for f in whole] for x, order in conditions]
         )
-        admitted = null_space(conditions / np.linalg.norm(conditions, axis=1)[:, None])
+        admitted = null_space(rows / np.linalg.norm(rows, axis=1)[:, None])
         # An orthogonal transform makes degrees increase by one from function to function. This
         # preserves the digits of low modes, since functions of high degree are much stiffer.
-        _, turn = rq(admitted[len(held) :])
-        admitted = np.triu(admitted @ turn.T, -len(held))
+        _, turn = rq(admitted[len(conditions) :])
+        admitted = np.triu(admitted @ turn.T, -len(conditions))
     coefficients = np.array([f.coef[-1] for f in whole])
     return [Legendre(coefficients * column, domain=domain) for column in admitted.T]
 

@@ -53,7 +53,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         even = np.linspace(segment.start, segment.end, _PIECES + 1)
         breaks = np.unique(np.concatenate([even, sorted(acting)]).round(9))
     starts, lengths = breaks[:-1], np.diff(breaks)
-    middles = 0.5 * (breaks[1:] + breaks[:-1])
+    midpoints = 0.5 * (breaks[1:] + breaks[:-1])
     rows: dict[Quantity, Array] = {}
     for direction in boom.directions:
         deflection, moment, shear = _NAMES[direction]
@@ -75,7 +75,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
             )
             ends = [1.5 * early - 0.5 * late, 1.5 * late - 0.5 * early]
             rows[moment] = np.stack(ends, axis=1).reshape(2 * starts.size, -1)
-            pressed = segment.compression(middles)[:, None]
+            pressed = segment.compression(midpoints)[:, None]
             across = _slope(breaks, rows[moment]) - pressed * _slope(breaks, rows[deflection])
             rows[shear] = _to_ends(breaks, across, acting)
     if boom.spatial:
@@ -84,7 +84,7 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         rows["twist"] = _both_ends(breaks, partial(modes.twist, number))
         if model.components["z"].curvature is not None:
             stiffness = segment.material.shear_modulus * lateral.torsion_constant
-            local = segment.property_ratio(attrgetter("lateral.torsion_constant"), middles)
+            local = segment.property_ratio(attrgetter("lateral.torsion_constant"), midpoints)
             twisted = stiffness * local[:, None] * _slope(breaks, rows["twist"])
             rows["torque"] = _to_ends(breaks, twisted, acting)
     return Line(np.repeat(breaks, 2)[1:-1], rows, paired=True)
@@ -107,7 +107,7 @@ def _to_ends(breaks: Array, means: Array, acting: set[float]) -> Array:
     for first, last in pairwise(np.unique(jumps).tolist()):
         if last - first > 1:
             nodes = breaks[first : last + 1]
-            middles = 0.5 * (nodes[1:] + nodes[:-1])
-            on = interp1d(middles, means[first:last], axis=0, fill_value="extrapolate")
+            midpoints = 0.5 * (nodes[1:] + nodes[:-1])
+            on = interp1d(midpoints, means[first:last], axis=0, fill_value="extrapolate")
             ends[2 * first : 2 * last] = np.repeat(on(nodes), 2, axis=0)[1:-1]
     return ends

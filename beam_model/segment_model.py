@@ -89,7 +89,7 @@ def _rows(
             modes.displacement(joint.inner, x + on_inner, direction, inner)
             - modes.displacement(joint.outer, x + on_outer, direction, outer)
             for direction, x, (inner, outer) in (
-                (pad.direction, pad.middle, pad.area_centres),
+                (pad.direction, pad.midpoint, pad.area_centres),
                 (pad.sliding_direction, pad.slide_x, (pad.inner, pad.outer)),
             )
         )

@@ -218,12 +218,12 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     # A pad at the end of its segment ends there to round-off only.
     cuts = cuts[np.diff(cuts, prepend=-np.inf) > section.near]
     along_x = _Axis(_graded_nodes(cuts, length, (start, end)), closed=False)
-    middles = 0.5 * (along_x.nodes[:-1] + along_x.nodes[1:])
-    middles_around = 0.5 * (around.nodes[:-1] + around.nodes[1:])
-    doubled = np.zeros((middles.size, middles_around.size))
+    midpoints = 0.5 * (along_x.nodes[:-1] + along_x.nodes[1:])
+    midpoints_around = 0.5 * (around.nodes[:-1] + around.nodes[1:])
+    doubled = np.zeros((midpoints.size, midpoints_around.size))
     for collar, (near, far) in strips:
-        within = np.abs(middles - collar.middle) < 0.5 * collar.length
-        covered = (near < middles_around) & (middles_around < far)
+        within = np.abs(midpoints - collar.midpoint) < 0.5 * collar.length
+        covered = (near < midpoints_around) & (midpoints_around < far)
         doubled += collar.thickness * np.outer(within, covered)
 
     modulus, ratio = segment.material.youngs_modulus, segment.material.poissons_ratio

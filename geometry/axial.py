@@ -79,14 +79,16 @@ def with_compression(
         points += passed[number] + _weights(segment, gravity)
         spread = _distributed_weights(segment, gravity)
         joint = _lock(joints, number)
-        held = segment.start if joint is not None or segment.foot is None else segment.foot.x
+        anchor = segment.start if joint is not None or segment.foot is None else segment.foot.x
         if joint is not None:
             locked = segment.start if joint.locked_at is None else joint.locked_at
             total = sum(force for _, force in points)
             total += sum(each * (end - start) for start, end, each in spread)
             passed[joint.outer].append((locked, total))
-            held = max(held, locked)
-        carrying[number] = replace(segment, compression=_compression(segment, held, points, spread))
+            anchor = max(anchor, locked)
+        carrying[number] = replace(
+            segment, compression=_compression(segment, anchor, points, spread)
+        )
     return tuple(carrying)
 
 
@@ -321,14 +323,14 @@ def _lock(joints: Sequence[Joint], number: int) -> Joint | None:
 
 def _compression(
     segment: Segment,
-    held: float,
+    anchor: float,
     points: Sequence[tuple[float, float]],
     spread: Sequence[tuple[float, float, float]],
 ) -> Compression:
     near = SAME_PLACE * segment.length
     places = [segment.start]
     ends = [x for start, end, _ in spread for x in (start, end)]
-    for x in sorted([segment.end, held, *(x for x, _ in points), *ends]):
+    for x in sorted([segment.end, anchor, *(x for x, _ in points), *ends]):
         if places[-1] + near < x <= segment.end + near:
             places.append(x)
 
@@ -342,7 +344,7 @@ def _compression(
     for a, b in pairwise(places):
         at_a = sum(force for place, force in points if abs(place - a) <= near)
         first, last = beyond(a) - at_a, beyond(b)
-        hangs = everything if b <= held + near else 0.0
+        hangs = everything if b <= anchor + near else 0.0
         pieces.append((first - hangs, last - hangs))
     if not any(force for piece in pieces for force in piece):
         return replace(NO_COMPRESSION, transferred=everything)

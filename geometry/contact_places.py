@@ -152,7 +152,7 @@ class Pad:
         return (0.0, 0.0) if self.joint.drive is None else self.joint.drive.reach
 
     @property
-    def middle(self) -> float:
+    def midpoint(self) -> float:
         """The x in m of the resultant, at the centre of the area."""
         if self.patch is None:
             return self.intervals[0].station
@@ -180,7 +180,7 @@ class Pad:
     @property
     def slide_x(self) -> float:
         """The x in m at which the sliding distance is measured."""
-        return self.middle if self.joint.lateral_play is None else self.x
+        return self.midpoint if self.joint.lateral_play is None else self.x
 
     @property
     def area_centres(self) -> tuple[Offset, Offset]:
@@ -266,8 +266,8 @@ def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
 def load_places(boom: Boom, number: int) -> tuple[float, ...]:
     """Return the x in m of all forces and masses on a segment, including centres of pads."""
     joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
-    middles = (x for joint in joints for at in contact_centres(boom, joint).values() for x in at)
-    return tuple(sorted({*boom.stations_of(number), *middles}))
+    midpoints = (x for joint in joints for at in contact_centres(boom, joint).values() for x in at)
+    return tuple(sorted({*boom.stations_of(number), *midpoints}))
 
 
 def _points(

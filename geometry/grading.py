@@ -135,24 +135,24 @@ def _bisect(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
     middle = np.full(len(ends), -1)
     middle[halved] = len(mesh.points) + np.arange(halved.sum())
     points = np.concatenate([mesh.points, mesh.points[ends[halved]].mean(axis=1)])
-    triangles, walls, middles = mesh.triangles, mesh.walls, middle[edge_of]
-    while (split := middles[:, 0] >= 0).any():
+    triangles, walls, midpoints = mesh.triangles, mesh.walls, middle[edge_of]
+    while (split := midpoints[:, 0] >= 0).any():
         a, b, c = triangles[split].T
-        new, after, before = middles[split].T
+        new, after, before = midpoints[split].T
         # The edge opposite to the new vertex comes first, since it is bisected next.
         halves = np.column_stack([b, c, new]), np.column_stack([c, a, new])
         whole = np.full(len(new), -1)
         left = np.column_stack([after, whole, whole]), np.column_stack([before, whole, whole])
         triangles = np.concatenate([triangles[~split], *halves])
-        middles = np.concatenate([middles[~split], *left])
+        midpoints = np.concatenate([midpoints[~split], *left])
         walls = np.concatenate([walls[~split], walls[split], walls[split]])
-    middles_of = zip(ends[halved].tolist(), middle[halved].tolist(), strict=True)
-    new_of = {(a, b): new for (a, b), new in middles_of}
-    lines = {name: _with_middles(line, new_of) for name, line in mesh.lines.items()}
+    midpoints_of = zip(ends[halved].tolist(), middle[halved].tolist(), strict=True)
+    new_of = {(a, b): new for (a, b), new in midpoints_of}
+    lines = {name: _with_midpoints(line, new_of) for name, line in mesh.lines.items()}
     return replace(mesh, points=points, triangles=triangles, walls=walls, lines=lines)
 
 
-def _with_middles(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:
+def _with_midpoints(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:
     """Return the edges of a line, with two halves in place of each bisected edge."""
     halves: list[tuple[int, int]] = []
     for a, b in line.tolist():

@@ -53,10 +53,10 @@ class SegmentMesh:
     @property
     def along(self) -> Array:
         """The x (num_triangles,) in m of the centroids of triangles."""
-        return np.asarray(self.middles[:, 0])
+        return np.asarray(self.centroids[:, 0])
 
     @property
-    def middles(self) -> Array:
+    def centroids(self) -> Array:
         """The centroids (num_triangles, 3) of triangles in m."""
         return np.asarray(self.points[self.triangles].mean(axis=1))
 
@@ -173,8 +173,8 @@ def _half_plates(
     halves = []
     for number, plate in enumerate(plates):
         cuts = sorted(across.get(number, ()))
-        for near, sides in ((plate.start, [-x for x in reversed(cuts)]), (plate.middle, cuts)):
-            beyond = np.add(plate.middle, np.multiply.outer(sides, plate.tangent)).reshape(-1, 2)
+        for near, sides in ((plate.start, [-x for x in reversed(cuts)]), (plate.midpoint, cuts)):
+            beyond = np.add(plate.midpoint, np.multiply.outer(sides, plate.tangent)).reshape(-1, 2)
             halves.append([near, *map(tuple, beyond.tolist())])
     return halves
 

@@ -75,7 +75,7 @@ def add_thickness(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
         within = (x > start) & (x < end)
         for wall, low, high in collar.strips(segment.widest):
             plate = segment.widest.plates[wall]
-            beside = np.abs((mesh.middles[:, 1:] - plate.middle) @ plate.tangent)
+            beside = np.abs((mesh.centroids[:, 1:] - plate.midpoint) @ plate.tangent)
             covered = within & (mesh.walls == wall) & (beside > low) & (beside < high)
             thickness[covered] += collar.thickness
     for number, diaphragm in enumerate(segment.diaphragms, start=len(mesh.plates)):

@@ -128,10 +128,10 @@ class PolygonSection(Section):
         """The directions in which corners and thicknesses are symmetric."""
         corners, thicknesses = self._upwards
         corners = corners - np.array(self.centroid)
-        middles = 0.5 * (corners + np.roll(corners, -1, axis=0))
+        midpoints = 0.5 * (corners + np.roll(corners, -1, axis=0))
         directions: list[Direction] = []
         for axis in COMPONENT:
-            places = np.vstack([corners, middles])
+            places = np.vstack([corners, midpoints])
             partners = _partners(places, _mirror(places, axis))
             beside = np.linalg.norm(_mirror(places, axis)[partners] - places, axis=1)
             alike = thicknesses[partners[len(corners) :] - len(corners)] == thicknesses

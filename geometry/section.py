@@ -59,8 +59,8 @@ class Plate(NamedTuple):
         return float(np.hypot(self.end[0] - self.start[0], self.end[1] - self.start[1]))
 
     @property
-    def middle(self) -> Offset:
-        """The middle (y, z) of the mid-line in m."""
+    def midpoint(self) -> Offset:
+        """The midpoint (y, z) of the mid-line in m."""
         return 0.5 * (self.start[0] + self.end[0]), 0.5 * (self.start[1] + self.end[1])
 
     @property

@@ -229,7 +229,7 @@ class Segment:
             for one in self.diaphragms
         )
         of_collars = (
-            PointMass(one.middle, density * self.mean_width(one) * one.length * one.thickness)
+            PointMass(one.midpoint, density * self.mean_width(one) * one.length * one.thickness)
             for one in self.collars
         )
         return (*of_diaphragms, *of_collars)
@@ -241,7 +241,7 @@ class Segment:
 
     def mean_width(self, collar: Collar) -> float:
         """Return the width in m of a collar around the section at its midpoint."""
-        return collar.width(self.section_at(collar.middle))
+        return collar.width(self.section_at(collar.midpoint))
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:

@@ -53,8 +53,8 @@ class Collar:
         return self.span[1] - self.span[0]
 
     @property
-    def middle(self) -> float:
-        """The x of the middle in m."""
+    def midpoint(self) -> float:
+        """The x of the midpoint in m."""
         return 0.5 * sum(self.span)
 
     def strips(self, section: Section) -> list[Strip]:
@@ -72,10 +72,12 @@ class Collar:
 
     def is_symmetric(self, section: Section, axis: Direction) -> bool:
         """Return whether the collar is its own mirror image along an axis."""
-        middles = np.array([section.plates[strip.wall].middle for strip in self.strips(section)])
-        images = middles.copy()
+        midpoints = np.array(
+            [section.plates[strip.wall].midpoint for strip in self.strips(section)]
+        )
+        images = midpoints.copy()
         images[:, COMPONENT[axis] - 1] *= -1.0
-        apart = np.abs(images[:, None] - middles).max(axis=2).min(axis=1)
+        apart = np.abs(images[:, None] - midpoints).max(axis=2).min(axis=1)
         return bool((apart < section.near).all())
 
 

@@ -123,9 +123,9 @@ def _edge_arguments(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[s
     # Without that argument, an edge with two cells on one rank is not shared with other ranks
     # (FEniCS/dolfinx issue 3063), so that all its cells must be on one rank. Each rank gets the
     # same number of cells, in the order of x.
-    middles = points[triangles].mean(axis=1)
+    midpoints = points[triangles].mean(axis=1)
     place = np.empty(len(triangles), dtype=np.int64)
-    place[np.lexsort(middles.T[::-1])] = np.arange(len(triangles))
+    place[np.lexsort(midpoints.T[::-1])] = np.arange(len(triangles))
     ranks = (comm.size * place // max(1, len(triangles))).astype(np.int32)
     ranks[together] = ranks[together[:, :1]]
     destinations = cpp.graph.AdjacencyList_int32(ranks[:, None])
@@ -201,8 +201,8 @@ def node_places(space: Any) -> Array:
     corners = geometry.dofmaps[0] if hasattr(geometry, "dofmaps") else geometry.dofmap
     corners = np.asarray(getattr(corners, "array", corners)).reshape(-1, 3)
     ends = geometry.x[corners]
-    middles = 0.5 * (ends[:, [1, 0, 0]] + ends[:, [2, 2, 1]])
+    midpoints = 0.5 * (ends[:, [1, 0, 0]] + ends[:, [2, 2, 1]])
     nodes, index_map = cell_nodes(space), space.dofmap.index_map
     places = np.empty((index_map.size_local + index_map.num_ghosts, 3))
-    places[nodes] = middles if nodes.shape[1] == 3 else np.concatenate([ends, middles], axis=1)
+    places[nodes] = midpoints if nodes.shape[1] == 3 else np.concatenate([ends, midpoints], axis=1)
     return places

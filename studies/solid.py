@@ -186,12 +186,12 @@ def box(
     name: str,
     start: float,
     end: float,
-    middles: tuple[float, float],
+    midpoints: tuple[float, float],
     wall: float,
     supports: tuple[Support, ...] = (),
 ) -> Segment:
     """Return a box of steel, with the distances in m of its mid-lines."""
-    section = BoxSection(*middles, wall, wall)
+    section = BoxSection(*midpoints, wall, wall)
     return Segment.of_section(name, start, end, STEEL, section, supports=supports)
 
 

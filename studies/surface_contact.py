@@ -37,7 +37,7 @@ DEFAULT_POINTS = (8, 4)
 NOTES = (
     "A surface has no pads: the corners of the inner box press on the outer flange beside its web, "
     "and the flange gives way there.",
-    "Pads at the ends of the overlap have their middles half their length inside, which shortens "
+    "Pads at the ends of the overlap have their midpoints half their length inside, which shortens "
     "the arm of the couple that holds the inner segment, and lets it tilt more within the play.",
 )
 

@@ -301,9 +301,9 @@ def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> 
                 else joint.stations
             )
             # The resultant force of a pad acts at its centre.
-            middles = contact_centres(boom, joint)
+            midpoints = contact_centres(boom, joint)
             on_outer = [
-                x + sum(middles[at]) / len(middles[at]) - at
+                x + sum(midpoints[at]) / len(midpoints[at]) - at
                 for x, at in zip(on_outer, joint.stations, strict=True)
             ]
             tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before

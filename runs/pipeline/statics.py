@@ -127,18 +127,18 @@ def _depths(state: StaticState) -> dict[tuple[int, float], float]:
     boom = state.boom
     joints = [joint for joint in boom.joints if not joint.bonded]
     inner = [
-        (joint.inner, middles)
+        (joint.inner, midpoints)
         for _ in boom.directions
         for joint in joints
-        for middles in contact_centres(boom, joint).values()
+        for midpoints in contact_centres(boom, joint).values()
     ]
     owners = [*inner, *((stop.segment, (stop.x,)) for stop in boom.stops)]
     loads = station_loads(boom, state.system, state.position)
     return {
         (number, x): one.depth
-        for (number, middles), one in zip(owners, loads, strict=True)
+        for (number, midpoints), one in zip(owners, loads, strict=True)
         if one.direction == "z"
-        for x in middles
+        for x in midpoints
     }
 
 

@@ -66,7 +66,7 @@ class BoomView:
         Displacements are magnified up to a fraction ``displacement`` of the length of the boom.
         """
         times = [instant.time for instant in instants]
-        heights = [moved[:, 2] for moved in scene.displacements(times)]
+        heights = [displacement[:, 2] for displacement in scene.displacements(times)]
         low, high = min(0.0, np.min(heights)), max(0.0, np.max(heights))
         scale = scene.fitting_scale(times, displacement)
         rest = surface(scene.magnify(np.zeros_like(scene.points), scale), scene.triangles)
@@ -87,9 +87,9 @@ class BoomView:
             edges=sharp_edges(rest),
         )
 
-    def places(self, moved: Array, time: float) -> Array:
+    def places(self, displacement: Array, time: float) -> Array:
         """Return the displayed points (num_points, 3) for displacements (num_points, 3) in m."""
-        places = self.scene.magnify(moved, self.scale)
+        places = self.scene.magnify(displacement, self.scale)
         places[:, 0] += self.scene.along(time)
         return places
 
@@ -165,11 +165,11 @@ def draw_boom(
         plotter.add_mesh(boom, scalars="deflection", **colours, **MATTE)
         edges = view.edges_at(boom.points)
         plotter.add_mesh(edges, color=theme.INK, line_width=2.4 * part, lighting=False)
-        all_moved = scene.displacements([instant.time for instant in instants])
-        for instant, moved in zip(instants, all_moved, strict=True):
-            places = view.places(moved, instant.time)
+        displacements = scene.displacements([instant.time for instant in instants])
+        for instant, displacement in zip(instants, displacements, strict=True):
+            places = view.places(displacement, instant.time)
             boom.points, edges.points = places, places[edges["number"]]
-            boom["deflection"] = 1.0e3 * np.abs(moved[:, 2])
+            boom["deflection"] = 1.0e3 * np.abs(displacement[:, 2])
             sheet.show(camera.render(plotter))
             symbols = view.draw_marks(sheet, places)
             last = int(np.abs(time - instant.time).argmin())

@@ -127,8 +127,8 @@ def _segment(number: int, shell: SegmentShell, first: int, element: int) -> Iter
     outwards[~mesh.on_walls] = [1.0, 0.0, 0.0]
     inside = (normals * outwards).sum(axis=1) < 0.0
     corners[inside] = corners[inside, ::-1]
-    middles = 0.5 * (corners + np.roll(corners, -1, axis=1))
-    _, nodes = cKDTree(shell.nodes).query(np.concatenate([corners, middles], axis=1))
+    midpoints = 0.5 * (corners + np.roll(corners, -1, axis=1))
+    _, nodes = cKDTree(shell.nodes).query(np.concatenate([corners, midpoints], axis=1))
     thicknesses, groups = np.unique(mesh.thickness, return_inverse=True)
     yield f"*MATERIAL, NAME=STEEL-{number}"
     yield from ("*ELASTIC", f"{material.youngs_modulus:.10e}, {material.poissons_ratio:.10e}")

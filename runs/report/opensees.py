@@ -142,7 +142,7 @@ def _contact_points(boom: Boom) -> list[tuple[int, float]]:
     """Return segment and x in m of each contact point."""
     places = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
     for pad in pads(boom):
-        places += [(pad.joint.inner, pad.middle), (pad.joint.outer, pad.middle)]
+        places += [(pad.joint.inner, pad.midpoint), (pad.joint.outer, pad.midpoint)]
     return places
 
 
@@ -283,7 +283,7 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
 def _ends(pad: Pad, parts: Sequence[Part]) -> list[list[int]]:
     """Return segment and node of both segments at a pad, the outer segment first."""
     return [
-        [number, parts[number].node(pad.middle)] for number in (pad.joint.outer, pad.joint.inner)
+        [number, parts[number].node(pad.midpoint)] for number in (pad.joint.outer, pad.joint.inner)
     ]
 
 

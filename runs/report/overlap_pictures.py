@@ -119,7 +119,7 @@ class OverlapView:
         return np.asarray(self.overlap.centres)
 
     @property
-    def middle(self) -> float:
+    def midpoint(self) -> float:
         """The x in m of the centre between the stations."""
         return float(0.5 * (self.stations.min() + self.stations.max()))
 
@@ -128,7 +128,7 @@ class OverlapView:
         """The largest magnification of displacements and play within the limits for both."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
         half = 0.5 * np.ptp(self.stations) + MARGIN
-        near = np.abs(self.scene.points[:, 0] - self.middle) <= half
+        near = np.abs(self.scene.points[:, 0] - self.midpoint) <= half
         near &= np.isin(self.scene.owner, self.numbers)
         largest = max(
             float(np.abs(self._relative_displacements(time)[near]).max()) for time in self.times
@@ -153,7 +153,7 @@ class OverlapView:
     def behind(self) -> Mask:
         """The mask (num_triangles,) of the triangles behind the cut."""
         corners = self.scene.points[self.scene.triangles]
-        near = (np.abs(corners[..., 0] - self.middle) < self.width).all(axis=1)
+        near = (np.abs(corners[..., 0] - self.midpoint) < self.width).all(axis=1)
         return np.asarray(near & (corners[..., 1].mean(axis=1) > 0.0))
 
     @property
@@ -188,7 +188,7 @@ class OverlapView:
 
     def camera(self, places: Array) -> Camera:
         """Return a camera whose view contains the stations."""
-        centre = np.array([self.middle, 0.0, np.mean(self.ends(places))])
+        centre = np.array([self.midpoint, 0.0, np.mean(self.ends(places))])
         return Camera(centre, self.width, self.pixels, elevation=8.0)
 
     def half(self, segment: int) -> Numbers:
@@ -216,7 +216,7 @@ class OverlapView:
                         sharp_edges(cut), color=theme.INK, line_width=4.0, lighting=False
                     )
             sheet.show(camera.render(plotter))
-        sheet.mark_x(camera, self.middle - 0.475 * self.width, self.middle + 0.475 * self.width)
+        sheet.mark_x(camera, self.midpoint - 0.475 * self.width, self.midpoint + 0.475 * self.width)
         strongest = np.abs(self.motion["contact_force"].values).max()
         now = self.motion.sel(time=time, method="nearest")
         forces = np.nan_to_num(now["contact_force"].values)

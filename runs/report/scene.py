@@ -171,8 +171,8 @@ class Scene:
             motion: trajectories of the model.
         """
         tubes = [
-            _tube(boom, segment, moved)
-            for segment, moved in zip(boom.segments, output.segments, strict=True)
+            _tube(boom, segment, one)
+            for segment, one in zip(boom.segments, output.segments, strict=True)
         ]
         first = np.cumsum([0, *(len(tube.points) for tube in tubes)])
         numbered = [tube.triangles + k for tube, k in zip(tubes, first, strict=False)]
@@ -186,7 +186,7 @@ class Scene:
             segment=np.repeat(
                 np.arange(len(tubes)), [len(tube.triangles) for tube in tubes]
             ).astype(np.int32),
-            modes=np.concatenate([tube.moved for tube in tubes], axis=1),
+            modes=np.concatenate([tube.displacement for tube in tubes], axis=1),
             state=xr.DataArray(frames, {"time": output.time}, ("time", "mode")),
             motion=motion,
         )
@@ -207,9 +207,9 @@ class Scene:
     @cached_property
     def overlaps(self) -> list[Overlap]:
         """The overlaps of joints with play in the plane of the picture, from base to tip."""
-        middles: dict[int, list[float]] = {}
+        midpoints: dict[int, list[float]] = {}
         for pad in pads(self.boom):
-            middles.setdefault(pad.station, []).append(pad.middle)
+            midpoints.setdefault(pad.station, []).append(pad.midpoint)
         overlaps, begin = [], 0
         for direction in self.boom.directions:
             for joint in self.boom.joints:
@@ -219,7 +219,7 @@ class Scene:
                 begin += len(stations)
                 play = joint.play if direction == "z" else joint.lateral_play
                 if direction == self.direction and play is not None:
-                    centres = [float(np.mean(middles[station])) for station in stations]
+                    centres = [float(np.mean(midpoints[station])) for station in stations]
                     overlaps.append(
                         Overlap(joint.outer, joint.inner, stations, centres, 0.5 * play)
                     )
@@ -234,8 +234,8 @@ class Scene:
         states = self.state.sel(time=list(times), method="nearest").values
         # The modes exceed the cache of the processor; a batch of times reads each mode once.
         for begin in range(0, len(states), BATCH):
-            moved = np.tensordot(states[begin : begin + BATCH], self.modes, axes=1)
-            yield from moved.astype(np.float64)
+            displacement = np.tensordot(states[begin : begin + BATCH], self.modes, axes=1)
+            yield from displacement.astype(np.float64)
 
     def travel(self, segment: int) -> Array:
         """Return the travel (num_times,) of a segment by drives in m, at the output times."""
@@ -268,14 +268,14 @@ class Scene:
         The in-plane rigid motion of the part ``between`` two x in m is subtracted from all points,
         since its magnification would tilt the boom.
         """
-        moved = self.displacement(t)
+        displacement = self.displacement(t)
         x, _, z = self.points.T
         mine = (self.owner == segment) & (
             np.abs(x - np.mean(between)) <= np.ptp(between) / 2.0 + SAME_PLACE
         )
-        along, up, turn = rigid_motion(self.points[mine][:, [0, 2]], moved[mine][:, [0, 2]])
+        along, up, turn = rigid_motion(self.points[mine][:, [0, 2]], displacement[mine][:, [0, 2]])
         return np.asarray(
-            moved - np.stack([along - turn * z, np.zeros_like(x), up + turn * x], axis=1)
+            displacement - np.stack([along - turn * z, np.zeros_like(x), up + turn * x], axis=1)
         )
 
     def at(self, places: Array, segment: int, x: float, z: float) -> tuple[Array, int]:
@@ -327,7 +327,9 @@ class Scene:
 
         Magnified displacements at given times in s stay below a fraction of the length.
         """
-        largest = max(float(np.abs(moved[:, 2]).max()) for moved in self.displacements(times))
+        largest = max(
+            float(np.abs(displacement[:, 2]).max()) for displacement in self.displacements(times)
+        )
         tallest = max(self.half_height(number) for number in range(len(self.boom.segments)))
         play = sum(overlap.clearance for overlap in self.overlaps)
         return round_scale(
@@ -337,23 +339,24 @@ class Scene:
             )
         )
 
-    def magnify(self, moved: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
+    def magnify(self, displacement: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
         """Return the displayed points (num_points, 3) in m.
 
         The rotation of a section moves its points in proportion to the magnified height.
         Displacements along the line of sight are not magnified.
 
         Args:
-            moved: (num_points, 3) displacements in m.
+            displacement: (num_points, 3) displacements in m.
             scale: magnification of displacements and play.
             section: magnification of the outermost section.
         """
         factor = self._section_factors(scale, section)[self.owner]
-        middles = [np.mean(self.edges(k, s.start)) for k, s in enumerate(self.boom.segments)]
+        midpoints = [np.mean(self.edges(k, s.start)) for k, s in enumerate(self.boom.segments)]
         x, y, z = self.points.T
-        ux, _, uz = scale * moved.T
+        ux, _, uz = scale * displacement.T
         return np.stack(
-            [x + factor * ux, factor * y, factor * (z - np.array(middles)[self.owner]) + uz], axis=1
+            [x + factor * ux, factor * y, factor * (z - np.array(midpoints)[self.owner]) + uz],
+            axis=1,
         )
 
     def _section_factors(self, scale: float, section: float) -> Array:
@@ -375,7 +378,7 @@ class _Tube(NamedTuple):
 
     points: Array
     triangles: Array
-    moved: Array
+    displacement: Array
     stress: Array
 
 
@@ -387,7 +390,7 @@ def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
     w, v, twist = (read.get(name, none)[..., None] for name in ("deflection", "lateral", "twist"))
     turn_z, turn_y = (np.gradient(line[..., 0], x, axis=1)[..., None] for line in (w, v))
     y, z = np.moveaxis(corners, -1, 0)
-    moved = [-z * turn_z - y * turn_y, v - z * twist, w + y * twist]
+    displacement = [-z * turn_z - y * turn_y, v - z * twist, w + y * twist]
     rings = np.arange(y.size).reshape(y.shape)
     quads = [(low, np.roll(low, -1), np.roll(high, -1), high) for low, high in pairwise(rings)]
     a, b, c, d = np.array(quads).transpose(1, 0, 2).reshape(4, -1)
@@ -400,7 +403,7 @@ def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
     return _Tube(
         points=np.stack([np.repeat(x, y.shape[1]), y.ravel(), z.ravel()], axis=1),
         triangles=np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]),
-        moved=np.stack([part.reshape(shape) for part in moved], axis=-1),
+        displacement=np.stack([part.reshape(shape) for part in displacement], axis=-1),
         stress=np.abs(stress).reshape(shape),
     )
 
@@ -418,7 +421,7 @@ def _bending(moments: Array, there: Sequence[Segment], number: str) -> Array:
     return np.asarray(moments / [attrgetter(number)(segment) for segment in there])[..., None]
 
 
-def rigid_motion(places: Array, moved: Array) -> Array:
+def rigid_motion(places: Array, displacement: Array) -> Array:
     """Return two translations and a rotation (3,) that fit the motion of points (num_places, 2).
 
     The displacements are u₁ = t₁ − r x₂ and u₂ = t₂ + r x₁.
@@ -428,7 +431,7 @@ def rigid_motion(places: Array, moved: Array) -> Array:
     whole = np.concatenate(
         [np.stack([unit, none, -second], axis=1), np.stack([none, unit, first], axis=1)]
     )
-    return np.asarray(np.linalg.lstsq(whole, moved.T.ravel(), rcond=None)[0])
+    return np.asarray(np.linalg.lstsq(whole, displacement.T.ravel(), rcond=None)[0])
 
 
 def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:

@@ -120,13 +120,13 @@ def pack_view(view: View, angle: float) -> dict[str, Any]:
     scene = view.scene
     scale = scene.fitting_scale(view.time.tolist())
     rest = scene.magnify(np.zeros_like(scene.points), scale)
-    moved = np.array(
+    displacement = np.array(
         [
             scene.magnify(each, scale) - rest + scale * each * [0.0, 1.0, 0.0]
             for each in scene.displacements(view.time.tolist())
         ]
     )
-    parts, flat = few_shapes(moved.reshape(view.time.size, -1))
+    parts, flat = few_shapes(displacement.reshape(view.time.size, -1))
     ways = extensions(scene, view.time)
     # The travel of drives along x is not magnified.
     along = [moves[None, :, None] * [1.0, 0.0, 0.0] for moves, _ in ways.values()]
@@ -292,19 +292,19 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
     return travels
 
 
-def few_shapes(moved: Array) -> tuple[Array, Array]:
+def few_shapes(displacement: Array) -> tuple[Array, Array]:
     """Return a motion as factors (num_frames, num_shapes) and shapes (num_shapes, num_values).
 
     This is a truncated singular value decomposition (Eckart and Young 1936), by eigenvectors of the
     Gram matrix of the frames. The truncation error is at most 0.2 % of the largest value.
 
     Args:
-        moved: displacements (num_frames, num_values).
+        displacement: displacements (num_frames, num_values).
     """
-    _, parts = np.linalg.eigh(moved @ moved.T)
+    _, parts = np.linalg.eigh(displacement @ displacement.T)
     parts = parts[:, ::-1]
-    shapes, largest = parts.T @ moved, float(np.abs(moved).max())
-    left = moved.copy()
+    shapes, largest = parts.T @ displacement, float(np.abs(displacement).max())
+    left = displacement.copy()
     for count in range(1, len(parts) + 1):
         left -= np.outer(parts[:, count - 1], shapes[count - 1])
         if np.abs(left).max() <= TRUNCATION * largest:

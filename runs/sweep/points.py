@@ -178,11 +178,11 @@ def make_points(
         if shaping not in plates:
             checked = _check_point(file, label, chosen(shaping))
             plates[shaping] = infer_plates(checked)
-        held = hold_plates(chosen(settings), plates[shaping])
-        if held != checked:
-            _check_point(file, label, held, any(plates[shaping]))
+        given = hold_plates(chosen(settings), plates[shaping])
+        if given != checked:
+            _check_point(file, label, given, any(plates[shaping]))
         values = tuple(value for _, value in settings)
-        yield Point(values, label, case_file.select(held, file, None, mesh_size))
+        yield Point(values, label, case_file.select(given, file, None, mesh_size))
 
 
 def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
@@ -204,12 +204,12 @@ def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case
     raise BadInput(file, f"--vary {_label(settings)}", f"{fault.key}: {fault.what}")
 
 
-def _check_point(file: str, label: str, case: Case, held: bool = False) -> Case:
+def _check_point(file: str, label: str, case: Case, inferred: bool = False) -> Case:
     """Return the case after all checks of a case file."""
     try:
         case_file.check(case, file)
     except BadInput as fault:
-        whose = _WHOSE_BOXES if fault.key.endswith("play") and held else ""
+        whose = _WHOSE_BOXES if fault.key.endswith("play") and inferred else ""
         raise BadInput(file, f"--vary {label}", f"{fault.key}: {fault.what}{whose}") from None
     return case
 

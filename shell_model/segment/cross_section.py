@@ -114,7 +114,7 @@ class SectionNodes:
         It is the mean u_z of the highest plates less that of the lowest ones, by their midpoints.
         """
         plates = self.section.plates
-        levels = np.array([plate.middle[1] for plate in plates])
+        levels = np.array([plate.midpoint[1] for plate in plates])
         top, bottom = (
             np.flatnonzero(np.abs(levels - level) < self.section.near).tolist()
             for level in (levels.max(), levels.min())

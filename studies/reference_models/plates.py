@@ -249,8 +249,8 @@ class PressedPlate:
         sides = (self.length, self.width)
         points, triangles = grid(rectangle(*sides), *(round(side / size) for side in sides))
         shell = StaticShell(points, triangles, self.thickness, STEEL)
-        middles = points[triangles].mean(axis=1)[:, :2]
-        pressed = ((middles > self.start) & (middles < self.end)).all(axis=1)
+        midpoints = points[triangles].mean(axis=1)[:, :2]
+        pressed = ((midpoints > self.start) & (midpoints < self.end)).all(axis=1)
         area = (self.end[0] - self.start[0]) * (self.end[1] - self.start[1])
         load = shell.surface_load(np.array([0.0, 0.0, 1.0 / area]), on=pressed)
         held = hold(shell.node_dofs[:, [X, Y]])

@@ -152,13 +152,13 @@ class SolidFamily(Shell):
     Args:
         fixed: (num_fixed,) constrained degrees of freedom.
         section: the walls.
-        middles: positions (num_middles, 3) on the mid-surfaces of the whole segment in m.
-        means: rows (3 num_middles, num_dofs) of the mean displacements over the thickness there.
+        midpoints: positions (num_midpoints, 3) on the mid-surfaces of the whole segment in m.
+        means: rows (3 num_midpoints, num_dofs) of the mean displacements over the thickness there.
     """
 
     fixed: Indices
     section: BoxSection
-    middles: Array
+    midpoints: Array
     means: csr_matrix
 
     @cached_property
@@ -185,8 +185,8 @@ class SolidFamily(Shell):
 
     def outline(self, x: float) -> SectionNodes:
         """Return the means at a mesh plane x in m; :meth:`row` accepts their operators."""
-        at = np.flatnonzero(np.abs(self.middles[:, 0] - x) < ON_LINE)
-        return SectionNodes(x, self.middles[at], 3 * at[:, None] + np.arange(3), self.section)
+        at = np.flatnonzero(np.abs(self.midpoints[:, 0] - x) < ON_LINE)
+        return SectionNodes(x, self.midpoints[at], 3 * at[:, None] + np.arange(3), self.section)
 
     def row(self, weights: Row) -> Array:
         """Return the row (num_dofs,) of an operator on means, for the motions of the class."""
@@ -256,10 +256,10 @@ def assemble_solid(segment: Segment, mesh: SolidMesh, family: SymmetryClass) -> 
     for support in segment.supports:
         fixed = slice(0 if support.kind == "clamped" else 1, None)
         free[np.abs(nodes[:, 0] - support.x) < ON_LINE, fixed] = False
-    middles, means = _means(mesh, nodes, family)
+    midpoints, means = _means(mesh, nodes, family)
     nothing = Attachments.from_rows([], [], free.size)
     held = np.flatnonzero(~free)
-    return SolidFamily(comm, plates, [], nothing, nothing, held, section, middles, means)
+    return SolidFamily(comm, plates, [], nothing, nothing, held, section, midpoints, means)
 
 
 def _means(mesh: SolidMesh, nodes: Array, family: SymmetryClass) -> tuple[Array, csr_matrix]:

@@ -24,7 +24,7 @@ def test_a_notebook_gives_its_outputs_again() -> None:
         names: dict[str, Any] = run(again)
     for before, now in zip(code_cells(kept), code_cells(again), strict=True):
         assert plain(now) == plain(before)
-    # The fly turns by play over the distance of the pads' middles, 2 Δ / 1.38 m, about the lower
+    # The fly turns by play over the distance of the pads' midpoints, 2 Δ / 1.38 m, about the lower
     # one, 4.56 m behind the tip.
     tips = names["swept"]["tip_at_rest"].sel(model="beam").values
     added = 0.004 * (4.56 / 1.38 + 0.5)

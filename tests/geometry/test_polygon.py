@@ -124,9 +124,9 @@ def _level_by_level(section: Section, power: int) -> float:
     """∫ z^power dA of the material within the walls' surfaces."""
     tangents = np.array([plate.tangent for plate in section.plates])
     normals = np.column_stack([tangents[:, 1], -tangents[:, 0]])
-    middles = np.array([plate.start for plate in section.plates])
+    midpoints = np.array([plate.start for plate in section.plates])
     half = 0.5 * np.array([plate.thickness for plate in section.plates])
-    offsets = (normals * middles).sum(axis=1)
+    offsets = (normals * midpoints).sum(axis=1)
     low, high = section.reach("z")
     surfaces = [place for face in section.faces for place in (face.outside, face.inside)]
     levels = np.union1d(np.linspace(low - 0.02, high + 0.02, 4001), surfaces)

@@ -289,7 +289,9 @@ def test_carriers_hold_a_force_through_the_axis(name: str, direction: Direction)
     found = section.shear_plates(direction)
     forces = sum(force * section.plates[n].tangent for n, force in found)
     assert forces == pytest.approx([1.0, 0.0] if direction == "y" else [0.0, 1.0], abs=1e-12)
-    arms = [np.linalg.det([section.plates[n].middle, section.plates[n].tangent]) for n, _ in found]
+    arms = [
+        np.linalg.det([section.plates[n].midpoint, section.plates[n].tangent]) for n, _ in found
+    ]
     assert sum(f * arm for (_, f), arm in zip(found, arms, strict=True)) == pytest.approx(
         0.0, abs=1e-15
     )
@@ -348,13 +350,13 @@ OUTER, INNER = (0.41, -0.31, 0.32), (0.39, -0.29, 0.28)
 def test_properties_worked_by_hand() -> None:
     """Reference: analytic, by hand. The outer rectangle less the inner one, with Steiner's part."""
     areas = [width * (top - bottom) for width, bottom, top in (OUTER, INNER)]
-    middles = [0.5 * (bottom + top) for _, bottom, top in (OUTER, INNER)]
+    midpoints = [0.5 * (bottom + top) for _, bottom, top in (OUTER, INNER)]
     area = areas[0] - areas[1]
-    z = (areas[0] * middles[0] - areas[1] * middles[1]) / area
+    z = (areas[0] * midpoints[0] - areas[1] * midpoints[1]) / area
     assert UNEQUAL.area == pytest.approx(area, rel=1e-12)
     assert UNEQUAL.centroid == pytest.approx((0.0, z), rel=1e-12, abs=1e-15)
     own = [width * (top - bottom) ** 3 / 12.0 for width, bottom, top in (OUTER, INNER)]
-    parts = [i + a * (middle - z) ** 2 for i, a, middle in zip(own, areas, middles, strict=True)]
+    parts = [i + a * (middle - z) ** 2 for i, a, middle in zip(own, areas, midpoints, strict=True)]
     assert UNEQUAL.second_moment_of_area == pytest.approx(parts[0] - parts[1], rel=1e-12)
     aside = (0.63 * 0.41**3 - 0.57 * 0.39**3) / 12.0
     assert UNEQUAL.lateral_second_moment_of_area == pytest.approx(aside, rel=1e-12)
@@ -417,7 +419,7 @@ def test_a_force_through_the_centroid_goes_to_the_flanges_by_the_lever() -> None
     """Reference: analytic. The parts sum to one, and their resultant is in the centroid."""
     forces = [(n, part * UNEQUAL.plates[n].tangent[0]) for n, part in UNEQUAL.shear_plates("y")]
     assert sum(force for _, force in forces) == pytest.approx(1.0, rel=1e-15)
-    arms = [force * UNEQUAL.plates[number].middle[1] for number, force in forces]
+    arms = [force * UNEQUAL.plates[number].midpoint[1] for number, force in forces]
     assert sum(arms) == pytest.approx(0.0, abs=1e-16)
 
 
@@ -464,7 +466,9 @@ def test_each_wall_of_its_mesh_has_its_place_area_and_thickness() -> None:
 
 
 def test_places_on_plates() -> None:
-    """Reference: analytic. Ends and middles are on them, the middle of the section is not."""
-    places = np.array([place for plate in UNEQUAL.plates for place in (plate.start, plate.middle)])
+    """Reference: analytic. Ends and midpoints are on them, the middle of the section is not."""
+    places = np.array(
+        [place for plate in UNEQUAL.plates for place in (plate.start, plate.midpoint)]
+    )
     assert UNEQUAL.on_plates(places).all()
     assert not UNEQUAL.on_plates(np.vstack([[0.0, 0.0], 1.001 * places])).any()

@@ -115,7 +115,7 @@ def test_the_cylinder_of_a_lift_in_all_combinations(tmp_path: Path) -> None:
 
 
 def test_pads_and_foot_of_a_combination(tmp_path: Path) -> None:
-    """Reference: analytic, lever rule on the level fly between the middles of its pads."""
+    """Reference: analytic, lever rule on the level fly between the midpoints of its pads."""
     level = results(tmp_path, LIFT + CASES + FACTORS)["B, level"]
     tip = 1.1 * PEOPLE * G + 1.22 * WIND
     for station, lever in ((1, 2.05), (2, 4.95)):

@@ -144,7 +144,7 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
     plain = case.model_copy(update={"models": (model_of(friction_case(), "timoshenko"),)})
     stiff = build(plain, build_boom(plain), plain.models[0]).system
     without = float(stiff.observers["tip"].row @ equilibrium(stiff, stiff.load))
-    # Both press at the middles of the pads; springs alone lower the tip, by 5 %.
+    # Both press at the midpoints of the pads; springs alone lower the tip, by 5 %.
     assert rest > 1.04 * without
     assert run(script, "--static") == pytest.approx(rest, rel=1e-3)
     tip, plain_tip = (np.asarray(move(s, 0.8).data["tip"].values) for s in (system, stiff))

@@ -57,7 +57,7 @@ def extremes_of(folder: Path, text: str) -> dict[str, StaticExtreme]:
 
 
 def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
-    """Reference: analytic, lever rule between the middles of pads and M z/J of the boxes."""
+    """Reference: analytic, lever rule between the midpoints of pads and M z/J of the boxes."""
     case = read_case(tmp_path, boom_of(RAMP))
     found = extremes_of(tmp_path, boom_of(RAMP))
     assert [*found] == [

@@ -47,8 +47,8 @@ class Pushed:
         return moment + 0.5 * self.along * rest**2, self.along * rest + sum(f for _, f in far)
 
 
-def middles(joint: Joint) -> tuple[float, float]:
-    """x in m of the middles of pads that begin where the overlap ends; of the stations without."""
+def midpoints(joint: Joint) -> tuple[float, float]:
+    """Return x in m of the midpoints of pads at both ends of the overlap, or of the stations."""
     (first, last), half = joint.stations, 0.5 * joint.pad.length if joint.pad else 0.0
     return first + half, last - half
 
@@ -66,7 +66,7 @@ def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[f
         one.forces += [(mass.x, -weight * mass.mass) for mass in one.segment.all_masses]
     pushed[-1].forces.append((boom.tip, tip))
     for joint in reversed(boom.joints):
-        inner, (first, last) = pushed[joint.inner], middles(joint)
+        inner, (first, last) = pushed[joint.inner], midpoints(joint)
         head = -inner.turn(first) / (last - first)
         tail = -inner.total - head
         inner.forces += [(first, tail), (last, head)]
@@ -98,7 +98,7 @@ def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
                 found += 0.5 * (b - a) * part * bent
     for joint, k in zip(boom.joints, stiffness, strict=True):
         inner, virtual = dict(real[joint.inner].forces), dict(unit[joint.inner].forces)
-        for x in middles(joint):
+        for x in midpoints(joint):
             # The inner segment gives way against what pushes it, by the clearance and by F/k.
             way = np.sign(inner[x]) * 0.5 * joint.play + inner[x] / k
             found += virtual[x] * way
@@ -187,7 +187,7 @@ def test_a_boom_rests_where_a_hand_puts_it(name: str) -> None:
             forces = pushed[reaction.segment].forces
             (expected,) = (force for x, force in forces if isclose(x, reaction.x))
             assert reaction.force == pytest.approx(expected, rel=1e-3)
-    pads = [x for joint in boom.joints for x in middles(joint)]
+    pads = [x for joint in boom.joints for x in midpoints(joint)]
     ground = sum(
         one.force
         for one in rest.reactions

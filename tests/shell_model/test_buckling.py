@@ -174,6 +174,6 @@ def test_halved_meshes_have_the_same_walls() -> None:
     areas = triangle_areas(mesh.points, mesh.triangles)
     own = triangle_areas(finer.points, finer.triangles)
     assert own == pytest.approx(np.repeat(0.25 * areas, 4))
-    middles = finer.points[finer.triangles].mean(axis=1).reshape(-1, 4, 3).mean(axis=1)
-    assert middles == pytest.approx(mesh.points[mesh.triangles].mean(axis=1))
+    midpoints = finer.points[finer.triangles].mean(axis=1).reshape(-1, 4, 3).mean(axis=1)
+    assert midpoints == pytest.approx(mesh.points[mesh.triangles].mean(axis=1))
     assert len(np.unique(finer.points.round(9), axis=0)) == len(finer.points)

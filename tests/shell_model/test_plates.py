@@ -123,13 +123,13 @@ def strains_at_centroids(patch: Patch, solution: Array) -> tuple[Array, Array, A
         assert distance.max() < 1.0e-9
         return np.asarray(solution[dofs[node]] @ OBLIQUE)
 
-    middles = 0.5 * (corners[:, [1, 2, 0]] + corners[:, [2, 0, 1]])
+    midpoints = 0.5 * (corners[:, [1, 2, 0]] + corners[:, [2, 0, 1]])
     at_corners = read(shell.nodes, shell.node_dofs, corners)
-    at_middles = read(shell.nodes, shell.node_dofs, middles)
-    turns = read(shell.rotation_nodes, shell.rotation_dofs, middles)
-    of_middles = slopes[:, [1, 2, 0]] + slopes[:, [2, 0, 1]]
+    at_midpoints = read(shell.nodes, shell.node_dofs, midpoints)
+    turns = read(shell.rotation_nodes, shell.rotation_dofs, midpoints)
+    of_midpoints = slopes[:, [1, 2, 0]] + slopes[:, [2, 0, 1]]
     gradient = np.einsum("tni,tnj->tij", at_corners, slopes) / 3.0
-    gradient += np.einsum("tni,tnj->tij", at_middles, of_middles) * 4.0 / 3.0
+    gradient += np.einsum("tni,tnj->tij", at_midpoints, of_midpoints) * 4.0 / 3.0
     # θ × e3 is (θ_y, -θ_x).
     normals = np.stack([turns[..., 1], -turns[..., 0]], axis=2)
     bending = -2.0 * np.einsum("tni,tnj->tij", normals, slopes)

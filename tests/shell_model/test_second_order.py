@@ -67,8 +67,8 @@ def test_geometric_stiffness_of_a_rigid_rotation() -> None:
     motions[rows[:, 0], 0] = -shell_of.nodes[:, 2]
     motions[rows[:, 2], 1] = 1.0
     x = np.linspace(4.5, 10.5, 60_001)
-    middles = 0.5 * (x[1:] + x[:-1])
-    total = float(pressed.compression(middles).sum() * (x[1] - x[0]))
+    midpoints = 0.5 * (x[1:] + x[:-1])
+    total = float(pressed.compression(midpoints).sum() * (x[1] - x[0]))
     energies = motions.T @ (sparse(geometric) @ motions)
     np.testing.assert_allclose(energies, [[total, 0.0], [0.0, 0.0]], rtol=1e-6, atol=1e-6 * total)
 

@@ -82,7 +82,7 @@ def test_rigid_motions_carry_the_mass_of_the_stiffeners() -> None:
     widths = perimeter, perimeter, 8.0 * 0.06
     parts = [(BOX.area * 10.0, 0.0)]
     parts += [
-        (width * one.length * one.thickness, one.middle - 5.0)
+        (width * one.length * one.thickness, one.midpoint - 5.0)
         for width, one in zip(widths, COLLARS, strict=True)
     ]
     parts += [(opening * one.thickness, one.x - 5.0) for one in PLATES]

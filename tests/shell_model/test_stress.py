@@ -216,8 +216,8 @@ def test_wall_forces_with_unequal_flanges_are_in_equilibrium() -> None:
     """Reference: analytic. As above, about the centroid; the thicker flange has less stress."""
     forces = carried_at(clamped(UNEQUAL, 0.2), 5.01)
     stresses = [forces[p.name].axial / (p.length * p.thickness) for p in UNEQUAL.plates[::2]]
-    middles = [plate.middle[1] for plate in UNEQUAL.plates[::2]]
-    assert stresses[0] / stresses[1] == pytest.approx(middles[0] / middles[1], rel=5e-3)
+    midpoints = [plate.midpoint[1] for plate in UNEQUAL.plates[::2]]
+    assert stresses[0] / stresses[1] == pytest.approx(midpoints[0] / midpoints[1], rel=5e-3)
 
 
 @pytest.mark.slow
