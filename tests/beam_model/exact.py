@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Closed solutions of beams, independent of the library: statics by Macaulay's brackets,
-frequencies by determinants."""
+"""Closed-form solutions of beams, independent of the program.
+
+Statics follows from Macaulay's brackets, frequencies follow from determinants.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -21,7 +23,7 @@ PINNED_PINNED = (np.pi, 2.0 * np.pi, 3.0 * np.pi)
 
 
 def angular_frequencies(segment: Segment, numbers: Sequence[float]) -> Array:
-    """ω in rad/s from βL."""
+    """Return ω in rad/s for values of βL."""
     beta = np.array(numbers) / segment.length
     return beta**2 * np.sqrt(segment.bending_stiffness / segment.mass_per_length)
 
@@ -66,9 +68,10 @@ class OverhangingBeam:
 
 
 def bonded_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str, float]:
-    """Rest of a two-segment boom whose segments are hinged to each other at both stations.
+    """Return the static deflections of a boom of two segments, hinged to each other at both
+    stations.
 
-    The inner segment alone gives the forces between them: the joint is statically determinate.
+    Equilibrium of the inner segment gives the forces at the joint, which is statically determinate.
     """
     outer, inner = boom.segments
     (tail, head), q = boom.joints[0].stations, inner.load * inner.length
@@ -90,7 +93,7 @@ def bonded_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str
 
 
 class Span:
-    """Four solutions of EI w'''' = m ω² w on [a, b], bounded by one each, and their derivatives."""
+    """Four solutions of EI w'''' = m ω² w on [a, b], each at most 1 there, and their derivatives."""
 
     def __init__(self, segment: Segment, a: float, b: float, omega: float) -> None:
         self.a, self.b = a, b
@@ -110,8 +113,9 @@ class Span:
 def bonded_determinant(boom: Boom, omega: float) -> float:
     """Return a determinant, up to a positive factor, of the bonded boom's exact equations at ω.
 
-    Outer spans between supports, stations and end, inner ones between stations and tip;
-    deflections are equal at the stations, each segment's slope and moment pass through.
+    The outer segment has spans between supports, stations and end, the inner segment between
+    stations and tip. Deflections of both are equal at the stations. The slope and moment of each
+    segment are continuous there.
     """
     outer, inner = boom.segments
     x0, x1 = (support.x for support in outer.supports)
@@ -126,9 +130,10 @@ def bonded_determinant(boom: Boom, omega: float) -> float:
     rows: list[Array] = []
 
     def require(*terms: tuple[int, float, int, float]) -> None:
-        """Σ factor · (derivative of a span at x) = 0; terms are (span, x, order, factor).
+        """Add the equation Σ factor · (derivative of a span at x) = 0; terms are (span, x, order,
+        factor).
 
-        Derivatives count in the units of the first term, forces in those of the outer beam.
+        Derivatives are in the units of the first term, forces in the units of the outer beam.
         """
         row = np.zeros(20)
         for span, x, order, factor in terms:
@@ -161,14 +166,16 @@ def bonded_determinant(boom: Boom, omega: float) -> float:
 
 
 def bonded_frequencies(boom: Boom, highest: float) -> Array:
-    """Exact natural frequencies of the play-free boom in Hz up to ``highest``."""
+    """Return the exact natural frequencies of the bonded boom in Hz, up to ``highest``."""
     lowest, largest = 2.0 * np.pi * 0.5, 2.0 * np.pi * highest
     found = roots(partial(bonded_determinant, boom), lowest, largest)
     return np.array(found) / (2.0 * np.pi)
 
 
 def roots(function: Callable[[float], float], low: float, high: float) -> list[float]:
-    """Return the roots of a function between two places, rising, none closer than a 600th of it."""
+    """Return the ascending roots of a function in an interval; it must exceed 600 times their
+    distance.
+    """
     grid = np.linspace(low, high, 600)
     values = np.array([function(place) for place in grid])
     (changes,) = np.nonzero(np.sign(values[:-1]) != np.sign(values[1:]))
@@ -176,6 +183,6 @@ def roots(function: Callable[[float], float], low: float, high: float) -> list[f
 
 
 def frequencies(model: Component) -> Array:
-    """ω of the elastic modes in rad/s."""
+    """Return ω of the elastic modes in rad/s."""
     modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
     return np.sqrt(modes.omega2[model.rigid_modes :])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms that telescope, and an integration of their motion that shares nothing with ours."""
+"""Telescoping booms, and an independent integration of their motion."""
 
 from bisect import bisect
 from collections.abc import Sequence
@@ -94,12 +94,12 @@ class Beam:
 
     @cached_property
     def _whole(self) -> list[Array]:
-        """What elements take up to each node, see :meth:`pressed`."""
+        """The integrals of :meth:`pressed` up to each node."""
         parts = [self._part(e, 1.0, h) for e, h in enumerate(np.diff(self.nodes))]
         return list(accumulate(parts, initial=np.zeros((self.free.size, self.free.size))))
 
     def pressed(self, end: float) -> Array:
-        """(num_free, num_free) ∫ w′ᵀ w′ dx from its start up to an x in m."""
+        """Return ∫ w′ᵀ w′ dx (num_free, num_free) from the start of the beam to x in m."""
         e, xi, h = self._place(end)
         return np.asarray(self._whole[e] + self._part(e, xi, h))
 
@@ -108,13 +108,13 @@ class Beam:
         return np.asarray(own.T @ (POWERS * xi**DEGREE / (DEGREE * h)) @ own)
 
     def _place(self, x: float) -> tuple[int, float, float]:
-        """Return an element, the part of it up to an x in m, and its length in m."""
+        """Return the element at x in m, the relative position in it, and its length in m."""
         e = min(bisect(self.nodes, x) - 1, len(self.cubics) - 1)
         h = self.nodes[e + 1] - self.nodes[e]
         return e, (x - self.nodes[e]) / h, h
 
     def rows(self, x: float) -> Array:
-        """(2, num_free) that read the deflection at x and its slope."""
+        """Return the rows (2, num_free) of the deflection and the slope at x in m."""
         e, xi, h = self._place(x)
         powers = np.array([[1.0, xi, xi**2, xi**3], [0.0, 1.0 / h, 2.0 * xi / h, 3.0 * xi**2 / h]])
         return np.asarray(powers @ self.cubics[e])
@@ -123,9 +123,11 @@ class Beam:
 def runge_kutta(
     boom: Boom, history: SCurve, times: Array, thrust: float = 0.0
 ) -> tuple[Array, float]:
-    """Tip (num_times,) in m and the work of the drive in J, by Hermite elements.
+    """Return the tip deflection (num_times,) in m and the work of the drive in J by Hermite
+    elements.
 
-    A thrust in N presses the inner segment, and the outer one as far as the inner one's tail.
+    A thrust in N compresses the inner segment, and the outer segment up to the tail of the inner
+    one.
     """
     # Those of the library's elements, of LONGEST at most.
     nodes = (0.0, 2.0, 5.0, 7.5, 10.0), (5.0, 7.5, 10.0, 12.5, 15.0)

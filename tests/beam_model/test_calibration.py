@@ -29,7 +29,7 @@ def box(*supports: Support) -> Segment:
 
 
 def probed(segment: Segment) -> ProbeResponses:
-    """Return a beam's own responses, with finer elements."""
+    """Return the responses of the beam with finer elements."""
     found: dict[ProbedMotion, np.ndarray[tuple[int, int], np.dtype[np.float64]]] = {}
     model = finite_element_segment(segment, 0.2, PLACES, "timoshenko", True)
     for motion, component in model.components.items():
@@ -47,7 +47,7 @@ def probed(segment: Segment) -> ProbeResponses:
     "supports", [(), (Support(0.0), Support(1.0)), (Support(0.0, "clamped"),), (Support(0.0),)]
 )
 def test_a_beam_finds_its_own_stiffness(supports: tuple[Support, ...]) -> None:
-    """Reference: analytic, the stiffness of the beam that answers; off by 3 % each."""
+    """Reference: analytic. Initial stiffnesses are off by 3 %; the beam gives the true ones."""
     segment = box(*supports)
     lateral = segment.lateral
     sideways = segment.turned().shear_stiffness
@@ -88,7 +88,7 @@ def test_springs_add_the_compliance_of_the_fine_model() -> None:
 
 
 def test_negative_residual_compliance_is_left_out() -> None:
-    """Reference: analytic, D = g gᵀ − h hᵀ has the positive part g gᵀ for orthogonal g and h."""
+    """Reference: analytic. For orthogonal g and h, D = g gᵀ − h hᵀ has the positive part g gᵀ."""
     coarse = system(12)
     g, h = np.array([1.0, 1.0, 1.0]) * 1e-9, np.array([1.0, -1.0, 0.0]) * 1e-10
     residual = np.outer(g, g) - np.outer(h, h)

@@ -33,10 +33,10 @@ CYLINDER = Cylinder(0, x=5.0, depth=0.45, ground=(3.8, -2.2), stiffness=3.0e7)
 
 
 def by_hand(segment: Segment, cylinder: Cylinder) -> tuple[float, float]:
-    """Force of the cylinder, positive where it is pressed, in N, and deflection of the tip in m.
+    """Return the cylinder force in N, positive in compression, and the tip deflection in m.
 
-    E J w = R x³/6 + q x⁴/24 + Σ P ⟨x − a⟩³/6 − Σ C ⟨x − a⟩²/2 + E J θ x from the hinge on, free of
-    moment and force at the tip, and shorter by F/k along the line.
+    From the hinge on, E J w = R x³/6 + q x⁴/24 + Σ P ⟨x − a⟩³/6 − Σ C ⟨x − a⟩²/2 + E J θ x. Moment
+    and shear force are 0 at the tip. The cylinder shortens by F/k.
     """
     length, stiffness = segment.length, segment.bending_stiffness
     lug, arm, foot = cylinder.x - 3.0, cylinder.depth, HINGE.depth
@@ -72,7 +72,7 @@ def luffed(beam: Beam, cylinder: Cylinder = CYLINDER) -> Boom:
 
 
 def rest(system: GapSystem) -> tuple[float, float]:
-    """Force of the cylinder in N and deflection of the tip in m at rest."""
+    """Return the static cylinder force in N and tip deflection in m."""
     position = equilibrium(system, system.gather_loads().load)
     force, tip = (system.observers[name].row @ position for name in ("cylinder_force", "tip"))
     return float(force), float(tip)
@@ -80,8 +80,9 @@ def rest(system: GapSystem) -> tuple[float, float]:
 
 @pytest.mark.parametrize("stiffness", [3.0e7, 1.0e10], ids=["elastic", "stiff"])
 def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
-    """Reference: by hand as above, exact at nodes of elements; the force is the lever arm's in
-    every model."""
+    """Reference: by hand, as above. Elements are exact at nodes. In every model the force follows
+    from the lever arm.
+    """
     boom = luffed(beam, replace(CYLINDER, stiffness=stiffness))
     (segment,) = boom.segments
     expected = by_hand(segment, boom.cylinders[0])
@@ -102,7 +103,9 @@ def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
 def test_axial_forces_turn_a_boom_about_its_lowered_pin(
     luffed: Callable[[], tuple[Boom, float]],
 ) -> None:
-    """Reference: analytic, moments about the pin; without that of axial forces 4 to 21 % more."""
+    """Reference: analytic, moments about the pin. Without axial forces, the force would be 4 to 21
+    % larger.
+    """
     boom, expected = luffed()
     for models in (
         finite_element_segments(boom, 0.5, "timoshenko", rotary_inertia=True),
@@ -115,7 +118,7 @@ def test_axial_forces_turn_a_boom_about_its_lowered_pin(
 
 
 def test_a_lowered_pin_needs_no_cylinder() -> None:
-    """Reference: analytic. A thrust of 50 kN 0.35 m above the pin of a beam on two supports."""
+    """Reference: analytic, a thrust of 50 kN at 0.35 m above the pin of a beam on two supports."""
     boom, _ = level()
     (segment,) = boom.segments
     equilibrium_at = Support(5.0, stiffness=1.0e9)
@@ -129,8 +132,9 @@ def test_a_lowered_pin_needs_no_cylinder() -> None:
 
 @pytest.mark.parametrize("bonded", [False, True], ids=["one", "of two bonded"])
 def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, bonded: bool) -> None:
-    """Reference: analytic, r √(k / I) about the hinge; stiff beams follow within 2e-4, rigid ones
-    to round-off."""
+    """Reference: analytic, r √(k / I) about the hinge. Stiff beams agree within 2e-4, rigid ones to
+    round-off.
+    """
     stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
     whole = beam(supports=(HINGE,), material=stiff)
     parts = (replace(whole, end=6.0), replace(whole, start=6.0, supports=(), name="fly"))
@@ -158,8 +162,10 @@ def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, bonded: bool) -> 
 
 
 def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
-    """Reference: analytic, Bredt's shaft and Bernoulli's beam from a hinge that holds twist and
-    slope sideways: of what they read, q = b (s_z φ − s_x v′), springs k give −k q both ways."""
+    """Reference: analytic, Bredt's shaft and Bernoulli's beam from a hinge that fixes twist and
+    lateral slope. The cylinders have the elongations ±q, q = b (s_z φ − s_x v′), and the forces
+    ∓k q.
+    """
     base = in_space(beam(supports=(Support(3.0, "hinged"),)))
     inner = in_space(beam(name="fly", start=7.0, end=9.0, section=SMALL))
     joint = Joint(0, 1, (7.2, 7.8), play=0.0, lateral_play=0.0, bonded=True)
@@ -194,7 +200,7 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
 
 
 def test_a_boom_rests_on_a_hinge_and_a_stop(beam: Beam) -> None:
-    """Reference: analytic, the lever rule; nothing else holds it, and the weight presses."""
+    """Reference: analytic, the lever rule. The weight presses the boom on the stop."""
     segment = beam(supports=(Support(3.0),), load=UNIFORM)
     stop = Stop(0, 6.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1e7))
     boom = Boom((segment,), (), stops=(stop,))

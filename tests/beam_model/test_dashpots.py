@@ -31,7 +31,9 @@ BOTH_WAYS = PowerContact(SPRING, exponent=1.0).with_clearance(0.0)
 
 
 def decrements(system: GapSystem, position: Array, duration: float, name: str) -> Array:
-    """Logarithms of the ratios of successive maxima of an observer, which swings about zero."""
+    """Return the logarithmic decrements between successive maxima of an output that vibrates about
+    0.
+    """
     run = AdaptiveStep()(Motion(system, duration, 1e-4, position))
     swing = run.data[name].values
     inside = swing[1:-1]
@@ -63,8 +65,9 @@ def test_a_rigid_segment_on_two_stations_loses_its_swing(beam: Callable[..., Seg
 def test_a_rigid_segment_on_its_hinge_loses_its_swing(
     beam: Callable[..., Segment], held: str
 ) -> None:
-    """Reference: analytic. About its hinge, with an arm r: ζ = c r / 2√(k I), δ = 2πζ/√(1 − ζ²).
-    The line of the cylinder, from (1.4, −2) to (6, −0.5) m, passes the hinge at (3, −0.25) m."""
+    """Reference: analytic, ζ = c r / 2√(k I) and δ = 2πζ/√(1 − ζ²) with the lever arm r about the
+    hinge at (3, −0.25) m. The cylinder is between (1.4, −2) and (6, −0.5) m.
+    """
     supports, cylinders = [Support(3.0, depth=0.25 if held == "cylinder" else 0.0)], []
     if held == "support":
         arm, damping = 2.5, 4.0e3
@@ -95,8 +98,9 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
 def test_a_nearly_rigid_bar_on_a_dashpot_loses_its_swing(
     beam: Callable[..., Segment],
 ) -> None:
-    """Reference: analytic, the rigid bar: ζ = c r / 2√(k I). Its bending is much faster, and the
-    default step must not turn that into damping."""
+    """Reference: analytic, the rigid bar: ζ = c r / 2√(k I). Bending has much higher frequencies;
+    the default step must not cause damping by them.
+    """
     arm, damping, spring = 10.0, 1.0e3, 2.0e5
     stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
     supports = (Support(0.0), Support(arm, stiffness=spring, dashpot=damping))
@@ -133,7 +137,7 @@ def test_a_dashpot_reads_the_axis(
 
 
 def test_dashpots_keep_the_ledger(paper_boom: Boom, elements: Models) -> None:
-    """Reference: analytic, conservation of energy, while the play is crossed again and again."""
+    """Reference: analytic, conservation of energy while the boom crosses its play many times."""
     (joint,) = paper_boom.joints
     boom = replace(paper_boom, joints=(replace(joint, dashpot=2.0e4),))
     law = PowerContact(1.0e9, exponent=1.0).with_clearance(0.5 * joint.play)
@@ -145,7 +149,7 @@ def test_dashpots_keep_the_ledger(paper_boom: Boom, elements: Models) -> None:
 
 
 def test_a_dashpot_takes_no_part_in_a_bonded_boom(paper_boom: Boom, elements: Models) -> None:
-    """Reference: the same boom without, equal bits; a joint that is bonded by itself has none."""
+    """Reference: the same boom without dashpots, to the last bit."""
     (joint,) = paper_boom.joints
     dragged = replace(paper_boom, joints=(replace(joint, dashpot=DASHPOT),))
     models = elements(1.0)

@@ -40,7 +40,7 @@ def shear_stiffness(segment: Segment, theory: Theory) -> float:
 
 
 def test_mass_beside_a_node_costs_no_digits(beam: Beam) -> None:
-    """Reference: other mesh, without the node 1 mm from the mass; rigid modes are zero."""
+    """Reference: other mesh, without the node at 1 mm from the mass. Rigid modes have ω = 0."""
     segment = beam(masses=(PointMass(5.001, 20.0),))
     alone, beside = (bending(segment, 0.3, x, "euler-bernoulli", False) for x in ((), (5.0,)))
     np.testing.assert_allclose(frequencies(beside)[:4], frequencies(alone)[:4], rtol=1e-5)
@@ -56,7 +56,7 @@ def test_mass_beside_a_node_costs_no_digits(beam: Beam) -> None:
 def test_frequencies_converge_at_order_four(
     beam: Beam, supports: tuple[float, ...], numbers: tuple[float, ...]
 ) -> None:
-    """Reference: analytic βL; slope and error."""
+    """Reference: analytic βL. Order of convergence and error."""
     segment = beam(supports=supports)
     expected = angular_frequencies(segment, numbers)
     errors = []
@@ -72,8 +72,9 @@ def test_frequencies_converge_at_order_four(
 
 @pytest.mark.parametrize("rotary_inertia", [False, True])
 def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inertia: bool) -> None:
-    """Reference: analytic. w = W sin kx, θ = Θ cos kx in Timoshenko's equations. GA k² W − GA k Θ =
-    m̄ ω² W and (E J k² + GA) Θ − GA k W = I_p ω² Θ."""
+    """Reference: analytic. With w = W sin kx and θ = Θ cos kx, Timoshenko's equations are
+    GA k² W − GA k Θ = m̄ ω² W and (E J k² + GA) Θ − GA k W = I_p ω² Θ.
+    """
     segment = beam(supports=(3.0, 8.0))
     shear = shear_stiffness(segment, "timoshenko")
     expected = []
@@ -99,7 +100,7 @@ def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inerti
 def test_statics_are_exact_at_the_nodes_of_any_mesh(
     beam: Beam, theory: Theory, length: float
 ) -> None:
-    """Reference: analytic. An overhanging beam under its load and forces at breaks and tip."""
+    """Reference: analytic, an overhanging beam under its load, and forces at breaks and tip."""
     segment = beam(supports=(3.0, 4.2), load=-4000.0)
     forces = [(6.1, 3.0e4), (8.0, -1.0e4)]
     exact = OverhangingBeam(segment, forces, segment.load, shear_stiffness(segment, theory))
@@ -117,7 +118,7 @@ def test_statics_are_exact_at_the_nodes_of_any_mesh(
 def test_places_too_near_for_an_element_share_a_node(
     beam: Beam, theory: Theory, apart: float
 ) -> None:
-    """Reference: analytic, an overhanging beam under a force at the second of two near places."""
+    """Reference: analytic, an overhanging beam under a force at the second of two close positions."""
     segment = beam(supports=(3.0, 4.2), masses=(PointMass(8.0 - apart, 1.0),))
     exact = OverhangingBeam(segment, [(6.1 + apart, 3.0e4)], 0.0, shear_stiffness(segment, theory))
     model = bending(segment, 0.5, (6.1, 6.1 + apart), theory, False)
@@ -154,7 +155,9 @@ def test_deflection_is_read_between_nodes(beam: Beam, theory: Theory) -> None:
 @pytest.mark.parametrize("theory", THEORIES)
 @pytest.mark.parametrize("rotary_inertia", [False, True])
 def test_rigid_motions(beam: Beam, theory: Theory, rotary_inertia: bool) -> None:
-    """Reference: analytic. No strain; m̄ L, and m̄ L³/12 + I_p L about the middle."""
+    """Reference: analytic. Rigid motions have no strain, the mass m̄ L and the inertia
+    m̄ L³/12 + I_p L about the midpoint.
+    """
     segment = beam(load=7.0, viscous_damping=3.0)
     model = bending(segment, 0.9, (), theory, rotary_inertia)
     nodes = np.linspace(3.0, 8.0, len(model.load) // 2)

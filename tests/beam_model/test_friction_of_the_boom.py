@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The paper's boom with the dry friction of (28): no longer chaotic, and repeatable."""
+"""The paper's boom with the dry friction of (28), whose motion is regular."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -24,7 +24,7 @@ STEP = 4.0e-6
 def five_terms(
     paper_boom: Boom, series: Callable[..., list[SegmentModel]], paper_law: PowerContact
 ) -> GapSystem:
-    """Five terms that rub at the tail with 4500 N and at the head with 5000 N, μ = 0.2."""
+    """Return the five-term series with normal forces of 4500 N at the tail and 5000 N at the head."""
     system = gap_system(touching(paper_boom, paper_law), series((2, 3)))
     return replace(
         system,
@@ -34,7 +34,9 @@ def five_terms(
 
 
 def test_a_small_change_stays_small(five_terms: GapSystem) -> None:
-    """Reference: the boom itself under a load changed by 1e-9: so is the motion for 10 s."""
+    """Reference: the same boom. A relative change of the load of 1e-9 changes its motion for 10 s
+    as little.
+    """
     changed = replace(five_terms, load=five_terms.load * (1.0 + 1e-9))
     one, other = (FixedStep(STEP)(Motion(system, 10.0)) for system in (five_terms, changed))
     tip = one.data["tip"].values
@@ -50,7 +52,7 @@ def test_a_small_change_stays_small(five_terms: GapSystem) -> None:
 
 
 def test_friction_takes_energy_and_the_ledger_closes(five_terms: GapSystem) -> None:
-    """Reference: analytic. The loss is force times way: never less, and all but what is held."""
+    """Reference: analytic. The loss is force times sliding distance, and never decreases."""
     run = FixedStep(STEP)(Motion(five_terms, 3.0))
     loss = run.data["friction_loss"].values
     # Where it sticks, round-off is left.
@@ -75,8 +77,9 @@ def test_the_ledger_closes_beside_damping_for_long(five_terms: GapSystem) -> Non
 
 
 def test_a_smaller_step_changes_little(five_terms: GapSystem) -> None:
-    """Reference: a finer step, 1e-6 s. The order is one where joints begin to stick: a sixteenth, a
-    tenth."""
+    """Reference: a finer step, 1e-6 s. The order is 1 if joints stick: a sixteenth of the step has
+    a tenth of the error.
+    """
     tips = [
         FixedStep(step)(Motion(five_terms, 2.0)).data["tip"].values
         for step in (2.56e-4, 1.6e-5, 1e-6)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a further segment adds, section 5.3 of the paper."""
+"""Size of the system for an additional segment, section 5.3 of the paper."""
 
 from dataclasses import replace
 from itertools import pairwise
@@ -15,7 +15,7 @@ from tests.touching import touching
 
 
 def chain(boom: Boom, count: int) -> Boom:
-    """Return the paper's boom with a number of segments added, each a metre inside the last."""
+    """Return the paper's boom with additional segments, each a metre inside the previous one."""
     outer, inner = boom.segments
     (joint,) = boom.joints
     segments = [
@@ -31,8 +31,9 @@ def chain(boom: Boom, count: int) -> Boom:
 
 @pytest.mark.parametrize("kind", ["series", "elements"])
 def test_the_size_grows_with_the_number_of_segments(paper_boom: Boom, kind: str) -> None:
-    """Reference: the paper's 5.3. Each segment adds as many equations and two forces, nothing
-    square."""
+    """Reference: external source, section 5.3. Each segment adds the same number of equations, and
+    two forces.
+    """
     law = PowerContact(1.0e9, 1.0).with_clearance(7.0e-3)
 
     def model(boom: Boom, number: int, segment: Segment) -> SegmentModel:

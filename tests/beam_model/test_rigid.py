@@ -26,7 +26,7 @@ def rigid(boom: Boom, laws: list[PowerContact]) -> GapSystem:
 
 @pytest.fixture
 def inside(paper_boom: Boom) -> Boom:
-    """Return an inner segment within a clamped outer one, its middle between the stations."""
+    """Return an inner segment in a clamped outer one, with its midpoint between the stations."""
     outer, inner = paper_boom.segments
     return Boom(
         (
@@ -38,7 +38,7 @@ def inside(paper_boom: Boom) -> Boom:
 
 
 def test_a_segment_falls_on_its_contacts_and_bounces(inside: Boom) -> None:
-    """Reference: analytic, free fall across the clearance and half a swing on two springs."""
+    """Reference: analytic, free fall through the clearance, then half a period on two springs."""
     system = rigid(inside, [LAW])
     assert system.num_modes == 2
     inner = inside.segments[1]
@@ -59,7 +59,7 @@ def test_a_segment_falls_on_its_contacts_and_bounces(inside: Boom) -> None:
 
 
 def test_the_boom_rests_as_a_lever(paper_boom: Boom) -> None:
-    """Reference: analytic, moments about either station of the inner segment's weight."""
+    """Reference: analytic, moments of the inner segment's weight about both stations."""
     outer, inner = paper_boom.segments
     held = replace(outer, supports=(Support(0.0), Support(2.0)))
     system = rigid(replace(paper_boom, segments=(held, inner)), [LAW])

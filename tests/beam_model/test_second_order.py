@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams under axial forces: unstable segments, both planes, bonded booms and booms at rest."""
+"""Beams under axial forces: unstable segments, both planes, bonded booms, static states."""
 
 from collections.abc import Callable, Sequence
 
@@ -56,8 +56,9 @@ def telescope(thrust: float, bonded: bool = False, **changes: object) -> Boom:
 
 
 def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
-    """Reference: analytic, P L θ²/2 of a free beam turned by θ against m̄ L³ θ̇²/24; shear and
-    bending add 1e-3."""
+    """Reference: analytic. A free beam that rotates by θ has the energies −P L θ²/2 and
+    m̄ L³ θ̇²/24. Shear and bending change the result by 1e-3.
+    """
     thrust, boom = 5.0e3, telescope(5.0e3)
     fly = boom.segments[1]
     system = gap_system(touching(boom, PowerContact(1e9, 1.0).with_clearance(5e-3)), build(boom))
@@ -68,8 +69,9 @@ def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
 
 
 def test_soft_walls_at_pads_lower_the_buckling_load(build: Build) -> None:
-    """Reference: analytic, P = a²/(2 c L) of a rigid fly of length L on two springs of compliance
-    c; bending takes 0.3 %."""
+    """Reference: analytic, P = a²/(2 c L) for a rigid fly of length L on two springs of compliance
+    c. Bending reduces it by 0.3 %.
+    """
     thrust, compliance = 5.0e3, 1.0e-4
     boom = telescope(thrust)
     models = build(boom)
@@ -80,7 +82,7 @@ def test_soft_walls_at_pads_lower_the_buckling_load(build: Build) -> None:
 
 
 def test_a_rigid_segment_tips_over_too() -> None:
-    """Reference: analytic, 12 P/(m̄ L²), the rotary inertia in the mass."""
+    """Reference: analytic, 12 P/(m̄ L²), with rotary inertia included in the mass."""
     boom = telescope(5.0e3)
     fly = boom.segments[1]
     system = gap_system(
@@ -94,7 +96,7 @@ def test_a_rigid_segment_tips_over_too() -> None:
 def test_both_planes_buckle_each_by_its_own_stiffness(
     build: Build, request: pytest.FixtureRequest
 ) -> None:
-    """Reference: analytic. Euler's π² E J/4L² of either plane, shear by Engesser."""
+    """Reference: analytic, Euler's π² E J/4L² in each plane, with shear by Engesser."""
     boom = alone(column(supports=CLAMP), 1.0e5)
     (segment,), (model,) = boom.segments, build(boom)
     assert segment.lateral is not None
@@ -109,8 +111,9 @@ def test_both_planes_buckle_each_by_its_own_stiffness(
 
 
 def test_buckling_factor_depends_on_the_locked_segment(build: Build) -> None:
-    """Reference: analytic, by order: the stiffer arm carries the force through the overlap, or the
-    fly."""
+    """Reference: analytic, by inequality. In the overlap, the stiffer arm or the fly carries the
+    force.
+    """
     factors = [
         critical_factor(boom, build(boom))
         for boom in (telescope(1e4, locked_at=at) for at in (6.0, 8.0, 0.0))
@@ -121,8 +124,7 @@ def test_buckling_factor_depends_on_the_locked_segment(build: Build) -> None:
 
 
 def test_the_static_tip_grows_as_the_buckling_factor_says(build: Build) -> None:
-    """Reference: analytic, δ ≈ δ₀/(1 − 1/λ) near the buckling mode to 2 % (Timoshenko and Gere
-    1961)."""
+    """Reference: analytic, δ ≈ δ₀/(1 − 1/λ) within 2 % (Timoshenko and Gere 1961)."""
     straight = gap_system(telescope(0.0).bonded, build(telescope(0.0)))
     factor = critical_factor(telescope(1e4), build(telescope(1e4)))
     boom = telescope(0.25 * factor * 1e4)
@@ -132,8 +134,9 @@ def test_the_static_tip_grows_as_the_buckling_factor_says(build: Build) -> None:
 
 
 def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
-    """Reference: analytic. A rigid fly leans on both stations: the bonded boom's tip and the tilt
-    by 2Δ over 2 m."""
+    """Reference: analytic. A rigid fly touches both stations. The tip is that of the bonded boom
+    plus the tilt by 2Δ over 2 m.
+    """
     boom = telescope(2.0e4)
     system = gap_system(touching(boom, PowerContact(1e12, 1.0).with_clearance(5e-3)), build(boom))
     bonded = gap_system(boom.bonded, build(boom))
@@ -145,8 +148,9 @@ def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
 
 
 def test_weights_of_point_masses_press(build: Build) -> None:
-    """Reference: analytic, Euler's and Greenhill's cantilevers, added by Dunkerley (Timoshenko and
-    Gere 1961)."""
+    """Reference: analytic, Euler's and Greenhill's cantilevers combined by Dunkerley's formula
+    (Timoshenko and Gere 1961).
+    """
     boom = alone(column(supports=CLAMP, masses=(PointMass(10.0, 5.0e4),)), 0.0, gravity=9.80665)
     (segment,) = boom.segments
     factor = critical_factor(boom, build(boom))
@@ -156,7 +160,7 @@ def test_weights_of_point_masses_press(build: Build) -> None:
 
 
 def test_no_force_leaves_every_number_as_it_was(build: Build) -> None:
-    """Reference: non-regression, to the last bit: a force of 0 N is none."""
+    """Reference: non-regression. A force of 0 N changes no bit."""
     plain = telescope(0.0)
     assert not plain.compressed
     systems = [

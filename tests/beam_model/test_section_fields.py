@@ -16,7 +16,7 @@ MODES = 60
 
 
 def system(num_modes: int = MODES) -> GapSystem:
-    """Return a free chain's motions: one rigid, the others of rising frequency, in two places."""
+    """Return a system with one rigid mode, elastic modes of ascending frequency, and two rows."""
     random = np.random.default_rng(3)
     rows = random.normal(size=(4, MODES))[:, :num_modes]
     omega = np.concatenate([[0.0], 20.0 * np.arange(1, MODES) ** 1.5])[:num_modes]
@@ -45,8 +45,9 @@ def test_a_condensed_system_answers_slow_forces_alike() -> None:
 
 
 def test_excited_modes_are_kept_before_slower_unexcited_modes() -> None:
-    """Reference: analytic, by order b²/ω⁴ of pushes of one size; of 24 modes the slowest eighth is
-    kept."""
+    """Reference: analytic. Modes are in the order of b²/ω⁴ for loads of equal size; the slowest
+    eighth of 24 modes is always kept.
+    """
     whole = system()
     signs = np.sign(np.vstack([whole.rows, whole.friction_rows, whole.load]))
     signs[:, 1::2] = 0.0
@@ -56,7 +57,7 @@ def test_excited_modes_are_kept_before_slower_unexcited_modes() -> None:
 
 
 def test_rigid_motions_stay_where_pushes_leave_no_room() -> None:
-    """Reference: analytic, the compliance of the whole system, whose rigid motion comes last."""
+    """Reference: analytic, the compliance of the whole system; its rigid mode is the last one."""
     rows = np.random.default_rng(4).normal(size=(24, MODES))
     whole = replace(
         system(),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments side by side and bonded: rows, observers, and the play-free boom's exact numbers."""
+"""Separate and bonded segments: rows, observers, and exact numbers of the bonded boom."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -30,7 +30,7 @@ def rest(system: GapSystem) -> dict[str, float]:
 
 
 def test_bonded_boom_has_the_published_frequencies(paper_boom: Boom, elements: Models) -> None:
-    """Reference: other code, Euler-Bernoulli elements, to its digits."""
+    """Reference: other code, Euler-Bernoulli elements, to the digits of its results."""
     system = gap_system(paper_boom.bonded, elements(0.5))
     assert system.frequencies[:4] == pytest.approx([2.0852, 10.463, 30.337, 57.49], rel=5e-5)
     assert not system.laws
@@ -38,8 +38,9 @@ def test_bonded_boom_has_the_published_frequencies(paper_boom: Boom, elements: M
 
 
 def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models) -> None:
-    """Reference: analytic, the determinant of the joined spans; order four in the element
-    length."""
+    """Reference: analytic, the determinant of the coupled spans. The error has order 4 in the
+    element length.
+    """
     exact = bonded_frequencies(paper_boom, 110.0)
     assert exact.size == 5
     errors = [
@@ -83,7 +84,8 @@ def test_bonded_series_converges_to_the_bonded_elements(
     paper_boom: Boom, series: Models, elements: Models
 ) -> None:
     """Reference: other code, Hermite elements. Measured with twelve terms a segment: frequencies
-    within 6e-4, deflections within 5e-4."""
+    within 6e-4, deflections within 5e-4.
+    """
     beams = gap_system(paper_boom.bonded, elements(0.25))
     found = gap_system(paper_boom.bonded, series((12, 12), "complete"))
     np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
@@ -93,8 +95,9 @@ def test_bonded_series_converges_to_the_bonded_elements(
 def test_apart_the_segments_move_as_if_alone(
     paper_boom: Boom, elements: Models, paper_law: PowerContact
 ) -> None:
-    """Reference: analytic. The inner one falls freely, at q/m̄ = 1 m/s²; the outer one swings
-    about its rest under q."""
+    """Reference: analytic. The inner segment falls freely with q/m̄ = 1 m/s². The outer segment
+    vibrates about its static deflection under q.
+    """
     system = gap_system(touching(paper_boom, paper_law), elements(0.5))
     assert (np.sort(system.omega2)[:2] == 0.0).all()
     assert np.sort(system.omega2)[2] > 1.0
@@ -113,7 +116,7 @@ def test_apart_the_segments_move_as_if_alone(
 def test_rows_read_the_inner_less_the_outer(
     paper_boom: Boom, elements: Models, paper_law: PowerContact
 ) -> None:
-    """Reference: analytic. The inner segment raised as a body, the outer one bent by a force."""
+    """Reference: analytic, rigid translation of the inner segment and bending of the outer one."""
     system = gap_system(touching(paper_boom, paper_law), elements(0.5))
     assert system.rows.shape == (2, system.num_modes)
     assert list(system.stations) == [9.0, 10.0]
@@ -160,8 +163,7 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
 
 
 def in_leaves(boom: Boom) -> Boom:
-    """Return the boom with its inner segment split lengthwise into two halves, bonded at the
-    stations."""
+    """Return the boom with two half inner segments side by side, bonded at the stations."""
     outer, inner = boom.segments
     (joint,) = boom.joints
     half = replace(
@@ -187,8 +189,9 @@ def leaves(paper_boom: Boom) -> tuple[Boom, list[SegmentModel]]:
 def test_bonded_halves_have_the_frequencies_of_the_whole(
     paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
 ) -> None:
-    """Reference: analytic. What both do alike is the whole segment; what they do against each
-    other is zero at the ties."""
+    """Reference: analytic. Equal motions of both halves are motions of the whole segment. Opposite
+    motions are zero at the bonds.
+    """
     law = PowerContact(1e13, 2.0).with_clearance(7e-3)
     whole = gap_system(touching(paper_boom, law), elements(1.0))
     halves = gap_system(touching(leaves[0], law), leaves[1])
@@ -208,7 +211,7 @@ def test_bonded_halves_have_the_frequencies_of_the_whole(
 def test_bonded_halves_move_as_the_whole(
     paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
 ) -> None:
-    """Reference: analytic, until the rounding of the first presses has grown."""
+    """Reference: analytic, until round-off has grown in the first contacts."""
     law = PowerContact(1e9, 1.0).with_clearance(7e-3)
     step = 2.0e-5
     whole = FixedStep(step)(Motion(gap_system(touching(paper_boom, law), elements(1.0)), 0.2))

@@ -63,8 +63,9 @@ def rolled(boom: Boom) -> Boom:
 def test_twisting_frequencies(
     beam: Beam, supports: tuple[Support, ...], numbers: tuple[float, ...], rigid: int
 ) -> None:
-    """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, …; order two from above,
-    (κπh/L)²/24."""
+    """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, …. The error is (κπh/L)²/24, from
+    above.
+    """
     segment = in_space(beam(supports=supports))
     lateral = segment.lateral
     speed = np.sqrt(
@@ -96,7 +97,7 @@ def test_a_torque_twists_in_proportion_to_its_arm(beam: Beam) -> None:
 
 @pytest.mark.parametrize("kind", ["series", "euler-bernoulli", "timoshenko"])
 def test_lateral_bending_equals_bending_of_the_turned_box(beam: Beam, kind: str) -> None:
-    """Reference: the flat model of a segment whose box is turned by hand."""
+    """Reference: the flat model of a segment with a turned box."""
     box = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
     side = BoxSection(height=0.40, width=0.60, flange=0.01, web=0.04)
     held = (Support(3.0, "clamped"), Support(6.0))
@@ -144,8 +145,9 @@ def test_places_and_names(spatial_boom: Boom) -> None:
 
 
 def test_pads_press_as_one_without_roll(spatial_boom: Boom) -> None:
-    """Reference: analytic. Raised as a body, and pushed aside as one, the inner segment feels
-    the laws themselves at each station."""
+    """Reference: analytic. Under rigid translations of the inner segment along z and y, each
+    station has the force of its contact law.
+    """
     system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
     up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
     for height, shift in ((8.0e-3, 0.0), (-9.0e-3, 5.5e-3), (7.5e-3, -6.0e-3)):
@@ -157,7 +159,7 @@ def test_pads_press_as_one_without_roll(spatial_boom: Boom) -> None:
 
 
 def rigid_motion(system: GapSystem, suffix: str) -> Array:
-    """(num_modes,) the inner segment moved by 1 m without tilting."""
+    """Return the translation (num_modes,) of the inner segment by 1 m."""
     rigid = system.omega2 == 0.0
     rows = np.array(
         [
@@ -174,8 +176,9 @@ def rigid_motion(system: GapSystem, suffix: str) -> Array:
 
 
 def test_pads_resist_roll(spatial_boom: Boom) -> None:
-    """Reference: analytic. Pressed up all over, a segment that rolls by θ stores k b² θ²/8 at each
-    station: half the law at each of ± b/2. Beside it, pressed in y, k h² θ²/8."""
+    """Reference: analytic. A segment in contact along z that rolls by θ stores k b² θ²/8 at each
+    station, with half the law at ± b/2. In contact along y it stores k h² θ²/8.
+    """
     system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
     inner = spatial_boom.segments[1]
     roll = np.zeros(system.num_modes)
@@ -203,7 +206,7 @@ def test_pads_resist_roll(spatial_boom: Boom) -> None:
 
 
 def same(one: Trajectory, other: Trajectory, names: dict[str, str], tolerance: float) -> None:
-    """Observers of two runs agree within a part of their range."""
+    """Check that outputs of two runs agree within a fraction of their range."""
     for name, alike in names.items():
         expected = one.data[name].values
         error = np.abs(other.data[alike].values - expected).max()
@@ -214,8 +217,9 @@ def same(one: Trajectory, other: Trajectory, names: dict[str, str], tolerance: f
 def test_the_vertical_plane_is_the_flat_boom(
     spatial_boom: Boom, kind: str, duration: float
 ) -> None:
-    """Reference: the flat model, to round-off, which each contact amplifies: 8e-15 after 0.15 s,
-    3e-8 after 0.5 s."""
+    """Reference: the flat model, to round-off. Contacts amplify it from 8e-15 after 0.15 s to 3e-8
+    after 0.5 s.
+    """
     (joint,) = spatial_boom.joints
     flat = replace(spatial_boom, joints=(replace(joint, lateral_play=None),))
     runs = []
@@ -235,8 +239,9 @@ def test_the_vertical_plane_is_the_flat_boom(
 
 
 def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> None:
-    """Reference: analytic, the exchange of y and z. Contacts amplify round-off to 1e-13 until 0.16
-    s; later steps with 16 frictions may have several solutions."""
+    """Reference: analytic, the exchange of y and z. Contacts amplify round-off to 1e-13 until
+    0.16 s. Later steps with 16 friction rows may have several solutions.
+    """
     (joint,) = spatial_boom.joints
     boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.2),)), 40.0, 30.0)
     upright = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
@@ -252,7 +257,9 @@ def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> Non
 
 
 def test_friction_acts_across_the_contact_normal(spatial_boom: Boom) -> None:
-    """Reference: analytic, (10) and (11): pressed along z a pad rubs along y, and back."""
+    """Reference: analytic, (10) and (11). A pad with contact along z has friction along y, and
+    conversely.
+    """
     (joint,) = spatial_boom.joints
     boom = replace(spatial_boom, joints=(replace(joint, friction=0.3),))
     system = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
@@ -271,7 +278,7 @@ def test_friction_acts_across_the_contact_normal(spatial_boom: Boom) -> None:
 
 
 def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
-    """Reference: external source, (28): N at each station, sliding with u − w."""
+    """Reference: external source, (28), with N at each station and the sliding displacement u − w."""
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
@@ -299,8 +306,9 @@ def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
 
 
 def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
-    """Reference: analytic. What friction takes never falls; sideways motion that nothing but
-    friction couples to the plane stays within what its load puts in."""
+    """Reference: analytic. The friction loss never decreases. Friction alone couples lateral motion
+    to the plane, so that its energy is at most the work of the lateral load.
+    """
     (joint,) = spatial_boom.joints
     boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.3),)), 60.0, 40.0)
     run = AdaptiveStep()(Motion(gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom)), 1.0))
@@ -312,7 +320,7 @@ def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
 
 
 def test_bonded_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
-    """Reference: analytic, the flat boom's frequencies, those on its side, and twisting ones."""
+    """Reference: analytic, the frequencies of the flat boom, of the boom on its side, and of twist."""
     boom = pushed(spatial_boom, 5.0, 6.0)
     system = gap_system(boom.bonded, beams(boom))
     assert (system.omega2 > 1.0).all()

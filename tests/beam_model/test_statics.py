@@ -27,8 +27,9 @@ LAW = PowerContact(1.0e9, 1.0).with_clearance(7.0e-3)
 
 
 def test_reactions_of_supports_and_stations_follow_the_lever_rule(paper_boom: Boom) -> None:
-    """Reference: by hand. 550.7 N upwards at 14 m on 9 and 10 m, all with 831.6 N at 5 m on 0 and 2
-    m."""
+    """Reference: by hand. The inner segment has 550.7 N upwards at 14 m on stations at 9 and 10 m;
+    the boom also has 831.6 N at 5 m, on supports at 0 and 2 m.
+    """
     head = 550.7 * (14.0 - 9.0) / (10.0 - 9.0)
     tail = 550.7 - head
     far = -(831.6 * 5.0 + tail * 9.0 + head * 10.0) / 2.0
@@ -52,7 +53,7 @@ def test_reactions_of_supports_and_stations_follow_the_lever_rule(paper_boom: Bo
 
 
 def test_transferred_loads_are_counted_once(paper_boom: Boom) -> None:
-    """Reference: by hand, as above with the support at the inner segment's tail, 9 m."""
+    """Reference: by hand, as above, with the support at the tail of the inner segment, 9 m."""
     outer, inner = paper_boom.segments
     moved = replace(outer, supports=(Support(0.0), Support(9.0)))
     boom = replace(paper_boom, segments=(moved, inner))
@@ -70,7 +71,7 @@ def test_transferred_loads_are_counted_once(paper_boom: Boom) -> None:
 
 
 def test_the_tip_turns_by_the_play(paper_boom: Boom) -> None:
-    """Reference: by hand. The play of 7 mm each way at 1 m lifts the tip by 7 + 14 · 9 mm."""
+    """Reference: by hand. Plays of 7 mm on both sides, 1 m apart, lift the tip by 7 + 14 · 9 mm."""
     stiff = replace(paper_boom.segments[0].material, youngs_modulus=2.1e14)
     segments = tuple(replace(segment, material=stiff) for segment in paper_boom.segments)
     hard = PowerContact(1.0e12, 1.0).with_clearance(7.0e-3)
@@ -93,7 +94,7 @@ def test_a_clamp_bears_force_and_moment(beam: Callable[..., Segment]) -> None:
 
 
 def test_three_supports_bear_by_their_stiffness(beam: Callable[..., Segment]) -> None:
-    """Reference: analytic, the middle of two equal spans bears 5/4 q L of a slender beam."""
+    """Reference: analytic. The middle support of two equal slender spans carries 5/4 q L."""
     segment = replace(beam(supports=[3.0, 5.5, 8.0], load=-100.0), section=None)
     forces = [reaction.force for reaction in static_state(Boom((segment,), ())).reactions]
     span = 2.5 * 100.0
@@ -101,7 +102,7 @@ def test_three_supports_bear_by_their_stiffness(beam: Callable[..., Segment]) ->
 
 
 def test_cylinder_carries_the_moment_about_the_hinge(beam: Callable[..., Segment]) -> None:
-    """Reference: by hand. 500 N at 2.5 m from the hinge on an upright cylinder 2 m from it."""
+    """Reference: by hand, 500 N at 2.5 m from the hinge, and an upright cylinder at 2 m."""
     segment = beam(supports=[3.0], load=-100.0)
     jack = Cylinder(0, 5.0, depth=0.3, ground=(5.0, -2.0), stiffness=1.0e7)
     hinge, lug = static_state(Boom((segment,), (), cylinders=(jack,))).reactions
@@ -119,8 +120,9 @@ MODELS: dict[str, Callable[[Boom], list[SegmentModel]]] = {
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind: str) -> None:
-    """Reference: by hand, −100 N/m and −2000 N at the tip: M = 2000 s + 50 s², V = −2000 − 100 s, s
-    = 8 − x."""
+    """Reference: by hand. Under −100 N/m and −2000 N at the tip, M = 2000 s + 50 s² and
+    V = −2000 − 100 s, s = 8 − x.
+    """
     segment = beam(supports=[Support(3.0, "clamped")], load=-100.0)
     boom = Boom((segment,), (), (Load(0, "z", -2000.0, 8.0, Step()),))
     models = MODELS[kind](boom)
@@ -139,9 +141,10 @@ def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind:
 def test_section_forces_of_a_column_refer_to_the_straight_axis(
     beam: Callable[..., Segment], kind: str
 ) -> None:
-    """Reference: by hand. −500 N/m and −44,049 N on a column of 5 m under half of Euler's force, P
-    w adds to M. Mean slopes of M are 5 to 9 % more beside the clamp, twice the load beside the
-    tip."""
+    """Reference: by hand. A column of 5 m has −500 N/m, −44,049 N and half of Euler's force P,
+    which adds P w to M. The mean slope of M is 5 to 9 % above V at the clamp, and twice the load at
+    the tip.
+    """
     free = beam(supports=[Support(3.0, "clamped")], load=-500.0)
     force = 0.5 * np.pi**2 * free.bending_stiffness / (4.0 * 5.0**2)
     pressed = with_compression([free], [], [Thrust(0, 8.0, force)])
@@ -158,8 +161,9 @@ def test_section_forces_of_a_column_refer_to_the_straight_axis(
 
 
 def test_joint_with_play_transfers_forces_of_the_lever_rule(paper_boom: Boom) -> None:
-    """Reference: by hand, 550.7 N at 14 m on 9 and 10 m: M = 55.07 · 9²/2 N m at 10 m, V jumps
-    there by 2753.5 N."""
+    """Reference: by hand, 550.7 N at 14 m on 9 and 10 m. At 10 m M = 55.07 · 9²/2 N m, and V jumps
+    by 2753.5 N.
+    """
     models = finite_element_segments(paper_boom, 0.25, "euler-bernoulli", False)
     system = gap_system(touching(paper_boom, PowerContact(1e9, 1.0).with_clearance(7e-3)), models)
     inner = lines(paper_boom, models)[1]
@@ -171,8 +175,9 @@ def test_joint_with_play_transfers_forces_of_the_lever_rule(paper_boom: Boom) ->
 
 
 def test_a_boom_in_space_bends_sideways_and_twists(spatial_boom: Boom) -> None:
-    """Reference: by hand. 300 N to the side at 19 m: lateral moment −300 (19 − x) in the inner
-    segment."""
+    """Reference: by hand. A lateral force of 300 N at 19 m causes the lateral moment −300 (19 − x)
+    in the inner segment.
+    """
     load = Load(1, "y", 300.0, 19.0, Step())
     boom = replace(spatial_boom.bonded, loads=(load,))
     models = finite_element_segments(boom, 0.5, "timoshenko", True)

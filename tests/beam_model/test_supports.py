@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What holds a beam and what it carries: supports of every kind, masses, loads and stops."""
+"""Supports of every kind, masses, loads and stops of beams."""
 
 import re
 from collections.abc import Callable
@@ -74,7 +74,9 @@ def test_clamped_supports(
 
 
 def tip_frequencies(segment: Segment, hold: Callable[[float], float]) -> Array:
-    """ω of a cantilever whose end is held by ``hold(ω)`` in N/m: −ω² M for a mass, k for a spring.
+    """Return ω of a cantilever with the dynamic stiffness ``hold(ω)`` in N/m at its end.
+
+    It is −ω² M for a mass, k for a spring.
 
     1 + cos βL cosh βL = hold / (E J β³) · (cos βL sinh βL − sin βL cosh βL)
     """
@@ -138,9 +140,10 @@ def test_a_spring_under_the_end_of_a_cantilever(
 def test_frequencies_with_a_rotational_spring_at_the_hinge(
     beam: Beam, model_of: Callable[[Segment], Component], stiffness: float
 ) -> None:
-    """Reference: analytic, between a pinned and a clamped end (Blevins 1979): (kL/EJ) (1 + cos βL
-    cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On the soft spring the beam is nearly rigid, ω²
-    = 3k/m̄L³, and the highest mode's round-off takes up to 2e-5 of that."""
+    """Reference: analytic, between a pinned and a clamped end (Blevins 1979):
+    (kL/EJ) (1 + cos βL cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On a soft spring the beam
+    is nearly rigid with ω² = 3k/m̄L³; round-off of the highest mode changes it by up to 2e-5.
+    """
     segment = beam(supports=(Support(3.0, rotation_stiffness=stiffness),))
     model = model_of(segment)
     assert model.rigid_modes == segment.rigid_modes == 0
@@ -170,7 +173,7 @@ def test_a_mass_on_the_end_of_a_cantilever(
 
 @KINDS
 def test_rest_on_two_springs(beam: Beam, model_of: Callable[[Segment], Component]) -> None:
-    """Reference: analytic. The beam on rigid supports, on the line between what springs give."""
+    """Reference: analytic, the beam on rigid supports, moved along with the compressed springs."""
     soft, hard = 2.0e6, 7.0e6
     segment = beam(supports=(Support(3.0, stiffness=soft), Support(6.0, stiffness=hard)))
     model = model_of(segment)
@@ -186,7 +189,7 @@ def test_rest_on_two_springs(beam: Beam, model_of: Callable[[Segment], Component
 
 
 def test_one_spring_leaves_a_rigid_motion(beam: Beam) -> None:
-    """Reference: analytic. About its spring the beam turns freely."""
+    """Reference: analytic. The beam rotates freely about its spring."""
     segment = beam(supports=(Support(4.0, stiffness=1.0e6),))
     for model in (elements(segment), terms(segment)):
         assert model.rigid_modes == 1
@@ -198,8 +201,9 @@ def test_one_spring_leaves_a_rigid_motion(beam: Beam) -> None:
 
 
 def test_complete_functions_converge_on_any_supports(beam: Beam) -> None:
-    """Reference: other code, Hermite elements. The reaction inside the span leaves order three in
-    the terms."""
+    """Reference: other code, Hermite elements. Because of the reaction inside the span, the order
+    of convergence is 3.
+    """
     supports = (Support(3.0, "clamped"), Support(5.0), Support(8.0, stiffness=4.0e6))
     segment = beam(supports=supports)
     fine = frequencies(elements(segment))[:3]
@@ -233,7 +237,9 @@ def test_the_printed_functions_know_pinned_supports_alone(
 
 
 def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: PowerContact) -> None:
-    """Reference: analytic. Uniform, it is the segment's own load; at a point, its deflection."""
+    """Reference: analytic. A uniform load equals the load of the segment; a point load has the row
+    of its deflection.
+    """
     loads = (
         Load(1, "z", 55.07, None, Step()),
         Load(0, "z", -2.0e3, 10.0, Step()),
@@ -249,7 +255,9 @@ def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: Po
 def test_a_stop_holds_the_tip_up(
     paper_boom: Boom, elements: Models, paper_law: PowerContact
 ) -> None:
-    """Reference: analytic. A stop under the tip pushes up, one above it down, or not at all."""
+    """Reference: analytic. A stop below the tip pushes upwards, a stop above it pushes downwards or
+    not at all.
+    """
     stop = Stop(1, 19.0, 0.01, PowerContact(0.0, 1.0, stiffness_below=2.0e8))
     boom = replace(paper_boom, stops=(stop,))
     system = gap_system(touching(boom, paper_law), elements(0.5))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams that taper, at the elements' default length."""
+"""Tapered beams with the default element length."""
 
 from dataclasses import replace
 
@@ -44,7 +44,8 @@ def elements(boom: Boom, theory: Theory) -> list[SegmentModel]:
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
 def test_default_elements_are_near_the_cone(theory: Theory) -> None:
     """Reference: analytic, a cone's tip, first frequency and critical force (Kirchhoff 1879, Dinnik
-    1929), to 1e-4."""
+    1929), to 1e-4.
+    """
     boom = taper.arm(0.1 * taper.critical())
     plain = replace(boom, segments=taper.arm().segments)
     system = gap_system(plain, elements(plain, theory))
@@ -59,7 +60,7 @@ def test_default_elements_are_near_the_cone(theory: Theory) -> None:
 
 @pytest.mark.parametrize("direction", ["z", "y"])
 def test_a_deep_arm_shears_as_it_should(direction: str) -> None:
-    """Reference: analytic, ∫ s²/(E J) + 1/(G A_s) dx by quadrature; without the shear 3 % less."""
+    """Reference: analytic, ∫ s²/(E J) + 1/(G A_s) dx by quadrature. Shear contributes 3 %."""
     boom = Boom((arm(),), (), (Load(0, "z", 1.0, 8.0, Step()),))
     segment = boom.segments[0]
     if direction == "y":
@@ -87,7 +88,8 @@ def numbers(box: BoxSection) -> tuple[float, float, float, float]:
 
 def test_mass_equals_the_mass_of_the_plates() -> None:
     """Reference: by hand, ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6, and its centroid, for series, elements
-    and rigid segments."""
+    and rigid segments.
+    """
     sections = [ROOT, BoxSection(0.55, 0.425, 0.015, 0.01), HEAD]
     areas = [section.area for section in sections]
     mass = 7850.0 * 8.0 * (areas[0] + 4.0 * areas[1] + areas[2]) / 6.0
@@ -110,7 +112,9 @@ def test_mass_equals_the_mass_of_the_plates() -> None:
 
 
 def test_axial_weights_follow_the_taper() -> None:
-    """Reference: by hand. Upright, the foot carries all of it, the middle what is above."""
+    """Reference: by hand. In an upright boom the foot carries the whole weight, the midpoint the
+    weight above it.
+    """
     (pressed,) = with_compression([arm()], [], [], gravity=10.0)
     upper = 4.0 * (BoxSection(0.55, 0.425, 0.015, 0.01).area + HEAD.area) / 6.0
     upper += 4.0 * 4.0 * BoxSection(0.425, 0.3875, 0.0125, 0.009).area / 6.0
@@ -121,7 +125,7 @@ def test_axial_weights_follow_the_taper() -> None:
 
 @pytest.mark.parametrize("kind", ["timoshenko", "series"])
 def test_section_forces_are_those_of_statics(kind: str) -> None:
-    """Reference: by hand, −1000 N at the tip: M = 1000 s, V = −1000 N, whatever the section."""
+    """Reference: by hand. Under −1000 N at the tip, M = 1000 s and V = −1000 N for every section."""
     boom = Boom((arm(),), (), (Load(0, "z", -1000.0, 8.0, Step()),))
     models = (
         elements(boom, "timoshenko")
@@ -136,7 +140,7 @@ def test_section_forces_are_those_of_statics(kind: str) -> None:
 
 
 def test_it_lies_on_its_side() -> None:
-    """Reference: another computation, the turned sections: frequencies to round-off."""
+    """Reference: other code path, the turned sections. Frequencies agree to round-off."""
     rolled = Segment.of_section(
         "arm", 0.0, 8.0, STEEL, ROOT.turned(), head_section=HEAD.turned(), supports=(CLAMP,)
     )
@@ -169,8 +173,9 @@ def test_twist_follows_the_local_constant() -> None:
 
 
 def test_sections_fit_where_they_touch() -> None:
-    """Reference: by hand. The fly is 0.62 m high in an arm of 0.6 m, walls 20 and 10 mm: −0.05 m
-    are free."""
+    """Reference: by hand. A fly 0.62 m high in an arm of 0.6 m with walls of 20 and 10 mm has a
+    clearance of −0.05 m.
+    """
     outer = replace(arm(), head_section=replace(ROOT, height=0.6))
     inner = BoxSection(height=0.5, width=0.4, flange=0.01, web=0.01)
     fly = Segment.of_section(
@@ -184,7 +189,7 @@ def test_sections_fit_where_they_touch() -> None:
 
 
 def test_ends_are_alike() -> None:
-    """Reference: the messages."""
+    """Reference: exact messages."""
     other = octagon(0.3, 0.35, 0.05, 0.01, 0.01, 0.008)
     with pytest.raises(ValueError, match=r"segments\[0\].head_section: has other shapes than the"):
         Boom((replace(arm(), head_section=other),), ())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms that telescope, some of them pressed: rows, statics on the way, motion, a ledger."""
+"""Telescoping booms, also under axial forces: rows, statics, motion, energy balance."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -39,7 +39,7 @@ from tests.touching import touching
 
 
 def three(boom: Boom, ways: tuple[float, float], drives: Sequence[Drive | None]) -> Boom:
-    """Three segments, a rest on the ground below the last one, dashpots across the first joint."""
+    """Return three segments, with a stop below the last one, and dashpots at the first joint."""
     outer, inner = boom.segments
     middle = shifted(inner, ways[0] - 3.0)
     last = replace(shifted(inner, sum(ways) + 3.0), name="last", section=None)
@@ -64,7 +64,7 @@ SYSTEMS: dict[str, Callable[[Boom], GapSystem]] = {
 
 @pytest.mark.parametrize("kind", SYSTEMS)
 def test_standing_on_the_way_is_the_boom_built_there(paper_boom: Boom, kind: str) -> None:
-    """Reference: analytic, the boom whose segments lie there, with nodes at the same places."""
+    """Reference: analytic, the boom built at this extension, with nodes at the same positions."""
     system = SYSTEMS[kind](telescope(paper_boom, 0.0, DRIVE))
     for way, time in ((0.0, 0.0), (2.0, 2.5), (4.0, 5.0)):
         there = SYSTEMS[kind](telescope(paper_boom, way))
@@ -73,8 +73,7 @@ def test_standing_on_the_way_is_the_boom_built_there(paper_boom: Boom, kind: str
 
 
 def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None:
-    """Reference: analytic, the boom whose segments lie there; a stop reads the last segment
-    there."""
+    """Reference: analytic, the boom built at this extension; the stop's row is at the new position."""
     drives = (Drive(SCurve(1.0, 2.0), ("inner", "outer")), Drive(SCurve(2.0, 2.0), DRIVE.carriers))
 
     def built(ways: tuple[float, float], drives: Sequence[Drive | None]) -> GapSystem:
@@ -90,7 +89,7 @@ def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None
 
 
 def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
-    """Reference: analytic, the boom in space whose segments lie there."""
+    """Reference: analytic, the boom in space built at this extension."""
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = telescope(spatial_boom, way, drive, friction=0.2)
@@ -107,7 +106,7 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
-    """Reference: analytic, the rest of each position, within 0.1 % of the tip's deflection."""
+    """Reference: analytic, the static state at each extension, within 0.1 % of the tip deflection."""
     boom = telescope(paper_boom, 1.0, Drive(SCurve(3.0, 80.0), DRIVE.carriers))
     system = elements(touching(boom, LAW), length=1.0)
     system = replace(system, damping=np.ones(system.num_modes))
@@ -130,8 +129,9 @@ def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("thrust", [0.0, 1.0e5], ids=["free", "pressed"])
 def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
-    """Reference: other code, Hermite elements with moving rows and thrust by DOP853, to second
-    order."""
+    """Reference: other code, Hermite elements with moving rows and thrust by DOP853. The order is
+    2.
+    """
     history = SCurve(4.0, 0.4)
     boom = telescope(paper_boom, 0.0, Drive(history, DRIVE.carriers))
     segments = tuple(replace(segment, rotary_inertia=0.0) for segment in boom.segments)
@@ -156,7 +156,9 @@ def test_an_integration_of_its_own(paper_boom: Boom, thrust: float) -> None:
 
 @pytest.mark.slow
 def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
-    """Reference: analytic, the balance within 1e-5 of the load's work, with friction as well."""
+    """Reference: analytic, the energy balance within 1e-5 of the work of the load, also with
+    friction.
+    """
     for changes in ({}, RESISTED):
         boom = telescope(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers), **changes)
         system = elements(touching(boom, LAW), length=1.0)
@@ -168,7 +170,9 @@ def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
 
 
 def test_out_and_in_again(paper_boom: Boom) -> None:
-    """Reference: analytic, the same boom at rest: what never touches swings on as it did."""
+    """Reference: analytic, the boom without a drive. Without contact the motion continues
+    unchanged.
+    """
     there_and_back = PiecewiseLinear([0.0, 0.2, 0.4], [0.0, 4.0, 0.0])
     boom = telescope(paper_boom, 0.0, Drive(there_and_back, DRIVE.carriers))
     boom = replace(boom, segments=tuple(replace(one, load=0.0) for one in boom.segments))
@@ -226,7 +230,7 @@ def driven(history: History, least: float = 0.0) -> Drive:
 def test_bad_drives_are_refused(
     paper_boom: Boom, make: Callable[[Boom], Boom], message: str
 ) -> None:
-    """Reference: what cannot be drawn, in one line."""
+    """Reference: exact messages on invalid drives."""
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
         make(paper_boom)
 
@@ -240,7 +244,7 @@ THRUST = 1.5e4
 def pressed(
     boom: Boom, way: float, drive: Drive | None = None, locked: float | None = None
 ) -> Boom:
-    """Return the paper's boom, extended by a way in m, with a payload, axial weight and a rope."""
+    """Return the paper's boom at an extension in m, with a payload, axial weight and a rope."""
     free = telescope(boom, way, drive, locked_at=locked)
     outer, inner = free.segments
     inner = replace(inner, masses=(PointMass(inner.end, 300.0),))
@@ -267,7 +271,7 @@ LOCKS: list[tuple[Carrier, float | None]] = [
 
 
 def frequencies(system: GapSystem) -> Array:
-    """(3,) the lowest ones in Hz of the boom whose contacts are springs."""
+    """Return the three lowest frequencies in Hz of the boom with springs as contacts."""
     stiffness = system.stiffness + 1.0e6 * system.rows.T @ system.rows
     found = eigh(stiffness, eigvals_only=True, subset_by_index=[0, 2])
     return np.asarray(np.sqrt(found) / (2.0 * np.pi))
@@ -278,7 +282,7 @@ def frequencies(system: GapSystem) -> Array:
 def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
     paper_boom: Boom, kind: str, lock: tuple[Carrier, float | None]
 ) -> None:
-    """Reference: other code path, the boom built there: rest, frequencies, buckling force."""
+    """Reference: other code path, the boom built at this extension: statics, frequencies, buckling."""
     build, (carrier, x) = BUILDS[kind], lock
     boom = pressed(paper_boom, 0.0, replace(DRIVE, locked=carrier), x)
     system = gap_system(touching(boom, LAW), build(boom))
@@ -302,7 +306,7 @@ def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
 
 
 def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
-    """Reference: other code path, the boom in space that lies there."""
+    """Reference: other code path, the boom in space built at this extension."""
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = pressed(spatial_boom, way, drive)
@@ -316,7 +320,7 @@ def test_in_space_both_planes_soften(spatial_boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_a_slow_drive_follows_the_second_order_statics(paper_boom: Boom) -> None:
-    """Reference: other code path, the rest of the boom that lies there, within 0.1 %."""
+    """Reference: other code path, statics of the boom built at each extension, within 0.1 %."""
     boom = pressed(paper_boom, 2.0, Drive(SCurve(2.0, 60.0), DRIVE.carriers))
     system = elements(touching(boom, LAW), length=1.0)
     system = replace(system, damping=0.2 * np.ones(system.num_modes))
@@ -333,8 +337,9 @@ def test_a_slow_drive_follows_the_second_order_statics(paper_boom: Boom) -> None
 
 @pytest.mark.slow
 def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
-    """Reference: analytic, the balance to round-off with friction and dashpots; errors of order
-    two."""
+    """Reference: analytic, the energy balance to round-off with friction and dashpots. The order of
+    errors is 2.
+    """
     for changes in ({}, RESISTED):
         boom = pressed(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers))
         boom = replace(boom, joints=(replace(boom.joints[0], **changes),))

@@ -29,8 +29,9 @@ def pad(start: float = 0.0, end: float = 0.1, side: int = 1) -> PressedArea:
 
 
 def test_a_tube_under_pressure_on_two_walls_bends_as_a_frame() -> None:
-    """Reference: analytic, frame of equal members: θ = p a³/48 D at a joint, p a⁴/720 D + θ a/6 on
-    average."""
+    """Reference: analytic, a frame of equal members: θ = p a³/48 D at a joint, and the mean
+    deflection p a⁴/720 D + θ a/6.
+    """
     span = ((-0.5 * SIDE, 0.5 * SIDE),)
     walls = PressedArea(0.0, LENGTH, "z", 1, span), PressedArea(0.0, LENGTH, "z", -1, span)
     compliance = wall_compliance.wall_compliance(tube(Material(2.1e11, 0.0, 7850.0)), walls)
@@ -40,7 +41,7 @@ def test_a_tube_under_pressure_on_two_walls_bends_as_a_frame() -> None:
 
 
 def test_elements_are_fine_enough(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: other mesh, a third of the length; the default is within 1 %."""
+    """Reference: other mesh, with a third of the element length. The default is within 1 %."""
     areas = pad(side=1), pad(side=-1)
     default = wall_compliance.wall_compliance(tube(), areas)
     monkeypatch.setattr(wall_compliance, "_LENGTH", 0.07)
@@ -59,7 +60,7 @@ def test_collars_stiffen_by_the_cube_of_the_thickness() -> None:
 
 
 def test_diaphragm_prevents_wall_deflection() -> None:
-    """Reference: analytic bounds: nothing moves on it, and at the far end it changes nothing."""
+    """Reference: analytic bounds. The compliance is 0 at a diaphragm and unchanged at the far end."""
     plain = float(wall_compliance.wall_compliance(tube(), (pad(),))[0, 0])
     there, beyond = (
         float(
@@ -80,7 +81,7 @@ def test_an_end_is_softer_than_the_middle_of_a_tube() -> None:
 
 
 def test_pad_flush_with_the_segment_end_tolerates_round_off() -> None:
-    """Reference: the pad that ends exactly there."""
+    """Reference: the pad that ends exactly at the end of the segment."""
     exact, rounded = (
         wall_compliance.wall_compliance(tube(), (pad(LENGTH - 0.1, end),))
         for end in (LENGTH, np.nextafter(LENGTH, 0.0))
