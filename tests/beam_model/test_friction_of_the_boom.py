@@ -24,7 +24,9 @@ STEP = 4.0e-6
 def five_terms(
     paper_boom: Boom, series: Callable[..., list[SegmentModel]], paper_law: PowerContact
 ) -> GapSystem:
-    """Return the five-term series with normal forces of 4500 N at the tail and 5000 N at the head."""
+    """Return the five-term series with normal forces of 4500 N at the tail and 5000 N at the
+    head.
+    """
     system = gap_system(touching(paper_boom, paper_law), series((2, 3)))
     return replace(
         system,

@@ -45,7 +45,9 @@ def slope(model: Component, x: float) -> Array:
 def test_outer_functions_are_those_of_the_paper(
     paper_boom: Boom, base: Base, first: int, terms: int
 ) -> None:
-    """Reference: external source, (29). The functions span x^i (x − x0)(x − x1) and nothing else."""
+    """Reference: external source, (29). The functions span x^i (x − x0)(x − x1) and nothing
+    else.
+    """
     outer = paper_boom.segments[0]
     model = kantorovich_bending(outer, terms, base, rotary_inertia=False)
     x = np.linspace(0.0, 10.0, 61)

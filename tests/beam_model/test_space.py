@@ -278,7 +278,9 @@ def test_friction_acts_across_the_contact_normal(spatial_boom: Boom) -> None:
 
 
 def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
-    """Reference: external source, (28), with N at each station and the sliding displacement u − w."""
+    """Reference: external source, (28), with N at each station and the sliding displacement u −
+    w.
+    """
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
@@ -320,7 +322,9 @@ def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
 
 
 def test_bonded_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
-    """Reference: analytic, the frequencies of the flat boom, of the boom on its side, and of twist."""
+    """Reference: analytic, the frequencies of the flat boom, of the boom on its side, and of
+    twist.
+    """
     boom = pushed(spatial_boom, 5.0, 6.0)
     system = gap_system(boom.bonded, beams(boom))
     assert (system.omega2 > 1.0).all()

@@ -125,7 +125,9 @@ def test_axial_weights_follow_the_taper() -> None:
 
 @pytest.mark.parametrize("kind", ["timoshenko", "series"])
 def test_section_forces_are_those_of_statics(kind: str) -> None:
-    """Reference: by hand. Under −1000 N at the tip, M = 1000 s and V = −1000 N for every section."""
+    """Reference: by hand. Under −1000 N at the tip, M = 1000 s and V = −1000 N for every
+    section.
+    """
     boom = Boom((arm(),), (), (Load(0, "z", -1000.0, 8.0, Step()),))
     models = (
         elements(boom, "timoshenko")

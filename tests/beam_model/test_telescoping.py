@@ -73,7 +73,9 @@ def test_standing_on_the_way_is_the_boom_built_there(paper_boom: Boom, kind: str
 
 
 def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None:
-    """Reference: analytic, the boom built at this extension; the stop's row is at the new position."""
+    """Reference: analytic, the boom built at this extension; the stop's row is at the new
+    position.
+    """
     drives = (Drive(SCurve(1.0, 2.0), ("inner", "outer")), Drive(SCurve(2.0, 2.0), DRIVE.carriers))
 
     def built(ways: tuple[float, float], drives: Sequence[Drive | None]) -> GapSystem:
@@ -106,7 +108,9 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
-    """Reference: analytic, the static state at each extension, within 0.1 % of the tip deflection."""
+    """Reference: analytic, the static state at each extension, within 0.1 % of the tip
+    deflection.
+    """
     boom = telescope(paper_boom, 1.0, Drive(SCurve(3.0, 80.0), DRIVE.carriers))
     system = elements(touching(boom, LAW), length=1.0)
     system = replace(system, damping=np.ones(system.num_modes))
@@ -282,7 +286,9 @@ def frequencies(system: GapSystem) -> Array:
 def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
     paper_boom: Boom, kind: str, lock: tuple[Carrier, float | None]
 ) -> None:
-    """Reference: other code path, the boom built at this extension: statics, frequencies, buckling."""
+    """Reference: other code path, the boom built at this extension: statics, frequencies,
+    buckling.
+    """
     build, (carrier, x) = BUILDS[kind], lock
     boom = pressed(paper_boom, 0.0, replace(DRIVE, locked=carrier), x)
     system = gap_system(touching(boom, LAW), build(boom))
