@@ -20,21 +20,17 @@ from runs.case.conversion import convert_to_si
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
 from runs.sweep.points import plan
-from tests.runs.case_texts import refused
+from tests.runs.case_texts import STEEL, elements, refused
 from tests.runs.summaries import printed_check
 from tests.touching import contact_laws
 
 IN_SI = """
 title = "A crane"
 {units}
-[time]
-duration = 2.0
-
-[material]
-youngs_modulus = 2.1e11
-poissons_ratio = 0.3
-density = 7850.0
-
+time = {{ duration = 2.0 }}
+start = {{ velocity = {{ fly = 0.1, base = {{ turn = 0.02 }} }} }}
+damping = {{ stiffness = 1e-4, mass = 0.03 }}
+{steel}
 [[segment]]
 name = "base"
 length = 10.0
@@ -88,26 +84,14 @@ file = "gust.csv"
 [[base]]
 acceleration = 0.3
 frequency = 1.7
-
-[start]
-velocity = {{ fly = 0.1, base = {{ turn = 0.02 }} }}
-
-[damping]
-stiffness = 1e-4
-mass = 0.03
-
-[[model]]
-name = "beam"
-kind = "finite-element"
-theory = "euler-bernoulli"
-element_length = 0.25
-
+{beam}
 [[model]]
 name = "soft"
 kind = "finite-element"
 theory = "euler-bernoulli"
 contact = {{ force_table = [[1e-4, 900.0], [2e-4, 2500.0]] }}
 """
+BEAM = elements("beam", theory="euler-bernoulli", element_length=0.25)
 
 # What stands for it in mm, t and s, key by key.
 IN_MM = (
@@ -132,7 +116,7 @@ def _folder(here: Path) -> None:
 
 
 def written(units: str = "", extra: tuple[tuple[str, str], ...] = ()) -> str:
-    text = IN_SI.format(units=units)
+    text = IN_SI.format(units=units, steel=STEEL, beam=BEAM)
     for si, mm in extra:
         assert text.count(si) == 1, si
         text = text.replace(si, mm)
@@ -192,9 +176,6 @@ def test_files_with_units_need_no_magnitude() -> None:
     Path("crane.toml").write_text(text.replace("magnitude = -0.012\n", ""), encoding="utf-8")
     gust = reading.load("crane.toml").loads[2]
     assert gust.magnitude * gust.table[1][1] == pytest.approx(-50.0, rel=1e-15)
-
-
-SIDES = "lateral_stiffness = 1e3"
 
 
 @pytest.mark.parametrize(
