@@ -45,10 +45,8 @@ def pushed(boom: Boom, *loads: float) -> Boom:
 
 def rolled(boom: Boom) -> Boom:
     """Return the boom with y and z exchanged."""
-    joints = []
-    for joint in boom.joints:
-        joints.append(replace(joint, play=joint.lateral_play, lateral_play=joint.play))
-    return replace(boom, segments=tuple(s.turned() for s in boom.segments), joints=tuple(joints))
+    joints = tuple(replace(j, play=j.lateral_play, lateral_play=j.play) for j in boom.joints)
+    return replace(boom, segments=tuple(s.turned() for s in boom.segments), joints=joints)
 
 
 @pytest.mark.parametrize(

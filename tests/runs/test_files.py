@@ -176,9 +176,7 @@ def test_leftovers_of_killed_processes_only_are_removed(
     folder, mine = tmp_path / "out", tmp_path / ".out.mine"
     mine.mkdir()
     killed, live = in_the_making(folder), in_the_making(folder)
-    parts = []
-    for process in (killed, live):
-        parts.append(Path(process.stdout.readline().strip()))
+    parts = [Path(process.stdout.readline().strip()) for process in (killed, live)]
     killed.kill()
     killed.wait()
     assert all((part / "half").exists() for part in parts)

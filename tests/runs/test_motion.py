@@ -19,8 +19,7 @@ def short(name: str, model: str, **values: object) -> Run:
     """Return the run of one model, without design results."""
     case = change(load(str(CASES / name)), **values)
     models = tuple(one for one in case.models if one.name == model)
-    run = run_case(case.model_copy(update={"models": models}), "", RunContext())
-    return run
+    return run_case(case.model_copy(update={"models": models}), "", RunContext())
 
 
 def answers(run: Run) -> ModelDesignResults:

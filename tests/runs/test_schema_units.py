@@ -243,13 +243,12 @@ def test_a_sweep_s_values_are_in_the_units_of_the_case() -> None:
 
 def _value(case: Case, key: str) -> float:
     joint = case.joints[0]
-    there = {
+    return {
         "joint.extension": joint.extension,
         "joint.stiffness": joint.stiffness,
         "load[2].magnitude": case.loads[1].magnitude,
         "start.velocity.fly": case.start.velocity["fly"].z if case.start.velocity else None,
     }[key]
-    return there
 
 
 def test_a_change_in_python_is_in_si_units() -> None:

@@ -36,8 +36,7 @@ def case() -> Case:
 
 def reduce(case: Case, cache: Cache | None) -> ReducedShell:
     tools = BuildContext(MPI.COMM_SELF, cache=cache)
-    shell = build(case, build_boom(case), case.models[0], tools).shell
-    return shell
+    return build(case, build_boom(case), case.models[0], tools).shell
 
 
 def entries(cache: Cache) -> list[Path]:

@@ -38,21 +38,10 @@ def two_segments(outer: Section, inner: Section) -> tuple[Segment, Segment]:
 def flat_boom(friction: float = 0.0) -> Boom:
     """Return the paper's two segments in their plane, with normal forces where friction acts."""
     outer = infer_outer_section(83.16 / STEEL.density, 3.7986e-4, 1.5)
-    return Boom(
-        two_segments(
-            outer, infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.above)
-        ),
-        (
-            Joint(
-                outer=0,
-                inner=1,
-                stations=(9.0, 10.0),
-                play=2.0 * LAW.above,
-                friction=friction,
-                normal_forces=(4500.0, 5000.0) if friction > 0.0 else (),
-            ),
-        ),
-    )
+    inner = infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.above)
+    pressed = (4500.0, 5000.0) if friction > 0.0 else ()
+    joint = Joint(0, 1, (9.0, 10.0), 2.0 * LAW.above, friction=friction, normal_forces=pressed)
+    return Boom(two_segments(outer, inner), (joint,))
 
 
 def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:

@@ -12,10 +12,9 @@ import pytest
 from runs.case import reading as case_file
 from runs.case.schema import EnsembleTable
 from runs.client import judge
-from runs.pipeline.context import RunContext
 from runs.pipeline.results import prepare, read_netcdf
-from runs.pipeline.run import run_case
 from runs.report import output
+from tests.runs.summaries import finished
 from tests.system.browser import Page, blank_page, find_browser
 from tests.system.run_folder import COARSE
 
@@ -49,16 +48,15 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     ensemble = EnsembleTable(members=3, relative=1e-6, seed=1, vary="load")
     time = case.time.model_copy(update={"duration": 2.0})
     case = case.model_copy(update={"time": time, "ensemble": ensemble})
-    finished = run_case(case, "", RunContext())
-    finished.evaluate()
-    finished.results.summary.models["kantorovich-5"].horizons = {
+    run = finished(case)
+    run.results.summary.models["kantorovich-5"].horizons = {
         "relatives": [1e-12, 1e-9, 1e-6, 1e-3], "shares": [0.01, 0.2],
         "times": [[1.5, 1.9], [1.2, None], [0.9, None], [0.6, None]], "of_step": [1.3, None],
         "rate": [23.0, None], "step_change": None, "limits": ["step", "physics"],
     }  # fmt: skip
     out = prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
     out.mkdir()
-    output.write(finished, judge(finished.results), out)
+    output.write(run, judge(run.results), out)
     return out
 
 
