@@ -255,8 +255,9 @@ def _peaks(
     # squares of both parts, and the von Mises stress at most three times its own.
     weights = np.sqrt(6.0 * np.einsum("mtc,mtc->m", modes, modes, dtype=float)) + _TINY
     states = shell.states[number][steps] * weights
-    _, sizes, motions = np.linalg.svd(states, full_matrices=False)
-    motions = motions[sizes > _REST * sizes[0]]
+    # The squares of singular values suffice, since any rest of the motion enters the bound.
+    squares, directions = np.linalg.eigh(states.T @ states)
+    motions = directions[:, squares > _REST**2 * squares[-1]].T
     parts = states @ motions.T
     rest = np.abs(states - parts @ motions).sum(axis=1, keepdims=True)
     principal = np.tensordot((motions / weights).astype(np.float32), modes, axes=1)
