@@ -67,23 +67,6 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
 
 
-def add_damping(
-    system: GapSystem, ratio: float, rayleigh: tuple[float, float], rest: Array | None = None
-) -> GapSystem:
-    """Return the system with further damping, in addition to the damping of its segments.
-
-    Args:
-        system: gap system of a boom.
-        ratio: damping ratio as in :func:`with_modal_damping`.
-        rayleigh: α in 1/s and β in s of α + β ω² in the modes of the segments.
-        rest: equilibrium as in :func:`closed_contact_modes`.
-    """
-    mass, stiffness = rayleigh
-    rates = system.damping + mass + stiffness * np.maximum(system.omega2, 0.0)
-    system = replace(system, damping=rates)
-    return system if ratio == 0.0 else with_modal_damping(system, ratio, rest)
-
-
 def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
     """Return the system with the damping ratio ``ratio`` added to the first closed-contact modes.
 

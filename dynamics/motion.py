@@ -3,12 +3,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.damping import add_damping
+from dynamics.damping import with_modal_damping
 from dynamics.equilibrium import equilibrium
 from dynamics.gap_system import GapSystem
 
@@ -94,8 +94,12 @@ def build_motion(
     """
     system, position, velocity = initial_state(system, at_rest)
     rest = constant_load_equilibrium(system, at_rest, position)
-    moving = add_damping(system, damping_ratio, rayleigh, rest)
-    return Motion(moving, duration, output_step, position, velocity)
+    # Both kinds of damping come in addition to the damping of the segments.
+    rates = system.damping + rayleigh[0] + rayleigh[1] * np.maximum(system.omega2, 0.0)
+    system = replace(system, damping=rates)
+    if damping_ratio:
+        system = with_modal_damping(system, damping_ratio, rest)
+    return Motion(system, duration, output_step, position, velocity)
 
 
 def initial_state(system: GapSystem, at_rest: bool) -> tuple[GapSystem, Array, Array]:

@@ -161,18 +161,15 @@ class Draft:
         if keys[0] not in self._numbers:
             raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
         place, value = self._numbers[keys[0]]
-        unit, system = self._unit(place), self.case.system
-        ranges, text = (
-            [self._range(*self._numbers[one]) for one in keys],
-            _description(self.case, place),
-        )
+        unit, system, field = self._unit(place), self.case.system, _field(self.case, place)
+        ranges = [self._range(*self._numbers[one]) for one in keys]
         low, high = max(one[0] for one in ranges), min(one[1] for one in ranges)
         in_unit = [system.of(one, unit or "1") for one in (value, low, high)]
         return Knob(
             key,
             keys,
             self._label(keys),
-            text,
+            "" if field is None else describe(field),
             in_unit[0],
             system.label(unit) if unit else "",
             (in_unit[1], in_unit[2]) if low < high else None,
@@ -234,16 +231,6 @@ class Draft:
         """The shells of the case, or a default one."""
         return select_kind(Shell, self.case.models) or [Shell()]
 
-    def with_shell(self, case: Case) -> Case:
-        """Return an edited case with the page's beam and the case's shells, or a default shell.
-
-        Raises:
-            BadInput: the case is invalid.
-        """
-        (beam,) = self.beam(case).case.models
-        both = case.model_copy(update={"models": (beam, *self.shells)})
-        return reading.check(both, self.file).case
-
     def beam(self, case: Case) -> CheckedCase:
         """Return a validated edited case whose only model is the live page's beam.
 
@@ -276,11 +263,6 @@ def _field(case: Case, place: Place) -> Any:
         else:
             here = here[step]
     return field
-
-
-def _description(case: Case, place: Place) -> str:
-    field = _field(case, place)
-    return "" if field is None else describe(field)
 
 
 def _limits(case: Case, place: Place) -> tuple[float, float]:

@@ -21,6 +21,7 @@ import numpy as np
 from dynamics.failure import NUMERICAL_ERRORS
 from runs.case import toml
 from runs.case.messages import BadInput
+from runs.case.reading import check
 from runs.live.beam import beam_results
 from runs.live.knobs import Draft
 from runs.live.shell_run import ShellRuns
@@ -101,7 +102,9 @@ class LivePage:
 
     def shell(self, request: dict[str, Any]) -> Generator[Any]:
         """Yield progress and results of the shell; a large run needs ``large`` in the request."""
-        case = self.draft.with_shell(self.draft.changed(dict(request["values"])))
+        case = self.draft.changed(dict(request["values"]))
+        models = *self.draft.beam(case).case.models, *self.draft.shells
+        case = check(case.model_copy(update={"models": models}), self.draft.file).case
         cost = run_cost(case)
         if cost.large and not request.get("large"):
             yield {"stage": "large", "what": f"The run may take {cost}. Start it anyway?"}
