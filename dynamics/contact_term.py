@@ -41,18 +41,12 @@ class Term(NamedTuple):
 
     >>> pt.PowerContact(1e6, 1.0).lower().with_clearance(0.01).terms
     (Term(side=-1.0, stiffness=1000000.0, onset=0.01, exponent=1.0),)
-
-    Args:
-        side: 1 for contact at positive y, −1 at negative y.
-        stiffness: k in N/mⁿ; negative if a law becomes softer.
-        onset: onset in m from y = 0 on its side.
-        exponent: n, at least 1.
     """
 
-    side: float
-    stiffness: float
-    onset: float
-    exponent: float
+    side: float  #: 1 for contact at positive y, −1 at negative y
+    stiffness: float  #: k in N/mⁿ; negative if a law becomes softer
+    onset: float  #: onset in m from y = 0 on its side
+    exponent: float  #: n, at least 1
 
 
 def force_of(term: np.void, y: Gap) -> Gap:

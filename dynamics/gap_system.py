@@ -31,16 +31,12 @@ class Observer(NamedTuple):
 
     >>> Observer(np.ones(1)).unit
     'm'
-
-    Args:
-        row: coefficients (num_modes,) of the modal coordinates.
-        unit: unit of the quantity.
-        derivative: 0 for coordinates, 1 for velocities, 2 for mean accelerations over the output
-            interval that ends at the time.
     """
 
-    row: Array
-    unit: str = "m"
+    row: Array  #: coefficients (num_modes,) of the modal coordinates
+    unit: str = "m"  #: unit of the quantity
+    #: 0 for coordinates, 1 for velocities, 2 for mean accelerations over the output interval that
+    #: ends at the time
     derivative: Literal[0, 1, 2] = 0
 
 

@@ -40,17 +40,11 @@ _GROUND = 100.0
 
 @dataclass(frozen=True, slots=True)
 class RopeForce:
-    """History of the rope force in a slow lift, up to the weight of a load on the ground.
+    """History of the rope force in a slow lift, up to the weight of a load on the ground."""
 
-    Args:
-        hoist: hoisted length in m over time.
-        stretch: stretch in m of rope and boom under the weight.
-        slack: length in m that is wound up before the rope is straight.
-    """
-
-    hoist: History
-    stretch: float
-    slack: float
+    hoist: History  #: hoisted length in m over time
+    stretch: float  #: stretch in m of rope and boom under the weight
+    slack: float  #: length in m that is wound up before the rope is straight
     peak: float = 1.0
 
     @property
@@ -69,21 +63,13 @@ class RopeForce:
 
 @dataclass(frozen=True, slots=True)
 class Pendulum:
-    """Horizontal motion of a hanging load.
+    """Horizontal motion of a hanging load."""
 
-    Args:
-        length: distance l from the tip to the load in m.
-        frame: slewing and luffing of the boom.
-        x: initial position of the tip along the boom in m.
-        extension: travel of the tip along the boom.
-        winds: (axis, force in N, history) of each wind force on the load; X points outwards at
-            t = 0.
-    """
-
-    length: float
-    frame: FrameMotion
-    x: float
-    extension: MotionLaw
+    length: float  #: distance l from the tip to the load in m
+    frame: FrameMotion  #: slewing and luffing of the boom
+    x: float  #: initial position of the tip along the boom in m
+    extension: MotionLaw  #: travel of the tip along the boom
+    #: (axis, force in N, history) of each wind force on the load; X points outwards at t = 0
     winds: Sequence[tuple[Literal["x", "y"], float, History]] = ()
 
     def read(self, time: float, across: Array, lateral: Array) -> Array:

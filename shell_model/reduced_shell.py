@@ -39,39 +39,31 @@ from shell_model.telescoping import MOMENTS, TelescopingShell
 
 @dataclass(frozen=True, slots=True)
 class ReducedShell:
-    """Gap system of the reduced shells, with errors and computing times.
+    """Gap system of the reduced shells, with errors and computing times."""
 
-    Args:
-        system: gap system of all segments.
-        num_dofs: number of degrees of freedom before the reduction.
-        fields: displacements and stresses of all modes on rank 0, see
-            :func:`shell_model.stress.fields.gather_fields`.
-        errors: largest reduction errors of all segments: ``contact_compliance``, relative to the
-            local compliance, NaN without contacts; ``readings``, the relative error of outputs such
-            as the tip. Natural frequencies are accurate up to ``frequency_limit_in_hz``.
-        local_compliance: local compliances (num_rows,) of the contacts in m/N, see
-            :func:`shell_model.contact.local_compliance.local_compliance`.
-        mesh_error: largest relative discretisation error of the local compliance; NaN without
-            contacts.
-        seconds: wall time of each stage in s.
-        meshes: mesh of each segment, on rank 0.
-        critical_factor: buckling factor of the axial forces with bonded joints, see
-            :func:`dynamics.second_order.buckling_factor`; infinite without axial forces.
-        probe_responses: probe responses of the segments, for the calibration of beams.
-        own_loads: contributions (num_segments, num_modes) of the uniform loads of segments to
-            ``system.load``, in N/√kg.
-    """
-
-    system: GapSystem
-    num_dofs: int
+    system: GapSystem  #: gap system of all segments
+    num_dofs: int  #: number of degrees of freedom before the reduction
+    #: displacements and stresses of all modes on rank 0, see
+    #: :func:`shell_model.stress.fields.gather_fields`
     fields: xr.Dataset | None
+    #: largest reduction errors of all segments: ``contact_compliance``, relative to the local
+    #: compliance, NaN without contacts; ``readings``, the relative error of outputs such as the
+    #: tip. Natural frequencies are accurate up to ``frequency_limit_in_hz``.
     errors: dict[str, float]
+    #: local compliances (num_rows,) of the contacts in m/N, see
+    #: :func:`shell_model.contact.local_compliance.local_compliance`
     local_compliance: Array
+    #: largest relative discretisation error of the local compliance; NaN without contacts
     mesh_error: float
-    seconds: dict[str, float]
-    meshes: Sequence[PlatedMesh]
+    seconds: dict[str, float]  #: wall time of each stage in s
+    meshes: Sequence[PlatedMesh]  #: mesh of each segment, on rank 0
+    #: buckling factor of the axial forces with bonded joints, see
+    #: :func:`dynamics.second_order.buckling_factor`; infinite without axial forces
     critical_factor: float | None = float("inf")
+    #: probe responses of the segments, for the calibration of beams
     probe_responses: Sequence[ProbeResponses] = ()
+    #: contributions (num_segments, num_modes) of the uniform loads of segments to ``system.load``,
+    #: in N/√kg
     own_loads: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 

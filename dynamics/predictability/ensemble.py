@@ -30,21 +30,13 @@ MEMBER_VARIABLES = ("tip", "head", "contact_force")
 
 @dataclass(frozen=True, slots=True)
 class EnsembleMember:
-    """One run of an ensemble.
+    """One run of an ensemble."""
 
-    Args:
-        motion: motion without changes.
-        vary: name of the changed data.
-        change: relative change.
-        integrator: integrator of the motion.
-        variables: names of the variables to store.
-    """
-
-    motion: Motion
-    vary: Vary
-    change: float
-    integrator: Integrator
-    variables: Sequence[str] = MEMBER_VARIABLES
+    motion: Motion  #: motion without changes
+    vary: Vary  #: name of the changed data
+    change: float  #: relative change
+    integrator: Integrator  #: integrator of the motion
+    variables: Sequence[str] = MEMBER_VARIABLES  #: names of the variables to store
 
     def shortened(self, part: float) -> EnsembleMember:
         """Return the run shortened to a fraction of its duration, in whole output steps."""

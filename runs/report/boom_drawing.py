@@ -54,23 +54,14 @@ CAPTION = (
 
 @dataclass(slots=True)
 class Panel:
-    """Panel with a drawing of the boom, and the meanings of its symbols.
+    """Panel with a drawing of the boom, and the meanings of its symbols."""
 
-    Args:
-        axes: axes of the drawing.
-        boom: the boom.
-        angle: angle of the boom in degrees.
-        larger: factor by which heights are exaggerated.
-        whole: True for the whole boom without details.
-        meanings: symbol of each legend text.
-    """
-
-    axes: Axes
-    boom: Boom
-    angle: float
-    larger: float
-    whole: bool
-    meanings: dict[str, Line2D] = field(default_factory=dict)
+    axes: Axes  #: axes of the drawing
+    boom: Boom  #: the boom
+    angle: float  #: angle of the boom in degrees
+    larger: float  #: factor by which heights are exaggerated
+    whole: bool  #: True for the whole boom without details
+    meanings: dict[str, Line2D] = field(default_factory=dict)  #: symbol of each legend text
 
     @property
     def turn(self) -> Transform:

@@ -31,48 +31,29 @@ GAP = 0.14
 
 @dataclass(frozen=True, slots=True)
 class Curve:
-    """Curve of a chart.
+    """Curve of a chart."""
 
-    Args:
-        name: name of the model or of another source.
-        values: (num_times,) in the unit of the chart.
-        color: colour in CSS notation.
-        dashes: plotly's name of the line style.
-        shown: True if the curve is visible at first, False if only on demand.
-        panel: index of its panel.
-        band: lower and upper limit (num_times,) of a band.
-        at: abscissa (num_times,); the abscissa of the chart unless given.
-    """
-
-    name: str
-    values: Array
-    color: str
-    dashes: str = "solid"
-    shown: bool = True
-    panel: int = 0
-    band: tuple[Array, Array] | None = None
-    at: Array | None = None
+    name: str  #: name of the model or of another source
+    values: Array  #: (num_times,) in the unit of the chart
+    color: str  #: colour in CSS notation
+    dashes: str = "solid"  #: plotly's name of the line style
+    shown: bool = True  #: True if the curve is visible at first, False if only on demand
+    panel: int = 0  #: index of its panel
+    band: tuple[Array, Array] | None = None  #: lower and upper limit (num_times,) of a band
+    at: Array | None = None  #: abscissa (num_times,); the abscissa of the chart unless given
 
 
 @dataclass(frozen=True, slots=True)
 class Chart:
-    """Chart of curves over a common time, in panels above one another.
+    """Chart of curves over a common time, in panels above one another."""
 
-    Args:
-        time: (num_times,) in s, or another abscissa.
-        heading: heading of the ordinate, with its unit.
-        curves: curves of all panels.
-        panels: titles of the panels.
-        window: initially visible time window in s; the whole time unless given.
-        along: heading of the abscissa.
-    """
-
-    time: Array
-    heading: str
-    curves: Sequence[Curve]
-    panels: Sequence[str] = ("",)
+    time: Array  #: (num_times,) in s, or another abscissa
+    heading: str  #: heading of the ordinate, with its unit
+    curves: Sequence[Curve]  #: curves of all panels
+    panels: Sequence[str] = ("",)  #: titles of the panels
+    #: initially visible time window in s; the whole time unless given
     window: tuple[float, float] | None = None
-    along: str = "time (s)"
+    along: str = "time (s)"  #: heading of the abscissa
 
     @property
     def thinned(self) -> bool:

@@ -24,20 +24,14 @@ _ROPE = 0.25
 
 
 class CranePosition(NamedTuple):
-    """Positions of a crane without its deflections.
+    """Positions of a crane without its deflections."""
 
-    Args:
-        time: (num_times,) in s.
-        boom: (num_times, 2, 2) foot and tip in m: in the plan of a crane that slews, otherwise in
-            the elevation.
-        load: (num_times, 2) load on the rope, likewise; None without a hoist.
-        title: name of the view.
-    """
-
-    time: Array
+    time: Array  #: (num_times,) in s
+    #: (num_times, 2, 2) foot and tip in m: in the plan of a crane that slews, otherwise in the
+    #: elevation
     boom: Array
-    load: Array | None
-    title: str
+    load: Array | None  #: (num_times, 2) load on the rope, likewise; None without a hoist
+    title: str  #: name of the view
 
     @classmethod
     def of(cls, case: Case, boom: Boom, motion: xr.Dataset) -> CranePosition | None:

@@ -47,21 +47,13 @@ THINNED = (
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """Picture on the disk with title and caption.
+    """Picture on the disk with title and caption."""
 
-    Args:
-        path: path of the PNG or GIF file.
-        title: title of one line.
-        caption: caption in sentences.
-        part: part of the report to which the figure belongs.
-        chart: interactive chart of the same curves.
-    """
-
-    path: Path
-    title: str
-    caption: str
-    part: Part = "motion"
-    chart: Chart | None = None
+    path: Path  #: path of the PNG or GIF file
+    title: str  #: title of one line
+    caption: str  #: caption in sentences
+    part: Part = "motion"  #: part of the report to which the figure belongs
+    chart: Chart | None = None  #: interactive chart of the same curves
 
     @property
     def anchor(self) -> str:

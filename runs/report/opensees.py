@@ -45,15 +45,10 @@ OPEN = 1.0e-5
 
 
 class Part(NamedTuple):
-    """Beam elements of a segment.
+    """Beam elements of a segment."""
 
-    Args:
-        component: planar component of the segment.
-        free: degrees of freedom that are not rigidly supported.
-    """
-
-    component: Component
-    free: Array
+    component: Component  #: planar component of the segment
+    free: Array  #: degrees of freedom that are not rigidly supported
 
     def node(self, x: float) -> int:
         """Return the index of the node nearest to x in m."""

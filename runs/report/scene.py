@@ -52,21 +52,13 @@ _FROM_ABOVE = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, -1.0, 0.0]])
 
 
 class Overlap(NamedTuple):
-    """Two telescoping segments that overlap.
+    """Two telescoping segments that overlap."""
 
-    Args:
-        outer: index of the outer segment.
-        inner: index of the inner segment.
-        stations: indices of the stations in the trajectories.
-        centres: x in m of the pad centres of the stations.
-        clearance: clearance Δ in m.
-    """
-
-    outer: int
-    inner: int
-    stations: list[int]
-    centres: list[float]
-    clearance: float
+    outer: int  #: index of the outer segment
+    inner: int  #: index of the inner segment
+    stations: list[int]  #: indices of the stations in the trajectories
+    centres: list[float]  #: x in m of the pad centres of the stations
+    clearance: float  #: clearance Δ in m
 
 
 class Instant(NamedTuple):
@@ -86,36 +78,24 @@ class Instant(NamedTuple):
 
 @dataclass(frozen=True)
 class Scene:
-    """A boom in motion, for pictures.
+    """A boom in motion, for pictures."""
 
-    Args:
-        boom: the boom.
-        symbols: symbols of its supports and loads.
-        points: (num_points, 3) in m.
-        triangles: (num_triangles, 3) point numbers.
-        segment: (num_triangles,) segment of each triangle.
-        modes: (num_modes, num_points, 3) displacements for unit coordinates.
-        state: modal coordinates (time, mode).
-        motion: trajectories of the model; ``tip`` is the deflection upwards in the picture.
-        stress: stresses of the triangles of a shell.
-        from_above: True if y replaces z, see :meth:`views`.
-        buckling: first buckling modes of a shell, see
-            :class:`runs.pipeline.wall_buckling.BuckledShell`; None without any.
-        crane: positions of the crane and its load; None for other booms.
-    """
-
-    boom: Boom
-    symbols: Sequence[Symbol]
-    points: Array
-    triangles: Numbers
-    segment: Numbers
+    boom: Boom  #: the boom
+    symbols: Sequence[Symbol]  #: symbols of its supports and loads
+    points: Array  #: (num_points, 3) in m
+    triangles: Numbers  #: (num_triangles, 3) point numbers
+    segment: Numbers  #: (num_triangles,) segment of each triangle
+    #: (num_modes, num_points, 3) displacements for unit coordinates
     modes: npt.NDArray[np.floating[Any]]
-    state: xr.DataArray
+    state: xr.DataArray  #: modal coordinates (time, mode)
+    #: trajectories of the model; ``tip`` is the deflection upwards in the picture
     motion: xr.Dataset
-    stress: ShellStress | None = None
-    from_above: bool = False
+    stress: ShellStress | None = None  #: stresses of the triangles of a shell
+    from_above: bool = False  #: True if y replaces z, see :meth:`views`
+    #: first buckling modes of a shell, see :class:`runs.pipeline.wall_buckling.BuckledShell`; None
+    #: without any
     buckling: xr.Dataset | None = None
-    crane: CranePosition | None = None
+    crane: CranePosition | None = None  #: positions of the crane and its load; None for other booms
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:

@@ -87,31 +87,18 @@ MOMENT = CLOCKWISE.transformed(Affine2D().scale(-1.0, 1.0))
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """Symbol of a support or a load.
+    """Symbol of a support or a load."""
 
-    Args:
-        kind: name of the kind.
-        segment: number of the segment.
-        places: positions x in m.
-        edge: edge of the segment at which it is drawn, or z in m.
-        path: path of the symbol.
-        meaning: text of the legend.
-        color: colour of the symbol.
-        turns: True if the symbol rotates with the boom.
-        clearance: distance between edge and symbol in m.
-        grounded: True if the symbol does not move with the boom.
-    """
-
-    kind: Literal["supports", "springs", "stops", "masses", "loads"]
-    segment: int
-    places: tuple[float, ...]
-    edge: Edge
-    path: Path
-    meaning: str
-    color: str = theme.FORCE
-    turns: bool = True
-    clearance: float = 0.0
-    grounded: bool = False
+    kind: Literal["supports", "springs", "stops", "masses", "loads"]  #: name of the kind
+    segment: int  #: number of the segment
+    places: tuple[float, ...]  #: positions x in m
+    edge: Edge  #: edge of the segment at which it is drawn, or z in m
+    path: Path  #: path of the symbol
+    meaning: str  #: text of the legend
+    color: str = theme.FORCE  #: colour of the symbol
+    turns: bool = True  #: True if the symbol rotates with the boom
+    clearance: float = 0.0  #: distance between edge and symbol in m
+    grounded: bool = False  #: True if the symbol does not move with the boom
 
     def rotated(self, angle: float) -> Path:
         """Return the path of the symbol on a boom at an angle in degrees."""

@@ -48,21 +48,13 @@ _SHORT, _BYTE = 32767, 255
 
 
 class View(NamedTuple):
-    """Boom and stresses of a page.
+    """Boom and stresses of a page."""
 
-    Args:
-        model: name of the model.
-        scene: scene of the boom.
-        time: (num_frames,) in s.
-        stress: (num_frames, num_points) in MPa.
-        quantity: name of the stress, with its unit.
-    """
-
-    model: str
-    scene: Scene
-    time: Array
-    stress: Array
-    quantity: str
+    model: str  #: name of the model
+    scene: Scene  #: scene of the boom
+    time: Array  #: (num_frames,) in s
+    stress: Array  #: (num_frames, num_points) in MPa
+    quantity: str  #: name of the stress, with its unit
 
     @property
     def end(self) -> float:

@@ -57,21 +57,13 @@ class SurfaceOptions:
 
 
 class SurfacePoint(NamedTuple):
-    """Contact point of a surface; in a flat boom a symmetric pair of points.
+    """Contact point of a surface; in a flat boom a symmetric pair of points."""
 
-    Args:
-        operator: operator of the relative displacement u − w, the mean for a pair.
-        law: one-sided contact law, with the penalty times the area of the point.
-        station: index of the nearest station of the joint in the same direction.
-        side: side of the inner segment in contact, 1 or −1.
-        half: half of the wall with the point, 1 or −1; 0 for a pair.
-    """
-
-    operator: Operator
-    law: ContactLaw
-    station: int
-    side: int
-    half: int
+    operator: Operator  #: operator of the relative displacement u − w, the mean for a pair
+    law: ContactLaw  #: one-sided contact law, with the penalty times the area of the point
+    station: int  #: index of the nearest station of the joint in the same direction
+    side: int  #: side of the inner segment in contact, 1 or −1
+    half: int  #: half of the wall with the point, 1 or −1; 0 for a pair
 
     def presses(self, pad: Pad) -> bool:
         """Return whether the force of the point is a normal force of a pad."""
