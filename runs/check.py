@@ -6,7 +6,7 @@ No shell is computed here; beams take its place.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -47,7 +47,7 @@ from runs.pipeline.largest_loads import (
     static_table,
 )
 from runs.pipeline.load_table import load_table
-from runs.pipeline.pad_walls import pad_wall_lines, rigid_wall_note
+from runs.pipeline.pad_walls import deflection_advice, pad_wall_lines, rigid_wall_note
 from runs.pipeline.panels import panel_cautions, panel_table, weakest_panels
 from runs.pipeline.proportions import (
     buckling_cautions,
@@ -126,6 +126,7 @@ def check_case(declared: CheckedCase) -> Check:
     boom_with_laws = boom if static is None else static.with_play.boom
     beam = None if static is None else BeamStates.of(case, boom_with_laws)
     extremes = [] if beam is None else beam.extremes(case.system)
+    advise = partial(deflection_advice, beam)
     panels = [] if beam is None else weakest_panels(beam.boom.segments, *beam.rests)
     tables = [
         _segments(case, boom),
@@ -146,7 +147,7 @@ def check_case(declared: CheckedCase) -> Check:
     drives = list(stick_slip_estimates(case, boom))
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]
     lines += [*turning_lines(case), *_shaper_lines(preview)]
-    lines += [*_static_lines(case, boom, static, beam)]
+    lines += [*_static_lines(case, boom, static, beam, advise)]
     if boom.compressed:
         for model in case.models:
             lines += buckling_cautions(_beam_name(model), _critical_factor(declared, model))
@@ -154,7 +155,7 @@ def check_case(declared: CheckedCase) -> Check:
         *actions.series_notes(case),
         *proportion_cautions(case, boom),
         *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], boom_with_laws)),
-        *overload_cautions(extremes, boom),
+        *overload_cautions(extremes, boom, advise),
         *panel_cautions(panels, case.system),
         *stick_slip_cautions(drives, case.system),
     ]
@@ -452,7 +453,11 @@ def _cylinders(state: StaticState, system: System) -> Table:
 
 
 def _static_lines(
-    case: Case, boom: Boom, static: Statics | None, beam: BeamStates | None
+    case: Case,
+    boom: Boom,
+    static: Statics | None,
+    beam: BeamStates | None,
+    advise: Callable[[], str],
 ) -> Iterator[str]:
     """Yield the static tip deflection, the first frequency, the tilts by play, and cautions."""
     if static is None or beam is None:
@@ -481,5 +486,5 @@ def _static_lines(
         )
     yield from pad_wall_lines(beam)
     yield from filter(None, [rigid_wall_note(case.models, boom)])
-    yield from tip_cautions(_BEAMS, state.tip, boom)
+    yield from tip_cautions(_BEAMS, state.tip, boom, advise)
     yield from period_cautions(_BEAMS, hertz, case)

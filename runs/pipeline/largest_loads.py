@@ -6,7 +6,7 @@ The model has beam elements and the compliance of walls under pads, at the initi
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -24,7 +24,7 @@ from runs.case.kinds.model import select_kind
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.models import MotionPlan, build_on
-from runs.pipeline.proportions import tip_cautions
+from runs.pipeline.proportions import CHECK_UNITS, tip_cautions
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
 from runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
@@ -253,6 +253,8 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
     if any(used):
         columns.append(Column("utilisation", used, ".3g", "%"))
     more = ["Drives stay where they are at t = 0."] if boom.telescopes else []
+    if any(joint.padded for joint in boom.joints):
+        more.append("The plate stresses at the pads are not included; a run with a shell has them.")
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
     kinds = (
         "Stresses are outer-fibre stresses. Contact forces act on the outer segment, upwards "
@@ -279,13 +281,23 @@ def in_units(value: float, unit: str, system: System) -> str:
     return f"{number(system.of(value, unit), 3)} {system.label(unit)}"
 
 
-def overload_cautions(extremes: Sequence[StaticExtreme], boom: Boom) -> list[str]:
-    """Return cautions on utilisations above 1, and on a large deflection after t = 0."""
+def overload_cautions(
+    extremes: Sequence[StaticExtreme], boom: Boom, advise: Callable[[], str] = lambda: CHECK_UNITS
+) -> list[str]:
+    """Return cautions on utilisations above 1, and on a large deflection after t = 0.
+
+    Args:
+        extremes: the static extremes.
+        boom: the boom, for its length.
+        advise: function that returns the advice on a large deflection.
+    """
     far = [
         caution
         for one in extremes
         if one.name == "tip" and one.time > 0.0
-        for caution in tip_cautions(f"under the loads of t = {one.time:.4g} s", one.largest, boom)
+        for caution in tip_cautions(
+            f"under the loads of t = {one.time:.4g} s", one.largest, boom, advise
+        )
     ]
     return far + [
         f"caution: at rest under the loads of t = {one.time:.4g} s the utilisation is {used}"

@@ -8,10 +8,13 @@ that friction makes regular over the whole run.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from functools import partial
 
 import numpy as np
 import xarray as xr
 
+from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.trajectory import PointwiseDifferences
 from geometry.axial import moving_force
 from geometry.boom import Boom
@@ -21,13 +24,17 @@ from runs.case.schema import Case, Model
 from runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
 from runs.pipeline.drives import lag_cautions, stick_slip_cautions, stick_slip_estimates
+from runs.pipeline.largest_loads import BeamStates
+from runs.pipeline.pad_walls import deflection_advice
 from runs.pipeline.proportions import (
+    CHECK_UNITS,
     buckling_cautions,
     period_cautions,
     proportion_cautions,
     tip_cautions,
 )
 from runs.pipeline.static_results import bulge_cautions
+from runs.pipeline.statics import boom_with_play
 from runs.pipeline.summary import Comparisons, Summary, WholeRun
 from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
 
@@ -252,7 +259,7 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
             if results.static
             for caution in bulge_cautions(f"in {name}", results.static[0], boom)
         ),
-        *_large_displacements(boom, data),
+        *_large_displacements(case, boom, data),
         *swing_cautions(case, data),
         *_numerical(summary),
         *series_notes(case),
@@ -263,7 +270,8 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
     """Yield cautions on axial forces, the static deflection and the duration."""
     for name, model in summary.models.items():
         yield from buckling_cautions(name, model.critical_factor)
-        yield from tip_cautions(f"in {name}", model.static_tip, boom)
+        advise = partial(_advice, case, boom, name)
+        yield from tip_cautions(f"in {name}", model.static_tip, boom, advise)
     designs = summary.design.models.items()
     slowest = min(
         ((mode.frequency, name) for name, one in designs for mode in one.modes), default=()
@@ -294,13 +302,22 @@ def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
             )
 
 
-def _large_displacements(boom: Boom, data: xr.Dataset) -> Iterator[str]:
+def _advice(case: Case, boom: Boom, name: str) -> str:
+    """Return the advice on a large deflection of a model."""
+    if any(model.name == name and model.needs_shell for model in case.models):
+        with suppress(*NUMERICAL_ERRORS):
+            return deflection_advice(BeamStates.of(case, boom_with_play(case, boom)))
+    return CHECK_UNITS
+
+
+def _large_displacements(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[str]:
     largest = np.abs(data["tip"].values).max(axis=1)
     for name, move in zip(data["model"].values, largest, strict=True):
         if move > LARGE_DISPLACEMENT * boom.length:
             yield (
                 f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of "
-                "the boom's length: small-displacement theory is not valid; check units and loads"
+                "the boom's length: small-displacement theory is not valid; "
+                f"{_advice(case, boom, str(name))}"
             )
 
 

@@ -13,6 +13,7 @@ from geometry.joint import PadSize
 from geometry.typography import join_words
 from runs.case.schema import Model
 from runs.pipeline.largest_loads import BeamStates
+from runs.pipeline.proportions import CHECK_UNITS
 from runs.report.formatting import milli
 
 # Remedies are given above this share of the tip deflection, if they reduce the tip deflection to
@@ -34,12 +35,10 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
         NumericsError: a boom with remedies has no equilibrium.
     """
     boom, rest = beam.boom, max(beam.rests, key=lambda one: abs(one.tip))
-    padded = [joint for joint in boom.joints if joint.padded]
-    if not padded or any(segment.section is None for segment in boom.segments):
+    tip, time, part = rest.tip, rest.time, wall_part(beam)
+    if part is None:
         return
-    tip, time = rest.tip, rest.time
-    share = tip - static_state(boom, walls=0.0, time=time).tip
-    part = share / tip if tip else 0.0
+    share = part * tip
     caution = "caution: walls" if part > GOVERNING_SHARE else "Walls"
     yield (
         f"{caution} bend under pads, which moves the tip by {milli(share)} of {milli(tip)} mm, "
@@ -52,7 +51,29 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     better = [one for one in better if one[0] < HELPFUL]
     if better:
         listed = "; ".join(f"{what} ({milli(there)} mm)" for _, there, what in better)
-        yield f"Remedies, with the deflection of the tip under these loads: {listed}."
+        yield (
+            "Remedies, with the static deflection of the tip under these loads; a run with a shell "
+            f"gives the plate stresses at the pads: {listed}."
+        )
+
+
+def wall_part(beam: BeamStates) -> float | None:
+    """Return the part of the largest static tip deflection due to walls under pads.
+
+    The result is None without pads, or without the sections of all segments.
+    """
+    boom, rest = beam.boom, max(beam.rests, key=lambda one: abs(one.tip))
+    padded = any(joint.padded for joint in boom.joints)
+    if not padded or any(segment.section is None for segment in boom.segments):
+        return None
+    rigid = static_state(boom, walls=0.0, time=rest.time).tip
+    return 1.0 - rigid / rest.tip if rest.tip else 0.0
+
+
+def deflection_advice(beam: BeamStates | None) -> str:
+    """Return the advice on a large deflection: pads if walls under them govern it, else units."""
+    governing = beam is not None and (wall_part(beam) or 0.0) > GOVERNING_SHARE
+    return "walls under pads cause most of it; change the pads" if governing else CHECK_UNITS
 
 
 def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
@@ -72,14 +93,24 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     def longer(pad: PadSize, longest: float) -> dict[str, Any]:
         return {"length": max(min(2.0 * pad.length, longest), pad.length)}
 
-    if any(pad.offset > 0.0 for joint in boom.joints for pad in _sizes(joint)):
-        yield "pads beside the corners", _with_pads(boom, lambda *_: {"offset": 0.0})
+    offset = any(pad.offset > 0.0 for joint in boom.joints for pad in _sizes(joint))
+    if offset:
+        yield (
+            "pads beside the corners, offset left out",
+            _with_pads(boom, lambda *_: {"offset": 0.0}),
+        )
     narrower = _with_pads(boom, lambda pad, _: {"width": 0.5 * pad.width})
-    yield "pads half as wide, at twice the pressure", narrower
-    yield "pads twice as long", _with_pads(boom, longer)
+    yield "pads half as wide (width), at twice the pressure", narrower
+    yield "pads twice as long (length)", _with_pads(boom, longer)
     corner = {"bears": "corner", "offset": 0.0}
-    yield "pads that bear on the corners", _with_pads(boom, lambda *_: corner)
-    yield "walls twice as thick by collars at the pads", _with_collars(boom)
+    without = " and offset left out" if offset else ""
+    bearing = f"pads that bear on the corners, bears = 'corner'{without}"
+    yield bearing, _with_pads(boom, lambda *_: corner)
+    collars = (
+        "collars as thick as the walls on both segments at each pad, over half the height of the "
+        "box to both sides, where two of them per joint are in the way of telescoping"
+    )
+    yield collars, _with_collars(boom)
 
 
 def _sizes(joint: Joint) -> tuple[PadSize, ...]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from math import isclose
 from typing import Any
 
@@ -30,6 +30,8 @@ NEAR_BUCKLING = 1.0 / 3.0
 # Fraction of the length of the boom above which a static deflection is not small.
 LARGE_DEFLECTION = 0.05
 
+# Advice on a large deflection without a known cause.
+CHECK_UNITS = "check units and loads"
 
 # Fractions of the weight of the boom: smaller loads have no effect, larger ones no boom can carry.
 MIN_LOAD, MAX_LOAD = 1.0e-3, 1.0e2
@@ -437,18 +439,21 @@ def buckling_cautions(name: str, critical_factor: float | None) -> list[str]:
     ]
 
 
-def tip_cautions(where: str, tip: float | None, boom: Boom) -> list[str]:
+def tip_cautions(
+    where: str, tip: float | None, boom: Boom, advise: Callable[[], str] = lambda: CHECK_UNITS
+) -> list[str]:
     """Return a caution if a static deflection is too large.
 
     Args:
         where: model or source of the deflection in the text, for example ``in MODEL``.
         tip: tip deflection in m; NaN or None without an equilibrium.
         boom: the boom, for its length.
+        advise: function that returns the advice.
     """
     if tip is None or not abs(tip) > LARGE_DEFLECTION * boom.length:
         return []
     return [
         f"caution: {where} the tip rests at {tip:.3g} m, {100.0 * abs(tip) / boom.length:.2g} % of "
-        "the boom's length and more than 5 %: small-displacement theory is not valid; check "
-        "units and loads"
+        "the boom's length and more than 5 %: small-displacement theory is not valid; "
+        f"{advise()}"
     ]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from dynamics.contact import PowerContact
 from dynamics.drive.row_table import RowTable
@@ -21,6 +22,7 @@ from runs.case.load_tables import LoadTable
 from runs.case.schema import Case, StopTable
 from runs.check import check_case
 from runs.pipeline.design_results import DesignResults
+from runs.pipeline.model_quality import cautions
 from runs.pipeline.models import build
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import (
@@ -31,8 +33,9 @@ from runs.pipeline.static_results import (
     static_result,
 )
 from studies.reference_models.statics import static_response
+from tests.docs.conftest import toml_blocks
 from tests.runs.case_texts import read_case, shipped
-from tests.runs.summaries import answers_of, printed_check
+from tests.runs.summaries import answers_of, model_summary, printed_check, summary_of
 
 
 def told(case: Case) -> list[str]:
@@ -163,13 +166,43 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
         "of t = 0.1 s (estimate from plates)."
     )
     assert remedies == (
-        "Remedies, with the deflection of the tip under these loads: pads that bear on the corners "
-        "(-317.9 mm); walls twice as thick by collars at the pads (-333 mm); pads half as wide, at "
-        "twice the pressure (-347.8 mm)."
+        "Remedies, with the static deflection of the tip under these loads; a run with a shell "
+        "gives the plate stresses at the pads: pads that bear on the corners, bears = 'corner' "
+        "(-317.9 mm); collars as thick as the walls on both segments at each pad, over half the "
+        "height of the box to both sides, where two of them per joint are in the way of "
+        "telescoping (-333 mm); pads half as wide (width), at twice the pressure (-347.8 mm)."
     )
     (load,) = case.loads
     sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})
     assert pad_wall_sentences(sudden) == [share.replace("0.1 s", "0 s"), remedies]
+
+
+def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) -> None:
+    """Reference: exact words. A beam has rigid walls, so that its tip has another cause."""
+    text = "".join(toml_blocks("tutorial.md")[:3])
+    for old, new in (
+        ("flange = 0.006", "flange = 0.002"),
+        ("flange = 0.005", "flange = 0.002"),
+        ("thickness = 0.012", "thickness = 0.012, offset = 0.039"),
+        ("magnitude = -1595.0", "magnitude = -2500.0"),
+    ):
+        assert old in text
+        text = text.replace(old, new)
+    case = read_case(tmp_path, text)
+    cause = "walls under pads cause most of it; change the pads"
+    lines = check_case(CheckedCase(case)).lines
+    (caution,) = (line for line in lines if "the tip rests" in line)
+    assert caution.endswith(f"small-displacement theory is not valid; {cause}")
+    names = ["shell", "beam"]
+    data = xr.Dataset(
+        {"tip": (("model", "time"), np.full((2, 1), -2.0)), "time": [0.0], "model": names}
+    )
+    summary = summary_of({name: model_summary(static_tip=-0.7) for name in names})
+    lines = cautions(case, build_boom(case), data, summary)
+    assert [line.rpartition("not valid; ")[2] for line in lines if " tip " in line] == 2 * [
+        cause,
+        "check units and loads",
+    ]
 
 
 def pad_wall_sentences(case: Case) -> list[str]:
