@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A stand-in for worker processes: work is done at once in this process, where patches hold."""
+"""A substitute for worker processes: work is done at once in this process, with its patches."""
 
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future

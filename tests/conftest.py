@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The boom of Rusiński and Wyciślok (1997), which most tests are about."""
+"""Common fixtures: the boom of Rusiński and Wyciślok (1997), caches, ranks."""
 
 import os
 import shutil
@@ -38,7 +38,7 @@ def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 @pytest.fixture(autouse=True, scope="session")
 def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Compile in the first of several workers the loops that most tests of motions need."""
+    """Compile the loops of most motions in the first of several workers."""
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw0":
         from tests.loops import compile_loops
         from tests.rubbing import compiled_in
@@ -47,7 +47,9 @@ def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Function]) -> None:
-    """Put slow files first, shells without motions before all, so that all workers stay busy."""
+    """Put slow files first, beginning with shells without motions, so that all workers stay
+    busy.
+    """
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: (item.path not in slow, _moves(item)))
 
@@ -69,7 +71,9 @@ def steel() -> Material:
 
 @pytest.fixture(scope="session")
 def paper_boom(steel: Material) -> Boom:
-    """Two segments on supports at 0 and 2 m, a play of 14 mm at 9 and 10 m, the load q."""
+    """Return two segments on supports at 0 and 2 m, with a play of 14 mm at 9 and 10 m and the load
+    q.
+    """
     outer_box = infer_outer_section(83.16 / steel.density, 3.7986e-4, 494.5 / 302.7)
     outer = Segment(
         name="outer",
@@ -111,7 +115,7 @@ def spatial_boom(paper_boom: Boom) -> Boom:
 
 @pytest.fixture(scope="session")
 def paper_law() -> PowerContact:
-    """(4) with the paper's k, n and Δ."""
+    """Return (4) with the paper's k, n and Δ."""
     return PowerContact(stiffness=1.0e13, exponent=2.0).with_clearance(7.0e-3)
 
 
@@ -132,7 +136,7 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Draw one figure per run in tests of other things: figures take longer than beam motions."""
+    """Draw only one figure per run, since figures take longer than motions of beams."""
     from runs.report import figures
 
     monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
@@ -140,7 +144,7 @@ def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.fixture
 def unprinted(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Figures are made, but what lays them out and prints them is left out, which takes longer."""
+    """Make figures without their layout and printing, which take most of the time."""
     from runs.report import theme
 
     monkeypatch.setattr(theme.Canvas, "print_figure", blank)
@@ -187,7 +191,7 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
 
 @contextmanager
 def _on_one_core() -> Iterator[None]:
-    """Keep this thread, and the processes that it starts, on one core: its test worker's."""
+    """Keep this thread, and the processes that it starts, on the core of the test worker."""
     worker = os.environ.get("PYTEST_XDIST_WORKER", "gw0").removeprefix("gw")
     cores = os.sched_getaffinity(0)
     os.sched_setaffinity(0, {sorted(cores)[int(worker) % len(cores)]})

@@ -21,9 +21,10 @@ ARM = (2.6 * 1.0 - 0.05 * 1.7) / hypot(1.7, 1.0)
 
 
 def raised() -> tuple[Boom, float]:
-    """At 50° under 80 kg/m, 400 kg at the tip and 3 kN at 8 m; the cylinder's force in N.
+    """Return a boom at 50° under 80 kg/m, 400 kg at the tip and 3 kN at 8 m, and its cylinder force
+    in N.
 
-    All weights press the boom along itself, 0.35 m above the pin, and so help the cylinder.
+    The weights compress the boom 0.35 m above the pin, which reduces the cylinder force.
     """
     across, along = GRAVITY * cos(radians(50.0)), GRAVITY * sin(radians(50.0))
     segment = _segment(load=-80.0 * across, masses=(PointMass(LENGTH, 400.0),))
@@ -38,7 +39,9 @@ def raised() -> tuple[Boom, float]:
 
 
 def level() -> tuple[Boom, float]:
-    """Level under 10 kN at the tip, with 50 kN along the boom; the cylinder's force in N."""
+    """Return a level boom under 10 kN at the tip and 50 kN along the boom, and its cylinder force
+    in N.
+    """
     pressed = with_compression([_segment()], [], [Thrust(0, LENGTH, 50.0e3)])
     force = (10.0e3 * LENGTH - 50.0e3 * DEPTH) / ARM
     assert force == pytest.approx(64.7e3, rel=1e-4)

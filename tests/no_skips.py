@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A plugin, ``pytest -p tests.no_skips``: a skipped test fails, where every tool is installed."""
+"""Plugin ``pytest -p tests.no_skips``: skipped tests fail, for environments with all tools."""
 
 from collections.abc import Generator
 from typing import TypeVar

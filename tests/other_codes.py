@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Programs beside which tests hold results; `make other-codes` installs them.
+"""Programs for comparison in tests; `make other-codes` installs them.
 
-They stand in an environment of their own: DOLFINx is built against another numpy than they need.
+They have an environment of their own, since DOLFINx needs another version of numpy.
 """
 
 import subprocess

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pages of the documentation, and the modules that make parts of them."""
+"""Pages of the documentation, and the modules that generate parts of them."""
 
 import re
 import sys
@@ -35,14 +35,14 @@ def toml_blocks(page: str) -> list[str]:
 
 @pytest.fixture(scope="session")
 def lift() -> str:
-    """Return the case that the tutorial builds up."""
+    """Return the complete case of the tutorial."""
     return "\n".join(toml_blocks("tutorial.md"))
 
 
 def merged(case: dict[str, Any], fragment: str) -> dict[str, Any]:
-    """Return a case with the tables of a fragment in place of its own.
+    """Return a case with some tables replaced by those of a fragment.
 
-    A segment replaces that of its name, a joint that of its inner segment.
+    A segment replaces the one with its name, a joint the one with its inner segment.
     """
     result = dict(case)
     for key, value in tomllib.loads(fragment).items():

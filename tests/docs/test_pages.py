@@ -104,7 +104,7 @@ def test_each_key_of_the_schema_has_its_row(reference: ModuleType) -> None:
 
 
 def test_the_page_names_each_table() -> None:
-    """Reference: the schema, whose lists of tables stand in double brackets."""
+    """Reference: the schema; lists of tables have double brackets."""
     page = (DOCS / "case-file.md").read_text("utf-8")
     for key, entry in case_schema()["properties"].items():
         if "$ref" in str(entry):

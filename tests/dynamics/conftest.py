@@ -20,7 +20,7 @@ def one_mass(
 ) -> GapSystem:
     """Return a mass in kg on a spring in N/m and a dashpot in N·s/m, before a stop.
 
-    Its only modal coordinate is √m times the place, which ``tip`` observes.
+    Its only modal coordinate is √m times the position; ``tip`` is the position.
     """
     row = np.array([1.0 / np.sqrt(mass)])
     laws = [] if law is None else [law]

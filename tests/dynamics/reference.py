@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Small systems, and how another code moves them."""
+"""Small systems, and their motions by another code."""
 
 from dataclasses import replace
 
@@ -21,7 +21,7 @@ _APART = 1.0e-6
 
 
 def two_modes(exponent: float = 2.0) -> GapSystem:
-    """Two modes under load that swing against a one-sided stop, once within 0.6 s."""
+    """Return two modes under load that hit a one-sided stop once within 0.6 s."""
     law = PowerContact(5.0e3 * 20.0 ** (exponent - 2.0), exponent).upper().with_clearance(0.05)
     first = {"first": Observer(np.array([1.0, 0.0]))}
     return modal_system([9.0, 60.0], [2.0, 5.0], [1.0, 0.6], [law], observers=first)
@@ -37,7 +37,7 @@ def table_slope(table: RowTable, s: float) -> Array:
 def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
     """Return the states (num_times, num_modes) by scipy's DOP853 (other code).
 
-    Friction rows must slide all the time: their law is smooth then.
+    Friction rows must slide all the time, so that their law is smooth.
     """
     system, n = motion.system, motion.system.num_modes
     times = motion.output_step * np.arange(motion.outputs + 1)
@@ -80,13 +80,13 @@ def runge_kutta(motion: Motion, max_step: float = 1.0e-3) -> Array:
 
 
 def errors_in_the_step(motion: Motion, expected: Array, steps: Array) -> Array:
-    """Return the largest error of the states with each step, as a part of the largest state."""
+    """Return the largest error of the states for each step, as a fraction of the largest state."""
     size = np.abs(expected).max()
     return np.array([np.abs(FixedStep(h)(motion).states - expected).max() / size for h in steps])
 
 
 def slopes(errors: Array) -> Array:
-    """Return the orders that errors of steps, each half the last one, show."""
+    """Return the orders of convergence from errors of steps, each half the previous one."""
     return np.log2(errors[:-1] / errors[1:])
 
 

@@ -27,7 +27,7 @@ EVERY: list[Integrator] = [FixedStep(1e-3), AdaptiveStep(1e-2), StepSchedule((4,
 
 @pytest.mark.parametrize("integrator", EVERY, ids=str)
 def test_the_steps_of_a_run_can_be_made_again(integrator: Integrator) -> None:
-    """Reference: other code path, to the last bit, of a chaotic motion; progress is told."""
+    """Reference: other code path, a chaotic motion to the last bit. The progress is reported."""
     parts: list[float] = []
     run = pickle.loads(pickle.dumps(integrator))(MOTION, parts.append)
     again = integrator.like(run)(MOTION)
@@ -40,13 +40,15 @@ def test_the_steps_of_a_run_can_be_made_again(integrator: Integrator) -> None:
 
 
 def unjoined(motion: Motion) -> Motion:
-    """With a dashpot of no strength, beside which every step is made on its own."""
+    """Return the motion with a dashpot of 0 N·s/m, so that no steps are joined."""
     system = motion.system
     return replace(motion, system=replace(system, dashpots=np.zeros((1, system.num_modes))))
 
 
 def test_a_schedule_makes_its_steps() -> None:
-    """Reference: by hand. Windows of 30 outputs in 4 and 16 steps each, the rest in 2."""
+    """Reference: by hand. Two windows of 30 outputs have 4 and 16 steps per output, later ones
+    2.
+    """
     run = StepSchedule((4, 16, 2), 30)(unjoined(MOTION))
     assert run.data.attrs["steps"] == 30 * 4 + 30 * 16 + 140 * 2
     assert run.data.attrs["step"] == pytest.approx(1e-2 / 16.0)
@@ -57,7 +59,7 @@ def test_a_schedule_makes_its_steps() -> None:
 
 
 def test_the_step_fits_the_output(one_mass: OneMass) -> None:
-    """Reference: by hand. 0.1 s in four steps; the duration is a whole number of outputs."""
+    """Reference: by hand. 0.1 s has four steps; the duration is a whole number of outputs."""
     motion = Motion(one_mass(1.0, spring=1.0), 1.04, output_step=0.1)
     run = FixedStep(0.03)(unjoined(motion))
     assert run.time[-1] == pytest.approx(1.0, rel=1e-15)
@@ -67,8 +69,7 @@ def test_the_step_fits_the_output(one_mass: OneMass) -> None:
 
 
 def test_steps_without_contact_are_joined() -> None:
-    """Reference: other code path, every step on its own, equal to round-off until chaos amplifies
-    it."""
+    """Reference: other code path, single steps, to round-off until chaos amplifies it."""
     for step in (1e-2 / 64.0, 1e-2 / 96.0):
         motion = replace(MOTION, duration=0.5)
         joined, single = FixedStep(step)(motion), FixedStep(step)(unjoined(motion))
@@ -102,7 +103,9 @@ REGULAR = {
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 2e-4])
 @pytest.mark.parametrize("what", REGULAR)
 def test_a_regular_motion_keeps_its_tolerance(what: str, tolerance: float) -> None:
-    """Reference: the same motion in steps a tenth as long; the error is told, and not far off."""
+    """Reference: the same motion with a tenth of the step. The reported error is near the true
+    one.
+    """
     motion = replace(REGULAR[what], output_step=5e-3)
     run = AdaptiveStep(tolerance)(motion)
     substeps = run.data.attrs["substeps"]
@@ -127,7 +130,9 @@ def test_half_the_step_leaves_a_quarter_of_the_error() -> None:
 
 
 def test_chaos_ends_the_refinement() -> None:
-    """Reference: by hand, the most steps; the energy is there, and the error is told."""
+    """Reference: by hand, the maximum number of steps. Energy is conserved, and the error is
+    reported.
+    """
     run = AdaptiveStep()(Motion(CHAOTIC, 40.0, 1e-2))
     assert run.data.attrs["steps"] <= 1.1 * MOST_STEPS
     assert run.data.attrs["step_error"] > 1e-3
@@ -135,7 +140,7 @@ def test_chaos_ends_the_refinement() -> None:
 
 
 def test_fast_loads_are_sampled(one_mass: OneMass) -> None:
-    """Reference: analytic, h times 2π · 300 Hz is half at most, though the tip hardly feels it."""
+    """Reference: analytic. h times 2π · 300 Hz is at most ½, although the tip hardly reacts."""
     push = Excitation(np.array([1.0]), Sine(300.0))
     system = replace(one_mass(1.0, spring=4.0, force=3.0), excitations=[push])
     run = AdaptiveStep(0.1)(Motion(system, 1.0, 1e-2))
@@ -143,8 +148,9 @@ def test_fast_loads_are_sampled(one_mass: OneMass) -> None:
 
 
 def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
-    """Reference: analytic, the weight. A stiff floor is pressed at 32 rad a step: forces of single
-    steps swing about their mean, means of pairs do not."""
+    """Reference: analytic, the weight. With 32 rad per step on a stiff floor, forces of single
+    steps oscillate about their mean, and means of pairs do not.
+    """
     system = one_mass(1.0, PowerContact(1.0e9, 1.0).lower(), force=-1000.0)
     start = np.array([-1.0e-6]), np.array([-0.028])
     pairs, single = (FixedStep(1e-3)(Motion(system, 0.1, h, *start)) for h in (2e-3, 1e-3))
@@ -160,7 +166,7 @@ def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
 def test_unresolved_peak_is_marked(
     one_mass: OneMass, stiffness: float, exponent: float, speed: float
 ) -> None:
-    """Reference: analytic, k pⁿ at ½ m v² = k pⁿ⁺¹/(n + 1), and half of √(m/F′(p)) for the step."""
+    """Reference: analytic, k pⁿ with ½ m v² = k pⁿ⁺¹/(n + 1), and a step of ½ √(m/F′(p))."""
     depth = ((exponent + 1.0) * 0.5 * speed**2 / stiffness) ** (1.0 / (exponent + 1.0))
     force, slope = stiffness * depth**exponent, exponent * stiffness * depth ** (exponent - 1.0)
     system = one_mass(2.0, PowerContact(stiffness, exponent).with_clearance(1e-3))

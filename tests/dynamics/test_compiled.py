@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Time loops compile anywhere, and give the same bits whoever has compiled them."""
+"""Compilation of the time loops, and equal bits of compiled and cached loops."""
 
 import os
 import shutil
@@ -20,7 +20,7 @@ print(config.CACHE_DIR)
 
 
 def test_a_read_only_home_and_installation(tmp_path: Path) -> None:
-    """A file where a folder should be stops root, too."""
+    """A file in place of a folder prevents writing, also for root."""
     shutil.copytree(
         ROOT / "dynamics", tmp_path / "dynamics", ignore=shutil.ignore_patterns("__pycache__")
     )
@@ -48,7 +48,7 @@ def test_a_read_only_home_and_installation(tmp_path: Path) -> None:
 
 
 def _rubbing(environment: dict[str, str]) -> str:
-    """Return the output of a separate process about a motion with friction."""
+    """Return the motion with friction as printed by a separate process."""
     program = [sys.executable, "-m", "tests.rubbing"]
     return subprocess.run(
         program, cwd=ROOT, env=os.environ | environment, capture_output=True, check=True, text=True
@@ -59,7 +59,7 @@ def _rubbing(environment: dict[str, str]) -> str:
 def test_compiled_and_cached_loops_give_equal_bits(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
-    """Reference: the same motion in a process that finds the loops compiled."""
+    """Reference: the same motion in a process with cached loops."""
     of_worker = rubbing.compiled_in(tmp_path_factory)
     environment = {} if of_worker.exists() else {"NUMBA_CACHE_DIR": str(tmp_path)}
     one = of_worker.read_text("utf-8") if of_worker.exists() else _rubbing(environment)

@@ -21,7 +21,7 @@ LAW = POWER.with_clearance(7.0e-3)
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
 def test_force_is_the_gradient_of_the_energy(exponent: float) -> None:
-    """Reference: analytic. A central difference of the potential, second order in its step."""
+    """Reference: analytic, a central difference of the potential, of second order in its step."""
     law = PowerContact(1.0e13, exponent, stiffness_below=3.0e12).with_clearance(7.0e-3)
     y = np.linspace(-8.0e-3, 8.0e-3, 41)
     y = y[np.abs(np.abs(y) - law.onset(1.0)) > 1.0e-5]
@@ -35,7 +35,7 @@ def test_force_is_the_gradient_of_the_energy(exponent: float) -> None:
 
 
 def test_each_side_has_its_own_stiffness() -> None:
-    """Reference: analytic, 10 µm beyond 7 mm: k p² and k p³/3."""
+    """Reference: analytic, k p² and k p³/3 at 10 µm beyond the play of 7 mm."""
     y = np.array([-7.01e-3, 7.01e-3])
     assert LAW.force(y) == pytest.approx([-4.0e2, 1.0e3], rel=1e-9)
     assert LAW.energy(y) == pytest.approx([4.0e-3 / 3.0, 1.0e-2 / 3.0], rel=1e-9)
@@ -102,7 +102,7 @@ def test_bad_values_are_refused(arguments: dict[str, float], message: str) -> No
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 10.0])
 @pytest.mark.parametrize("force", [1.0e-40, 1.0e-18, 1.0e-3, 1.0e5, 1.0e200])
 def test_the_slope_is_known_at_any_force(exponent: float, force: float) -> None:
-    """Reference: analytic, k pⁿ = F on the stiffer side, of extreme forces too."""
+    """Reference: analytic, k pⁿ = F on the stiffer side, also for extreme forces."""
     n, k = exponent, 1.0e13
     law = PowerContact(0.5 * k, n, stiffness_below=k).with_clearance(7.0e-3)
     assert law.slope_at(force) == pytest.approx(n * k * (force / k) ** ((n - 1.0) / n), rel=1e-9)
@@ -121,7 +121,7 @@ UNEQUAL = SOFT_ABOVE.with_clearance(4.0e-3, 10.0e-3)
 
 
 def test_each_side_has_its_own_clearance() -> None:
-    """Reference: analytic, 1 mm beyond either: 1e6 · 1e-6 and 2e9 · 1e-6."""
+    """Reference: analytic, 1e6 · 1e-6 and 2e9 · 1e-6 at 1 mm beyond the clearance of each side."""
     y = np.array([-11.0e-3, -9.0e-3, 3.0e-3, 5.0e-3])
     assert UNEQUAL.force(y) == pytest.approx([-2000.0, 0.0, 0.0, 1.0], rel=1e-9)
     (limits,) = contact_limits([UNEQUAL])
@@ -177,8 +177,9 @@ def test_preloaded_mass_leaves_one_contact_side(one_mass: OneMass) -> None:
 
 @pytest.mark.parametrize("restitution", [0.05, 0.3, 0.8, 0.99, 0.99999, 1.0 - 1e-12])
 def test_damping_of_a_restitution(restitution: float) -> None:
-    """Reference: analytic, (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d, and d = 3(1 − e)/(2 v) close to
-    e = 1 (Hunt and Crossley 1975)."""
+    """Reference: analytic, (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d, and d = 3(1 − e)/(2 v) near e =
+    1 (Hunt and Crossley 1975).
+    """
     speed = 1.7
     damping = restitution_damping(restitution, speed)
     x = damping * speed
@@ -199,7 +200,7 @@ def test_a_full_rebound_needs_no_damping_and_speed_divides_it() -> None:
 def test_a_mass_rebounds_as_it_should(
     one_mass: OneMass, exponent: float, restitution: float
 ) -> None:
-    """Reference: analytic, the same e for every exponent. The error falls with the step."""
+    """Reference: analytic, the same e for every exponent. The error decreases with the step."""
     mass, speed = 3.0, 2.0
     damping = restitution_damping(restitution, speed)
     stiffness = {1.0: 1.0e6, 1.5: 1.0e8, 2.0: 1.0e9}[exponent]
@@ -219,7 +220,7 @@ def test_a_mass_rebounds_as_it_should(
 
 
 def test_contact_never_pulls(one_mass: OneMass) -> None:
-    """A load tears a mass off a stop faster than 1/d: the contact opens and loses its energy."""
+    """A load pulls a mass off a stop faster than 1/d; the contact opens and loses its energy."""
     stop = PowerContact(stiffness=1.0e4, exponent=1.0, damping=5.0).upper()
     system = one_mass(1.0, stop, force=-2.0e3)
     run = FixedStep(1e-5)(Motion(system, 0.05, output_step=1e-4, position=np.array([0.1])))
@@ -250,7 +251,7 @@ TABLE = TableContact(DEPTHS, FORCES).with_clearance(7.0e-3)
 
 
 def test_the_force_is_the_table_and_its_last_line() -> None:
-    """Reference: analytic, linear interpolation and, beyond, 6e6 N/m."""
+    """Reference: analytic, linear interpolation in the table, and 6e6 N/m beyond it."""
     depth = np.linspace(0.0, 4.0e-3, 33)
     expected = np.interp(depth, (0.0, *DEPTHS), (0.0, *FORCES))
     np.testing.assert_allclose(TABLE.force(7.0e-3 + depth), expected, atol=1e-8)
@@ -277,7 +278,7 @@ def test_parts_are_tables_again() -> None:
 
 
 def test_one_line_is_a_linear_stop() -> None:
-    """Reference: other code, the linear law; stiffnesses for the step among it."""
+    """Reference: other code, the linear law, including the stiffness for the step."""
     table, power = (
         TableContact((1.0e-3,), (2.0e3,)).with_clearance(5.0e-3),
         PowerContact(2.0e6, 1.0).with_clearance(5.0e-3),
@@ -288,7 +289,7 @@ def test_one_line_is_a_linear_stop() -> None:
 
 
 def test_a_mass_on_a_table_swings_on_its_lines(one_mass: Callable[..., GapSystem]) -> None:
-    """Reference: analytic, ½ m v² is the area under the table, at the end of the stiff line."""
+    """Reference: analytic. ½ m v² equals the area under the table up to the largest penetration."""
     motion = Motion(one_mass(100.0, TABLE), 0.5, 1e-2, velocity=np.array([4.0]))
     run = FixedStep(1e-5)(motion)
     deepest = float(run.data["contact_force_peak"].max())

@@ -83,7 +83,7 @@ def test_all_loads_vary_and_nothing_else() -> None:
 
 @pytest.mark.parametrize(("above", "expected"), [(0.002, 0.002002), (0.0, 0.0)])
 def test_unequal_plays_vary_by_equal_fractions(above: float, expected: float) -> None:
-    """Reference: by hand. 1.001 times 2 and 12 mm are 2.002 and 12.012 mm, and nothing stays so."""
+    """Reference: by hand. 1.001 times 2 and 12 mm are 2.002 and 12.012 mm; zero plays stay zero."""
     (law,) = CHAOTIC.laws
     sided = law.law.with_clearance(above, 0.012)
     motion = Motion(replace(CHAOTIC, laws=[sided]), 1.0)
@@ -94,7 +94,7 @@ def test_unequal_plays_vary_by_equal_fractions(above: float, expected: float) ->
 
 
 def test_members_make_the_steps_of_the_first() -> None:
-    """Reference: other code path, a single run of the changed system in those steps."""
+    """Reference: other code path, a single run of the changed system with the same steps."""
     motion, adaptive = Motion(CHAOTIC, 2.0, 1e-2), AdaptiveStep(1e-2)
     ensemble = integrate_ensemble(motion, 2, 1e-3, 7, "load", adaptive)
     factor = 1.0 + float(ensemble["change"][1])
@@ -106,7 +106,9 @@ def test_members_make_the_steps_of_the_first() -> None:
 
 @pytest.mark.parametrize("integrator", [FixedStep(1e-3), AdaptiveStep(1e-2)])
 def test_other_processes_give_the_same(integrator: Integrator) -> None:
-    """Chaotic: a last digit that differed would show."""
+    """Reference: other code path. The motion is chaotic, so that any difference of bits would
+    grow.
+    """
     found = []
     with ProcessPoolExecutor(1, get_context("spawn")) as processes:
         assert processes.submit(os.getpid).result() != os.getpid()
@@ -143,7 +145,9 @@ with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:
 def test_another_rank_gives_the_same(
     two_ranks: Callable[..., subprocess.CompletedProcess[str]],
 ) -> None:
-    """Chaotic: a last digit that differed would show."""
+    """Reference: other code path. The motion is chaotic, so that any difference of bits would
+    grow.
+    """
     pytest.importorskip("mpi4py", reason="ranks need mpi4py")
     answer = two_ranks(OTHER_RANK)
     assert (answer.returncode, answer.stdout.split()) == (0, ["identical"]), answer.stderr
@@ -161,7 +165,9 @@ def test_keeps_labels_and_nothing_more() -> None:
 
 
 def test_changes_are_uniform_and_spare_member_0() -> None:
-    """Reference: analytic. A uniform law within ±ε has the mean 0 and the deviation ε/√3."""
+    """Reference: analytic. A uniform distribution within ±ε has the mean 0 and the deviation
+    ε/√3.
+    """
     changes = perturbations(10_001, 1e-3, 5)
     assert changes[0] == 0.0
     assert np.abs(changes).max() < 1e-3
@@ -172,7 +178,9 @@ def test_changes_are_uniform_and_spare_member_0() -> None:
 def test_the_same_seed_gives_the_same_on_any_number_of_cores(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Chaotic: a last digit that differed would show."""
+    """Reference: other code path. The motion is chaotic, so that any difference of bits would
+    grow.
+    """
     found = []
     for cores in ({0}, {0, 1, 2, 3, 4}):
         monkeypatch.setattr(os, "sched_getaffinity", lambda _, cores=cores: cores)
@@ -183,7 +191,9 @@ def test_the_same_seed_gives_the_same_on_any_number_of_cores(
 
 
 def test_completed_motion_serves_as_member_0() -> None:
-    """Chaotic: a last digit that differed would show."""
+    """Reference: other code path. The motion is chaotic, so that any difference of bits would
+    grow.
+    """
     motion, way = Motion(CHAOTIC, 20.0, 1e-2), FixedStep(1e-3)
     found = [
         integrate_ensemble(motion, 3, 1e-6, 3, "load", way, unchanged=unchanged)
@@ -252,7 +262,7 @@ def test_a_linear_system_has_no_horizon() -> None:
 
 @dataclass(frozen=True)
 class Counted:
-    """Steps whose runs are counted."""
+    """Integrator that counts its runs."""
 
     way: Integrator
     runs: list[Motion]
@@ -271,8 +281,9 @@ class Counted:
 
 
 def test_stops_when_it_is_known() -> None:
-    """Reference: by hand, the numbers of runs: 4 besides the motion of the linear system, 3 for
-    each change of the chaotic one; within a quarter the finer step alone has parted."""
+    """Reference: by hand, the numbers of runs. The linear system needs 4 besides its motion, the
+    chaotic system 3 for each change. Within a quarter of the run only the finer step diverges.
+    """
     sizes = [1e-12, 1e-10, 1e-8, 1e-6]
     for system, begun, ended in ((LINEAR, 1 + 3, 1 + 3), (CHAOTIC, 1 + 4 * 3, 4 * 3)):
         motion = Motion(system, 20.0, 1e-2)
@@ -306,8 +317,9 @@ def test_early_divergence_ends_the_run() -> None:
 
 
 def test_horizon_of_a_known_growth() -> None:
-    """Reference: analytic. ±1e-6 exp(2t) passes 1 % of the range of 2 at ln(2e4)/2, and 20 % at
-    ln(4e5)/2."""
+    """Reference: analytic. ±1e-6 exp(2t) exceeds 1 % of the range of 2 at ln(2e4)/2 and 20 % at
+    ln(4e5)/2.
+    """
     time = np.linspace(0.0, 10.0, 10_001)
     apart = 1e-6 * np.exp(2.0 * time)
     members = np.sin(10.0 * time) + np.array([0.0, 1.0, -1.0, 0.3])[:, None] * apart
@@ -317,7 +329,7 @@ def test_horizon_of_a_known_growth() -> None:
 
 
 def test_growth_of_known_horizons() -> None:
-    """Reference: analytic, the line itself; a horizon that is not known does not count."""
+    """Reference: analytic, the given line. Unknown horizons do not count."""
     relatives = np.array([1e-12, 1e-10, 1e-8, 1e-6, 1e-4])
     times = (np.log(0.02) - np.log(relatives * 0.7)) / 3.0
     times[0] = np.nan
@@ -332,8 +344,9 @@ def test_growth_of_known_horizons() -> None:
 
 
 def test_chance_is_no_growth() -> None:
-    """Reference: analytic. A slope of −0.01 s per size under a scatter of ±0.1 s is within twice
-    its error, 0.1/√(5·2); one of −0.1 s is not."""
+    """Reference: analytic. With a scatter of ±0.1 s, a slope of −0.01 s per size is within twice
+    its error, 0.1/√(5·2); a slope of −0.1 s is not.
+    """
     relatives = np.array([1e-12, 1e-10, 1e-8, 1e-6, 1e-4])
     noise = 0.1 * np.array([1.0, -1.0, 0.0, -1.0, 1.0])
     flat, steep = (-slope * np.arange(5.0) + noise for slope in (0.01, 0.1))
@@ -342,8 +355,9 @@ def test_chance_is_no_growth() -> None:
 
 
 def test_smaller_changes_put_off_the_horizon_of_a_chaotic_system() -> None:
-    """Reference: analytic in kind. T falls with ln ε, and λ is what the line says, from one
-    partner a size as from seven."""
+    """Reference: analytic. T decreases with ln ε at the rate λ of the line, with one partner per
+    size as with seven.
+    """
     rates = []
     for partners in (1, 7):
         found = measure_horizons(
@@ -361,8 +375,9 @@ def test_smaller_changes_put_off_the_horizon_of_a_chaotic_system() -> None:
 
 @pytest.mark.parametrize("integrator", [FixedStep(1e-4), AdaptiveStep(1e-3)])
 def test_a_finer_step_acts_as_a_change(integrator: Integrator) -> None:
-    """Reference: other code path. Data changed by as much part from the run at the time at which
-    the finer one does, within a tenth of it."""
+    """Reference: other code path. Data with the equivalent change diverge from the run at the same
+    time as the finer step, within a tenth of it.
+    """
     found = measure_horizons(
         Motion(CHAOTIC, 40.0, 1e-2), [1e-10, 1e-8, 1e-6], "load", integrator=integrator
     )
@@ -374,7 +389,9 @@ def test_a_finer_step_acts_as_a_change(integrator: Integrator) -> None:
 
 
 def test_says_whether_step_or_physics_limits() -> None:
-    """The step's error changes a run more than 1e-12 of the load does, and less than 1e-2."""
+    """The error of the step has a larger effect than 1e-12 of the load, and a smaller one than
+    1e-2.
+    """
     for relative, expected in ((1e-12, "step"), (1e-2, "physics")):
         found = measure_horizons(Motion(CHAOTIC, 20.0, 1e-2), [relative], "load", partners=1)
         assert found.limits[0] == expected
@@ -382,8 +399,9 @@ def test_says_whether_step_or_physics_limits() -> None:
 
 
 def test_growth_decides_where_chance_would() -> None:
-    """Reference: by hand. The finer step passes the large share first by chance, and acts as 1e-9
-    at the small one."""
+    """Reference: by hand. The finer step is the first to reach the large share by chance. At the
+    small share it is equivalent to 1e-9.
+    """
     growth = Growth(rate=10.0, start=-1.0, scatter=0.0)
     found = Horizons(
         relatives=np.array([1e-12, 1e-6]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""States of rest, and second-order effects of axial forces."""
+"""Equilibria, and second-order effects of axial forces."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -23,7 +23,7 @@ from tests.touching import touching
 
 
 def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
-    """2 kg on a spring, and a stop of 3e6 N/mⁿ after 4 mm above alone."""
+    """Return 2 kg on a spring, with a stop of 3e6 N/mⁿ after 4 mm on the upper side only."""
     row = np.array([1.0 / np.sqrt(2.0)])
     law = PowerContact(3.0e6, exponent).upper().with_clearance(4.0e-3)
     return modal_system([omega2], [0.0], row, [law], tip=row)
@@ -46,7 +46,9 @@ def test_spring_carries_the_load_before_contact() -> None:
 
 @pytest.mark.parametrize(("weight", "expected"), [(0.0, 1.0e-3), (4.0, 1.0e-3 - 4.0 / 3.0e6)])
 def test_shim_preload_displaces_an_unloaded_mass(weight: float, expected: float) -> None:
-    """Reference: analytic. A shim 1 mm beyond the play below lifts a mass until it is free."""
+    """Reference: analytic. A shim 1 mm thicker than the play below lifts a mass until it is
+    free.
+    """
     below = PowerContact(3.0e6, 1.0).lower().with_clearance(-1.0e-3)
     above = mass_over_stop(1.0, 0.0)
     row, laws, places = above.rows[0], [*above.laws, below], np.zeros(2, dtype=np.int64)
@@ -55,14 +57,14 @@ def test_shim_preload_displaces_an_unloaded_mass(weight: float, expected: float)
 
 
 def test_unsupported_mass_has_no_equilibrium() -> None:
-    """Below the mass there is no stop."""
+    """The mass has no stop below it."""
     system = mass_over_stop(1.0, 0.0)
     with pytest.raises(NumericsError, match="no static equilibrium"):
         equilibrium(system, -50.0 * system.rows[0])
 
 
 def test_buckled_system_has_no_equilibrium() -> None:
-    """They take more than its spring gives."""
+    """The axial forces exceed the stiffness of its spring."""
     free = {"rows": np.zeros((0, 1)), "laws": [], "station_of_row": np.zeros(0, dtype=np.int64)}
     buckled = replace(mass_over_stop(1.0, 900.0), **free, geometric_stiffness=np.array([[901.0]]))
     message = "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
@@ -98,8 +100,9 @@ def _tipping(one_mass: Callable[..., GapSystem]) -> GapSystem:
 
 
 def test_modes_soften_as_the_whole_stiffness_does() -> None:
-    """Reference: analytic, the eigenvalues of diag(ω²) − G by another routine; translations keep ω
-    = 0."""
+    """Reference: analytic, the eigenvalues of diag(ω²) − G by another routine. Translations keep
+    ω = 0.
+    """
     omega2 = np.array([0.0, 0.0, 4.0e2, 9.0e4])
     slope = np.array([[0.0, 0.3, 0.7, -0.2], [0.0, 0.5, -0.4, 0.6]])
     geometric = 20.0 * slope.T @ slope
@@ -113,7 +116,7 @@ def test_modes_soften_as_the_whole_stiffness_does() -> None:
 
 
 def test_a_mode_buckles_where_its_stiffness_vanishes() -> None:
-    """Reference: analytic, K/K_G of one coordinate; of two, the root of a determinant."""
+    """Reference: analytic, K/K_G for one coordinate, and the root of a determinant for two."""
     assert buckling_factor(np.array([[9.0]]), np.array([[2.0]])) == pytest.approx(4.5, rel=1e-14)
     stiffness, geometric = np.array([[9.0, 2.0], [2.0, 16e6]]), np.array([[2.0, 1.0], [1.0, 1e6]])
     factor = buckling_factor(stiffness, geometric)
@@ -126,7 +129,9 @@ def test_a_mode_buckles_where_its_stiffness_vanishes() -> None:
 
 
 def test_unstable_mass_reaches_its_stop_at_the_analytic_time(tipping: GapSystem) -> None:
-    """Reference: analytic. From rest at a, a cosh κt is the clearance at acosh(Δ/a)/κ."""
+    """Reference: analytic. From rest at a, the mass moves by a cosh κt and touches at
+    acosh(Δ/a)/κ.
+    """
     start = 1.0e-4
     motion = Motion(tipping, 2.0, 1e-3, position=np.array([start * np.sqrt(MASS)]))
     run = FixedStep(1e-5)(motion)
@@ -147,7 +152,7 @@ def test_unstable_mass_rests_on_its_stop(tipping: GapSystem) -> None:
 
 
 def test_the_pressed_boom_is_damped_as_asked_for() -> None:
-    """Reference: the ratio that is asked for, of a mass bonded to an elastic one beside it."""
+    """Reference: the given ratio, for a mass bonded to an elastic one."""
     two = modal_system([NEGATIVE / MASS, 400.0], [-9.0, 0.0], [0.5, -0.4], [STOPS], tip=[1.0, 1.0])
     omega, ratios = closed_contact_damping(with_modal_damping(two, 0.03))
     assert (omega > 0.0).all()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Loads that change with time: their histories, and the motions that they make."""
+"""Histories of loads, and motions under them."""
 
 import re
 from collections.abc import Callable, Sequence
@@ -61,8 +61,9 @@ KINKS = {**KINKED, "a jump": PiecewiseLinear((0.507, 0.507 + 1.0e-6), (0.0, 1.0)
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-3, 1.0e-4])
 @pytest.mark.parametrize("where", KINKS)
 def test_kinks_are_followed_wherever_they_are(where: str, step: float) -> None:
-    """Reference: analytic, for each mode by its range. Within a step the history is a line with its
-    mean and first moment: what that leaves of a mode is of fourth order in ω h."""
+    """Reference: analytic, relative to the range of each mode. A step replaces the history by a
+    line with its mean and first moment; the error of a mode is of fourth order in ω h.
+    """
     run = FixedStep(step)(Motion(masses(KINKS[where]), 4.0, output_step=0.02))
     for omega in OMEGAS:
         expected = response(omega, KINKS[where], run.time)
@@ -71,7 +72,9 @@ def test_kinks_are_followed_wherever_they_are(where: str, step: float) -> None:
 
 
 def test_linear_fit_of_a_history_keeps_its_moments() -> None:
-    """Reference: analytic. ∫ and ∫ (t − t_m) of a sine, and of a jump at a quarter of a step."""
+    """Reference: analytic, integral and first moment of a sine, and of a jump at a quarter of a
+    step.
+    """
     times, w = np.linspace(0.3, 1.1, 5), 2.0 * np.pi * 0.6
     (before, after), h, middle = (times[:-1], times[1:]), 0.2, 0.5 * (times[1:] + times[:-1])
     mean, change = line_within(Sine(0.6), times)
@@ -113,7 +116,9 @@ def forced(time: Array, spring: float, dashpot: float, frequency: float, phase: 
 
 @pytest.mark.parametrize("dashpot", [0.0, 0.5, 20.0])
 def test_a_sine_against_its_closed_form(one_mass: OneMass, dashpot: float) -> None:
-    """Reference: analytic. Within steps the sine is a line with its moments: order four."""
+    """Reference: analytic. Steps replace the sine by lines with its moments, so that the order is
+    4.
+    """
     system = driven(one_mass(1.0, spring=30.0, dashpot=dashpot), 1.0, Sine(0.6, 0.4))
     errors = []
     for step in (0.08, 0.04, 0.02):
@@ -143,7 +148,7 @@ def test_excitations_add_up() -> None:
 
 @dataclass(frozen=True)
 class Own:
-    """A history that is none of ours: 1 and from t = 1 s on falling."""
+    """User-defined history: 1, and decreasing from t = 1 s on."""
 
     kinks: Sequence[float] = (1.0,)
     peak: float = 1.0
@@ -154,7 +159,7 @@ class Own:
 
 
 def test_a_history_of_one_s_own() -> None:
-    """Reference: the same as a table."""
+    """Reference: the same history as a table."""
     system = masses(PiecewiseLinear((0.0, 1.0, 3.0), (1.0, 1.0, -1.0)))
     own = replace(system, excitations=[Excitation(np.ones(len(OMEGAS)), Own())])
     runs = [FixedStep(0.01)(Motion(one, 2.0, 0.03)) for one in (own, system)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Dry friction: exact rest, the right way to it, never more than μ N and never a gain of energy."""
+"""Dry friction: exact sticking, correct sliding, at most μ N, and no gain of energy."""
 
 import re
 from collections.abc import Callable
@@ -31,15 +31,16 @@ def rubbing(system: GapSystem, *frictions: DryFriction, rows: Array | None = Non
 
 
 def modes(omega: Array, load: Array, rows: Array, limits: Array, **more: Any) -> GapSystem:
-    """Modes under load that friction rows with prescribed μ N couple."""
+    """Return loaded modes that are coupled by friction rows with prescribed μ N."""
     frictions = [DryFriction(0.25, j % 2, 4.0 * limit) for j, limit in enumerate(limits)]
     more |= {"observers": {"first": Observer(np.eye(omega.size)[0])}, "stations": [0.0, 1.0]}
     return modal_system(omega**2, load, friction_rows=rows, frictions=frictions, **more)
 
 
 def test_a_mass_on_a_spring_comes_to_rest(one_mass: OneMass) -> None:
-    """Reference: analytic. Each half cycle takes 2 μN/k from the amplitude, in the time π √(m/k),
-    until a turning point lies within μN/k; from there on nothing moves at all."""
+    """Reference: analytic. Each half cycle lasts π √(m/k) and reduces the amplitude by 2 μN/k,
+    until a turning point is within μN/k. Then the mass stays at rest.
+    """
     mass, spring, limit = 2.0, 50.0, 3.0
     system = rubbing(one_mass(mass, spring=spring), DryFriction(0.3, 0, limit / 0.3))
     half = np.pi * np.sqrt(mass / spring)
@@ -62,7 +63,7 @@ def test_a_mass_on_a_spring_comes_to_rest(one_mass: OneMass) -> None:
 
 
 def test_a_force_below_the_limit_moves_nothing(one_mass: OneMass) -> None:
-    """Reference: analytic. Sliding sets in beyond μ N, at (F − μ N)/m, and not before."""
+    """Reference: analytic. Only a force above μ N causes sliding, with (F − μ N)/m."""
     for force in (4.999, -4.999, 5.001):
         system = rubbing(one_mass(2.0, force=force), DryFriction(0.5, 0, 10.0))
         run = FixedStep(0.01)(Motion(system, 1.0, output_step=0.1))
@@ -71,14 +72,14 @@ def test_a_force_below_the_limit_moves_nothing(one_mass: OneMass) -> None:
 
 
 class Stretch:
-    """Motion of a system while the same rows slide, ``sign`` ±1, or rest, 0."""
+    """Motion of a system while the same rows slide (``sign`` ±1) or stick (0)."""
 
     def __init__(self, system: GapSystem, limits: Array, sign: Array) -> None:
         self.system, self.limits, self.sign = system, limits, sign
         self.held = np.flatnonzero(sign == 0.0)
 
     def forces(self, state: Array) -> Array:
-        """On all rows; on those at rest what keeps them there."""
+        """Return the forces of all rows; sticking rows have the force that keeps them at rest."""
         n, rows = self.system.num_modes, self.system.friction_rows
         forces = -self.limits * self.sign
         free = self.system.load - self.system.omega2 * state[:n] + rows.T @ forces
@@ -94,9 +95,9 @@ class Stretch:
 
 @dataclass(frozen=True)
 class Turn:
-    """Falls through zero when row j comes to rest, or cannot be held any longer.
+    """Event of row j: it comes to rest, or cannot stick any longer.
 
-    ``terminal`` and ``direction`` are what scipy's ``solve_ivp`` reads of an event.
+    ``terminal`` and ``direction`` are attributes for scipy's ``solve_ivp``.
     """
 
     stretch: Stretch
@@ -113,7 +114,7 @@ class Turn:
 
 
 def motion_by_events(system: GapSystem, limits: Array, velocity: Array, times: Array) -> Array:
-    """(num_times, num_modes) from scipy's DOP853, stopped where a row comes to rest or sets out."""
+    """Return states (num_times, num_modes) by scipy's DOP853, from event to event."""
     n = system.num_modes
     state = np.concatenate([np.zeros(n), velocity])
     sign = np.sign(system.friction_rows @ velocity)
@@ -169,7 +170,7 @@ def test_two_coupled_rows_against_located_events() -> None:
 
 
 def test_sticking_places_do_not_creep() -> None:
-    """100 000 steps of shaken modes, of which friction holds two places to the last digits."""
+    """In 100 000 steps of vibrating modes, friction keeps two points at rest to the last digits."""
     generator = np.random.default_rng(4)
     rows = generator.normal(size=(2, 8))
     system = modes(
@@ -190,8 +191,9 @@ def test_sticking_places_do_not_creep() -> None:
 
 
 def test_dependent_friction_rows_share_the_force() -> None:
-    """Reference: other code path. Doubled rows with half the limit move as single ones; only sums
-    of forces are unique."""
+    """Reference: other code path. Doubled rows with half the limit are equivalent to single rows;
+    only sums of forces are unique.
+    """
     row = COUPLED.friction_rows
     once = modes(np.sqrt(COUPLED.omega2), COUPLED.load, row, LIMITS)
     twice = modes(
@@ -209,7 +211,7 @@ def test_dependent_friction_rows_share_the_force() -> None:
 
 
 def sled(speed: float, fall: float, friction: DryFriction, stiffness: float = 1.0e6) -> GapSystem:
-    """2 kg that can slide (mode 0) on a floor that it is pressed to (mode 1) by 2 kg · 10 m/s²."""
+    """Return 2 kg that slides (mode 0) on a floor under its weight (mode 1), 2 kg · 10 m/s²."""
     root = np.sqrt(2.0)
     along, floor = np.array([1.0 / root, 0.0]), PowerContact(stiffness, 1.0).lower()
     rubbing = {"friction_rows": along[None], "frictions": [friction]}
@@ -220,8 +222,9 @@ def sled(speed: float, fall: float, friction: DryFriction, stiffness: float = 1.
 
 
 def test_a_sled_stops_where_its_weight_stops_it() -> None:
-    """Reference: analytic. Pressed by its weight alone, v²/(2 μ g) far; with a prescribed normal
-    force beside it, v²/(2 μ (g + N/m))."""
+    """Reference: analytic. The distance is v²/(2 μ g) under the weight, and v²/(2 μ (g + N/m)) with
+    an additional normal force.
+    """
     rest = np.array([0.0, -20.0 / 1.0e6 * np.sqrt(2.0)])
     for extra in (0.0, 8.0):
         system = sled(3.0, 0.0, DryFriction(0.5, 0, extra, (0,)))
@@ -236,7 +239,9 @@ def test_a_sled_stops_where_its_weight_stops_it() -> None:
 
 
 def test_a_bounce_takes_its_impulse_times_friction() -> None:
-    """Reference: analytic. The floor pushes by 2 m u from below, and μ times that from the side."""
+    """Reference: analytic. The impulse of the floor is 2 m u, and that of friction μ times as
+    large.
+    """
     system = replace(sled(3.0, 1.0, DryFriction(0.3, 0, 0.0, (0,))), load=np.zeros(2))
     start, velocity = np.array([0.0, 0.1]), np.array([3.0, -1.0]) * np.sqrt(2.0)
     errors = []
@@ -253,7 +258,7 @@ def test_a_bounce_takes_its_impulse_times_friction() -> None:
 
 
 def test_no_friction_is_no_friction(one_mass: OneMass) -> None:
-    """Reference: the same system without rows. μ = 0 changes nothing but round-off."""
+    """Reference: the same system without friction rows. μ = 0 changes only round-off."""
     plain = one_mass(4.0, PowerContact(1.0e4, 1.0).with_clearance(0.05), spring=100.0, force=30.0)
     one, two = (
         FixedStep(1e-4)(Motion(system, 2.0, output_step=0.01))

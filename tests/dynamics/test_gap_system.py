@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A gap system refuses shapes that do not agree, and knows what its matrices say."""
+"""Properties of gap systems, and refusal of inconsistent shapes."""
 
 import re
 from dataclasses import replace
@@ -18,7 +18,7 @@ RUB = DryFriction(0.2, station=1, normal_force=10.0, normal_rows=(0, 1))
 
 
 def parts() -> dict[str, Any]:
-    """Three modes, one of them rigid, and two contact rows."""
+    """Return three modes, one of them rigid, and two contact rows."""
     return {
         "omega2": np.array([9.0, 0.0, 4.0]) * np.pi**2,
         "load": np.array([1.0, 2.0, 3.0]),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motion of the frame of a boom, and loads that hang on it."""
+"""Slewing and luffing of a boom, and hanging loads."""
 
 from dataclasses import replace
 from typing import Literal
@@ -49,7 +49,8 @@ def hoisted(
 
 def test_factor_of_a_rigid_boom() -> None:
     """Reference: analytic, φ₂ = 1 + (v/g) √(k/m) of a load that leaves the ground at the speed
-    v."""
+    v.
+    """
     stiff = replace(mass_on_spring(), omega2=np.array([1.0e16]), load=np.zeros(1))
     load = HangingLoad(MASS, ROPE, GRAVITY, Stroke(3.0, SPEED), slack=0.0)
     motion = hoisted(load, stiff, 1.0, 1.0e-4)
@@ -91,7 +92,7 @@ def test_an_elastic_boom(cosine: float) -> None:
 
 
 def test_a_hanging_load_rests() -> None:
-    """Reference: analytic, the rope bears the weight and stays as long as it is."""
+    """Reference: analytic. The rope carries the weight at constant length."""
     load = HangingLoad(MASS, ROPE, GRAVITY)
     data = hoisted(load, mass_on_spring(), 0.2, 1.0e-3).data
     assert data["rope_force"].values == pytest.approx(np.full(201, load.weight), rel=1e-5)
@@ -125,7 +126,7 @@ def test_pendulum_on_a_support_with_a_constant_acceleration() -> None:
 
 
 def test_load_under_a_boom_at_constant_slewing_speed() -> None:
-    """Reference: analytic, ψ̇² R l/(g − ψ̇² l) outwards, and a swing with √(g/l) ± ψ̇ about it."""
+    """Reference: analytic. The load swings with √(g/l) ± ψ̇ about ψ̇² R l/(g − ψ̇² l) outwards."""
     stiff = replace(mass_on_springs(), omega2=np.full(2, 1.0e16))
     rate, own = np.deg2rad(10.0), np.sqrt(GRAVITY / 3.0)
     frame = FrameMotion(slew=Stroke(900.0, 10.0, 10.0), radius=-1.0)
@@ -196,7 +197,7 @@ def test_load_swings_during_slewing_and_luffing() -> None:
 
 
 def test_hoisting_while_a_segment_extends() -> None:
-    """Reference: the energy balance, with the works of both drives."""
+    """Reference: the energy balance, including the work of both drives."""
     system = lossy(SCurve(5.0, 0.4))
     tip = next(iter(system.observers.values())).row
     load = HangingLoad(0.5, 200.0, GRAVITY, SCurve(0.3, 0.3, start=0.05))
@@ -252,15 +253,16 @@ def test_numbers_of_no_shaper(numbers: tuple[float, ...], message: str) -> None:
 
 
 def position(frame: FrameMotion, time: Array, x: float, extension: MotionLaw) -> Array:
-    """Return the place (3, ...) of a point of the boom in axes that stand still."""
+    """Return the position (3, ...) of a point of the boom in fixed axes."""
     out, up = frame.position(time, x, extension)
     slew = frame.slew_angle(time)
     return np.array([out * np.cos(slew), out * np.sin(slew), up])
 
 
 def test_accelerations() -> None:
-    """Reference: second differences of the place in fixed axes, turned by both angles and
-    extended."""
+    """Reference: second differences of the position in fixed axes, with both angles and
+    extension.
+    """
     frame = FrameMotion(LAWS[0], LAWS[1], 35.0, foot=0.5, radius=-1.2)
     extension, x, h = SCurve(2.0, 2.5), 9.0, 1.0e-4
     time = TIME[np.abs(np.subtract.outer(TIME, np.array(LAWS[1].kinks))).min(axis=1) > h]

@@ -32,8 +32,9 @@ def modes() -> GapSystem:
 
 @pytest.mark.parametrize("step", [1.0e-2, 1.0])
 def test_flow_is_the_matrix_exponential(step: float) -> None:
-    """Reference: other code, scipy.linalg.expm over (a, v, load, ramp, mean), by the size without
-    decay."""
+    """Reference: other code, scipy.linalg.expm of (a, v, load, ramp, mean), relative to the
+    undamped size.
+    """
     flow = modal_flow(modes(), np.array([2.0 * step, step]))
     for k, (name, (omega2, damping, _)) in enumerate(MODES.items()):
         generator = np.zeros((5, 5))
@@ -54,8 +55,10 @@ def test_flow_is_the_matrix_exponential(step: float) -> None:
 def test_load_response_of_the_shortest_steps(
     one_mass: Callable[..., GapSystem], omega2: float, damping: float
 ) -> None:
-    """Reference: analytic, the series h²/2 − c h³/6 + (c² − ω²) h⁴/24 of r, h²/6 − c h³/24 + (c² −
-    ω²) h⁴/120 of p, and so on of u; differences of numbers near one would leave few digits."""
+    """Reference: analytic, the series r = h²/2 − c h³/6 + (c² − ω²) h⁴/24,
+    p = h²/6 − c h³/24 + (c² − ω²) h⁴/120, and likewise u. Differences of numbers near 1 would have
+    few digits.
+    """
     mode = one_mass(1.0, spring=omega2, dashpot=damping)
     flow = modal_flow(mode, times := np.array([1.0e-4, 1.0e-5, 1.0e-6]))
     for found, first in ((flow.gain, 2), (flow.ramp, 6), (flow.drift, 24)):
@@ -68,7 +71,7 @@ def test_load_response_of_the_shortest_steps(
 
 @pytest.mark.parametrize("name", MODES)
 def test_work_and_loss_of_a_step(name: str) -> None:
-    """Reference: other code, scipy's quad over the exact motion; by energy, the two of them."""
+    """Reference: other code, scipy's quadrature of the exact motion; and the energy balance."""
     omega2, c, load = MODES[name]
     system, h, change = modes(), 0.3 if omega2 < 1e6 else 3e-4, np.full(len(MODES), 0.8)
     start, speed, force = (np.full(len(MODES), x) for x in (0.2, -0.7, load))
@@ -90,7 +93,7 @@ def test_work_and_loss_of_a_step(name: str) -> None:
 
 
 def test_steps_add_up() -> None:
-    """Reference: analytic, (flow over h)ⁿ = flow over n h; here by the integrator itself."""
+    """Reference: analytic. n steps of h are equivalent to one of n h."""
     one, many = (FixedStep(h)(Motion(modes(), 2.0, output_step=0.5)) for h in (0.5, 1.0e-4))
     assert (one.data.attrs["steps"], many.data.attrs["steps"]) == (4, 20_000)
     for name in MODES:

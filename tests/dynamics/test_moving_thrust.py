@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Axial forces whose place moves: what they soften, as matrices and in the loop."""
+"""Moving axial forces: reduction of the stiffness, as matrices and in the time loop."""
 
 import tracemalloc
 from dataclasses import replace
@@ -28,7 +28,7 @@ FORCE = 100.0
 
 
 def slope(s: float) -> np.ndarray:
-    """(2, 6) of both planes at a way in m."""
+    """Return the slopes (2, 6) in both planes at an extension in m."""
     own = WAVES * np.cos(WAVES * (5.0 + s))
     return np.array([[*own, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, *(2.0 * own)]])
 
@@ -42,7 +42,7 @@ def thrust() -> MovingAxialForce:
 
 
 def softer(s: float) -> np.ndarray:
-    """N ∫ w′ᵀ w′ dσ by Gauss's rule over all of the way."""
+    """Return N ∫ w′ᵀ w′ dσ by Gauss's rule over the whole extension."""
     points, weights = np.polynomial.legendre.leggauss(30)
     slopes = [slope(0.5 * s * (point + 1.0)) for point in points]
     total = sum(w * one.T @ one for w, one in zip(weights, slopes, strict=True))
@@ -50,7 +50,7 @@ def softer(s: float) -> np.ndarray:
 
 
 def pressed_along(history: SCurve | PiecewiseLinear) -> GapSystem:
-    """Six modes on a soft contact, whose row stays where it is."""
+    """Return six modes on a soft contact with a constant row."""
     row = np.array([[0.1, -0.2, 0.3, 0.2, 0.1, -0.3]])
     table = RowTable(np.array([-1.0, 2.0]), np.array([[row, 0 * row, 0 * row, 0 * row]]))
     return modal_system(
@@ -66,20 +66,21 @@ def pressed_along(history: SCurve | PiecewiseLinear) -> GapSystem:
 
 @pytest.mark.parametrize("s", [-1.0, -0.3, 0.0, 0.5, 1.7])
 def test_thrust_softens_the_passed_length(s: float) -> None:
-    """Reference: analytic, the integral along the way by Gauss's rule."""
+    """Reference: analytic, the integral over the extension by Gauss's rule."""
     assert thrust().geometric_stiffness(s) == pytest.approx(softer(s), rel=1e-6, abs=1e-6 * FORCE)
 
 
 @pytest.mark.parametrize("knots", [[-1.0, -0.4, 1.0], [-2.0, 0.0], [0.0, 1.0]])
 def test_thrust_without_travel_changes_no_stiffness(knots: list[float]) -> None:
-    """Reference: analytic, 0 to the last bit, wherever the knots are."""
+    """Reference: analytic, 0 to the last bit, for any knots."""
     table = RowTable.interpolate(lambda s: np.sin(WAVES * (5.0 + s))[None], knots)
     assert not MovingAxialForce(FORCE, table).geometric_stiffness(0.0).any()
 
 
 def test_only_passed_pieces_are_integrated() -> None:
-    """Reference: analytic, of a polynomial whose pieces are many; all pieces of it would take
-    0.6 GB."""
+    """Reference: analytic, a polynomial in many pieces. The matrices of all pieces would need 0.6
+    GB.
+    """
     modes, knots = 200, np.linspace(-1.0, 1.0, 2001)
     table = RowTable(
         knots, np.tile(np.diff(knots)[0] * np.eye(4)[1][:, None, None], (2000, 1, 1, modes))
@@ -94,7 +95,7 @@ def test_only_passed_pieces_are_integrated() -> None:
 
 @pytest.mark.parametrize("s", [-0.7, 0.2, 1.9])
 def test_the_loop_pushes_as_the_matrix(s: float) -> None:
-    """Reference: analytic, K_G a and ½ aᵀ K_G a, which is the sum over both planes."""
+    """Reference: analytic, K_G a and ½ aᵀ K_G a, summed over both planes."""
     a = np.array([0.3, -0.2, 0.1, 0.5, 0.4, -0.6])
     force, energies = np.zeros(6), np.zeros(1)
     axial = moving_axial_forces(pressed_along(SCurve(2.0, 1.0)))
@@ -104,7 +105,7 @@ def test_the_loop_pushes_as_the_matrix(s: float) -> None:
 
 
 def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
-    """Reference: analytic, the eigenvalues of diag(ω²) − K_G, and the same rest in both."""
+    """Reference: analytic, the eigenvalues of diag(ω²) − K_G. The equilibrium is the same."""
     stands = pressed_along(SCurve(2.0, 1.0)).at_time(1.0)
     own = stands.in_own_modes()
     expected = eigh(np.diag(stands.omega2) - softer(2.0), eigvals_only=True)
@@ -119,8 +120,9 @@ def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
 
 
 def test_a_motion_by_an_integration_of_its_own() -> None:
-    """Reference: other code, scipy's DOP853 on the matrix: order two, the error, and what the force
-    changes. By the balance of energy the work of the drive is right with the motion."""
+    """Reference: other code, scipy's DOP853 with the matrix: order 2, error, and effect of the
+    force. The energy balance verifies the work of the drive.
+    """
     drawn = pressed_along(SCurve(2.0, 1.0))
     motion = Motion(replace(drawn, damping=np.zeros(6)), 1.0, 1e-2)
     expected = runge_kutta(motion, 2e-3)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The forces of a step satisfy the laws of all rows; a step without such forces is halved."""
+"""Forces of a step that satisfy the laws of all rows, and halving of steps without convergence."""
 
 import re
 
@@ -34,9 +34,9 @@ LAWS: list[ContactLaw] = [
 
 
 def random_system(random: np.random.Generator, equal_rows: bool) -> GapSystem:
-    """Contacts, friction rows and dashpots in any numbers, over fewer or more modes than rows.
+    """Return random numbers of contacts, friction rows and dashpots, with fewer or more modes.
 
-    Friction rows may be equal, as those of the pads in the corners of a rigid section.
+    Friction rows may be equal, like those of pads in the corners of a rigid section.
     """
     n, m, f, d = random.integers((3, 1, 0, 0), (20, 7, 7, 4))
     frictions = random.normal(size=(f, n))
@@ -72,7 +72,7 @@ def contact_force(law: ContactLaw, before: float, after: float, time: float) -> 
 def violations(
     system: GapSystem, force: Array, start: Array, end: Array, slip_force: Array, time: float
 ) -> Array:
-    """By how many N each row breaks its law. ``slip_force`` is the force that its way asks for."""
+    """Return the violation of its law by each row in N; ``slip_force`` is the force during slip."""
     m, f = len(system.laws), len(system.frictions)
     pressed, rubbed, dragged = np.split(force, [m, m + f])
     contacts = [
@@ -91,8 +91,9 @@ def violations(
 
 @pytest.mark.parametrize("equal_rows", [False, True])
 def test_random_steps_meet_their_laws(equal_rows: bool) -> None:
-    """Reference: analytic, each contact's energy difference, Coulomb's law and the dashpots' rate,
-    of 400 random systems, states and steps; nearly all steps are solved at once."""
+    """Reference: analytic, the energy differences of contacts, Coulomb's law and the rates of
+    dashpots for 400 random systems, states and steps. Nearly all steps converge without halving.
+    """
     random, solved = np.random.default_rng(5), 0
     for _ in range(400):
         system, time = random_system(random, equal_rows), 10.0 ** random.uniform(-5.0, -2.0)
@@ -136,8 +137,9 @@ def test_equal_friction_rows_stick_at_once() -> None:
     [(0.0, 3e-3), (3e-3, 0.0), (2e-3, 3e-3), (2e-3, 2.000000002e-3), (2e-3, 2e-3), (0.0, 5e-4)],
 )
 def test_the_discrete_gradient(exponent: float, before: float, after: float) -> None:
-    """Reference: analytic, ΔV/Δy, and the force itself where nothing moves; its slope by central
-    differences where it is exact."""
+    """Reference: analytic, ΔV/Δy, and the force if y is constant. If the slope is exact, central
+    differences are its reference.
+    """
     term = np.array([(0, -1.0, 1.0e6, 1.0e-3, exponent)], TERM)[0]
     law = PowerContact(1.0e6, exponent).lower().with_clearance(1.0e-3)
     mean, slope = discrete_gradient(term, -before, -after)
@@ -153,7 +155,7 @@ def test_the_discrete_gradient(exponent: float, before: float, after: float) -> 
 
 
 def wedge(friction: float) -> GapSystem:
-    """Return a block whose friction increases its own contact force."""
+    """Return a block with friction that increases its contact force."""
     tilted = np.array([[-0.9, 1.0], [0.9, 1.0]])
     laws = [PowerContact(1.0e9, 1.0).with_clearance(1.0e-4)] * 2
     rubbing = {"friction_rows": tilted, "frictions": [DryFriction(friction, 0, 1.0, (0, 1))] * 2}
@@ -164,7 +166,7 @@ def wedge(friction: float) -> GapSystem:
 
 @pytest.mark.parametrize("friction", [0.3, 2.0, 20.0])
 def test_steps_are_halved_until_their_forces_converge(friction: float) -> None:
-    """Reference: analytic, the balance of energy and Coulomb's bound, by some more steps."""
+    """Reference: analytic, the energy balance and Coulomb's bound, with some additional steps."""
     run = FixedStep(1e-2)(Motion(wedge(friction), 1.0, 1e-2, velocity=np.array([0.4, -0.7])))
     assert 100 < run.data.attrs["steps"] < 150
     assert run.energy_residual < 1e-11
@@ -174,7 +176,7 @@ def test_steps_are_halved_until_their_forces_converge(friction: float) -> None:
 
 
 def test_diverging_forces_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: by hand, the step that is left, and what to do."""
+    """Reference: exact message, with the smallest step and the remedy."""
     monkeypatch.setattr(time_step, "_HALVINGS", 0)
     message = (
         "contact and friction forces do not converge even in steps of 0.01 s; make the contact "
@@ -188,6 +190,6 @@ def test_diverging_forces_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
 def test_a_side_without_a_law_ends_the_search_for_its_deepest_press(
     side: float, slope: float
 ) -> None:
-    """Reference: analytic, a linear stop below. Round-off may give a force above it a sign."""
+    """Reference: analytic, a linear stop below. Round-off may cause a force on the other side."""
     system = modal_system([0.0], [0.0], [1.0], [PowerContact(1.0e9, 1.0).lower()])
     assert march._stiffness_at_energy(row_laws(system), 0, side, 1.0e-3) == pytest.approx(slope)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A mass that a spring draws along against dry friction: cycles, speeds, energy, order."""
+"""A mass that a spring pulls against dry friction: cycles, speeds, energy, order."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -24,7 +24,7 @@ def damped(ratio: float) -> ElasticDrive:
 
 
 def drawn(pulled: ElasticDrive, speed: float, duration: float, outputs: int) -> DriveMotion:
-    """At a constant speed against a constant friction."""
+    """Return the motion at a constant speed against constant friction."""
     time = np.linspace(0.0, duration, outputs + 1)
     friction = np.full(time.size, FRICTION)
     return move_segment(pulled, Stroke(2.0 * speed * duration, speed), time, friction)
@@ -32,8 +32,10 @@ def drawn(pulled: ElasticDrive, speed: float, duration: float, outputs: int) -> 
 
 @pytest.mark.parametrize("speed", [0.01, 0.05, 0.3])
 def test_cycles_of_sticking_and_slipping(speed: float) -> None:
-    """Reference: analytic. It sticks until the spring has grown by 2 d, d = (R_s − R)/k, and slips
-    on a circle of the radius A = √(d² + v²/ω²) through the angle 2 (π − atan(d ω/v))."""
+    """Reference: analytic. It sticks until the spring is 2 d longer, d = (R_s − R)/k. In the phase
+    plane it slips along a circle of the radius A = √(d² + v²/ω²) by the angle
+    2 (π − atan(d ω/v)).
+    """
     slack = 0.5 * FRICTION / STIFFNESS
     radius = np.hypot(slack, speed / OMEGA)
     period = 2.0 * slack / speed + 2.0 / OMEGA * (np.pi - np.arctan(slack * OMEGA / speed))
@@ -55,7 +57,7 @@ def test_cycles_of_sticking_and_slipping(speed: float) -> None:
 
 @pytest.mark.parametrize("ratio", [0.01, 0.1, 0.5])
 def test_above_a_critical_speed_nothing_sticks(ratio: float) -> None:
-    """Reference: analytic, the speed at which a damped swing just comes back to it."""
+    """Reference: analytic, the speed that a damped vibration just reaches again."""
     pulled = damped(ratio)
     critical = critical_speed(pulled, FRICTION)
     for part, sticks in ((0.999, True), (1.001, False)):
@@ -65,8 +67,9 @@ def test_above_a_critical_speed_nothing_sticks(ratio: float) -> None:
 
 
 def test_little_damping_and_much_of_it() -> None:
-    """Reference: analytic. Within a swing little damping takes 4πζ of its energy; without any it
-    sticks at every speed, and what creeps back never comes to stick again."""
+    """Reference: analytic. Small damping takes 4πζ of the energy per period. Without damping the
+    mass sticks at every speed. An overdamped mass never sticks again.
+    """
     small = 1.0e-6
     limit = 0.5 * FRICTION / np.sqrt(4.0 * np.pi * small * STIFFNESS * MASS)
     assert critical_speed(damped(small), FRICTION) == pytest.approx(limit, rel=1e-3)
@@ -78,7 +81,7 @@ def test_little_damping_and_much_of_it() -> None:
 
 
 def test_a_stiff_drive_follows() -> None:
-    """Reference: analytic, friction and what speeds the mass up; the drive lags by that over k."""
+    """Reference: analytic. The force is friction plus m s̈, and the lag is this force over k."""
     way = SCurve(travel=2.0, duration=4.0)
     time = np.linspace(0.0, 4.0, 401)
     friction = np.full(time.size, FRICTION)
@@ -96,8 +99,9 @@ def test_a_stiff_drive_follows() -> None:
 
 
 def test_other_drives_push() -> None:
-    """Reference: analytic. As another drive speeds up by a, the part of the mass that goes along
-    with it, m_b, swings about m_b a/k; the thrust is held."""
+    """Reference: analytic. If another drive accelerates by a, the mass m_b that both move vibrates
+    about m_b a/k. The axial load has no further effect.
+    """
     lift = Stroke(travel=2.0, speed=1.0, ramp=1.0)
     pulled = replace(ROPE, thrust=300.0, coupled_drives=((0.4 * MASS, lift),))
     time = np.linspace(0.0, 0.9, 901)
@@ -122,7 +126,7 @@ Friction = Callable[[Array | float], Array]
 
 
 class Stops:
-    """An event that ends a slip, for solve_ivp."""
+    """End of a slip, as an event for solve_ivp."""
 
     terminal, direction = True, -1
 
@@ -133,7 +137,7 @@ class Stops:
 def by_runge_kutta(
     pulled: ElasticDrive, way: SCurve, end: float, friction: Friction
 ) -> tuple[float, int]:
-    """s in m at the end in s, and how often it sticks, from event to event."""
+    """Return s in m at the end in s, and the number of times it sticks, from event to event."""
 
     def force(t: Array | float, s: Array | float, v: Array | float) -> Array:
         angle = 2.0 * np.pi * np.asarray(t) / way.duration
@@ -165,7 +169,7 @@ def by_runge_kutta(
 
 
 def missed(ratio: float, friction: Friction, counts: Array) -> list[float]:
-    """By how many m the end of a drive of 0.1 m is off, in so many outputs."""
+    """Return the errors in m at the end of a drive of 0.1 m for several numbers of outputs."""
     pulled, way = replace(damped(ratio), sticking=1.3), SCurve(travel=0.1, duration=8.0)
     place, sticks = by_runge_kutta(pulled, way, 7.0, friction)
     off = []
@@ -189,16 +193,18 @@ def test_order_in_the_step() -> None:
 
 
 def test_variable_friction() -> None:
-    """Reference: other code, as above; slips are up to 4 mm. Within an output friction is its mean,
-    so that it lets go as late as that leaves open, and the order is 1."""
+    """Reference: other code, as above; slips are up to 4 mm. Friction is constant within an output
+    interval, so that slip begins with an error of an interval, and the order is 1.
+    """
     counts = np.array([1000, 2200, 14_000])
     off = missed(0.05, lambda t: FRICTION * (1.0 + 0.6 * np.sin(2.1 * np.asarray(t))), counts)
     assert (np.array(off) * counts).max() < 0.1
 
 
 def test_reversing_drive() -> None:
-    """Reference: analytic. Quasi-static it lags by R/k on the way out and is as far ahead on the
-    way in; with nothing between sticking and slipping it neither overshoots nor swings."""
+    """Reference: analytic. In slow motion the lag is R/k outwards and −R/k inwards. If static and
+    sliding friction are equal, the mass does not overshoot.
+    """
     way = PiecewiseLinear((0.0, 10.0, 20.0), (0.0, 0.5, 0.0))
     time = np.linspace(0.0, 20.0, 4001)
     found = move_segment(

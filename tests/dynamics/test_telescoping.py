@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows that move: a load that runs along a beam, its ledger, its symmetry, its histories."""
+"""Moving rows: a load along a beam, its energy balance, symmetry and histories."""
 
 import re
 from collections.abc import Callable
@@ -59,7 +59,7 @@ def rider(
 ) -> GapSystem:
     """Return a mass in kg that moves along the beam from a start, under its weight in N.
 
-    Row, friction row and dashpot all read the mass less the beam below it.
+    Contact row, friction row and dashpot have the displacement of the mass relative to the beam.
     """
 
     def row(way: float) -> Array:
@@ -96,7 +96,8 @@ def lossy(history: History, **changes: Any) -> GapSystem:
 
 def test_a_moving_force_on_a_beam() -> None:
     """Reference: analytic, the series of a constant force on a simply supported beam (Frýba
-    1972)."""
+    1972).
+    """
     force, speed, count, stiffness, mass = 1.0e3, 20.0, 30, 1.0e7, 0.01
     law = PowerContact(stiffness, 1.0).lower()
     assert law is not None
@@ -114,7 +115,7 @@ def test_a_moving_force_on_a_beam() -> None:
 
 @pytest.mark.parametrize("drawn", [lossy, pressed_along])
 def test_constant_travel_equals_no_travel_to_the_bit(drawn: Drawn) -> None:
-    """Reference: what was before, the same system without a travel."""
+    """Reference: non-regression, the same system without a travel."""
     moving = drawn(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))
     resting = replace(moving, travels=())
     runs = [FixedStep(5.0e-5)(Motion(system, 0.3, 1.0e-3)) for system in (moving, resting)]
@@ -136,7 +137,7 @@ def test_drive_has_no_effect_before_its_start(drawn: Drawn) -> None:
 
 
 def test_a_slow_drive_passes_through_places_of_rest() -> None:
-    """Reference: analytic, statics in each place, and the work against the slope of the beam."""
+    """Reference: analytic, statics at each position, and the work against the slope of the beam."""
     law = PowerContact(1.0e6, 1.0).lower()
     damping = np.append(0.2 * frequencies(8), 20.0)
     slow = rider(SCurve(2.5, 20.0), law, mass=20.0, weight=2.0e3, start=2.5, damping=damping)
@@ -150,7 +151,7 @@ def test_a_slow_drive_passes_through_places_of_rest() -> None:
 
 
 def test_it_runs_back_as_it_came() -> None:
-    """Reference: analytic, the symmetry of the step, in presses and by the drive."""
+    """Reference: analytic, time reversibility in contact and under the drive."""
     law = PowerContact(1.0e6, 1.5).with_clearance(1.0e-4)
     there = rider(SCurve(5.0, 0.2), law, mass=20.0, weight=2.0e3, start=2.0)
     out = FixedStep(1.0e-4)(Motion(with_rates(there), 0.2, 1.0e-3))
@@ -186,7 +187,7 @@ def test_drive_friction_force() -> None:
     ],
 )
 def test_histories_of_a_drive(history: History, way: float, speed: float) -> None:
-    """Reference: analytic, the way, the fastest speed, rest before and behind the kinks."""
+    """Reference: analytic, travel, largest speed, and rest before and after it."""
     time = np.linspace(0.0, 8.0, 80001)
     ways = history(time)
     rates = np.gradient(ways, time)
@@ -199,7 +200,7 @@ def test_histories_of_a_drive(history: History, way: float, speed: float) -> Non
 
 
 def test_completed_stroke_is_constant() -> None:
-    """Reference: analytic, to the last bit, at a length and a ramp that round off."""
+    """Reference: analytic, to the last bit, for a length and a ramp with round-off."""
     stroke = Stroke(-1.3, 0.3, ramp=0.37, start=0.1)
     ways = stroke(np.linspace(stroke.kinks[-1], 20.0, 2000))
     assert ways[-1] == pytest.approx(-1.3)
@@ -222,7 +223,7 @@ def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:
 
 
 def test_system_at_a_fixed_extension() -> None:
-    """Reference: analytic, the sines at the place of the rider."""
+    """Reference: analytic, the sines at the position of the mass."""
     there = lossy(SCurve(5.0, 0.4)).at_time(0.4)
     row = np.append(-sines(7.0, 8), 1.0 / np.sqrt(20.0))
     assert there.travels == ()
@@ -269,6 +270,6 @@ _TABLE = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 1, 1)))
     ],
 )  # fmt: skip
 def test_complaints(make: Any, message: str) -> None:
-    """Reference: what cannot be, in one line."""
+    """Reference: exact messages on invalid travels."""
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         make()

@@ -43,7 +43,7 @@ ACROSS = np.array([[0.3, 0.6, 0.8, -0.5], [-0.7, 0.4, 0.2, 0.6]])
 
 
 def boom(law: ContactLaw = POWER, **changes: Any) -> GapSystem:
-    """One rigid and three elastic modes with two contacts."""
+    """Return one rigid and three elastic modes with two contacts."""
     numbers: dict[str, Any] = {
         "omega2": np.array([0.0, 40.0, 900.0, 2.5e4]), "load": np.array([-8.0, 3.0, 2.0, 1.0]),
         "rows": ROWS, "laws": [law, law], "station_of_row": np.array([0, 1]),
@@ -106,7 +106,7 @@ MOVED: dict[str, tuple[GapSystem, str]] = {
 )
 @pytest.mark.parametrize("what", MOVED)
 def test_energy_balances_at_every_step(what: str, step: float, duration: float) -> None:
-    """Reference: analytic, energy is conserved: no part of the work is missing or too much."""
+    """Reference: analytic, conservation of energy, with all parts of the balance."""
     system, exchanged = MOVED[what]
     velocity = THROWN if system.num_modes == 4 else np.zeros(0)
     run = FixedStep(step)(Motion(system, duration, 1.0e-2, velocity=velocity))
@@ -164,7 +164,7 @@ def lossy_press() -> Motion:
     ids=["linear", "quadratic", "losses", "sliding", "telescoping", "driven", "one blow"],
 )  # fmt: skip
 def test_second_order_in_the_step(motion: Motion, bound: float) -> None:
-    """Reference: other code, scipy's DOP853. Slope 2, and the error at 0.25 ms."""
+    """Reference: other code, scipy's DOP853. Order 2, and the error at 0.25 ms."""
     errors = errors_in_the_step(motion, runge_kutta(motion), 2e-3 * 0.5 ** np.arange(4))
     found = slopes(errors)
     assert found[1:] == pytest.approx(2.0, abs=0.2)
@@ -187,7 +187,7 @@ def test_a_pressed_boom_swings_in_its_pressed_modes() -> None:
 @pytest.mark.parametrize("damping", [0.0, 60.0])
 @pytest.mark.parametrize("step", [1e-4, 1e-2, 0.5])
 def test_free_flight_is_exact(step: float, damping: float) -> None:
-    """Reference: analytic, a parabola and swings about the rest, at any step."""
+    """Reference: analytic, a parabola and vibrations about the equilibrium, for any step."""
     system = boom(rows=np.zeros((2, 4)), damping=np.array([0.0, damping, 0.0, 0.0]))
     run = FixedStep(step)(Motion(system, 2.0, 0.5, velocity=THROWN))
     time, omega, rest = run.time[:, None], system.omega[1:], system.load[1:] / system.omega2[1:]
@@ -202,7 +202,7 @@ def test_free_flight_is_exact(step: float, damping: float) -> None:
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
 def test_motion_runs_back_through_its_contacts(exponent: float) -> None:
-    """Reference: analytic, time reversibility; the load is the same both ways."""
+    """Reference: analytic, time reversibility under a constant load."""
     start, system = np.array([0.02, -0.01]), with_rates(two_modes(exponent))
     there = FixedStep(1e-3)(Motion(system, 1.8, 0.02, start))
     place, speed = end_of(there)
@@ -242,7 +242,7 @@ def test_falling_mass(one_mass: OneMass) -> None:
 
 
 def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
-    """Reference: analytic. Flights of 2Δ/v and presses of π √(m/k) on either side."""
+    """Reference: analytic. Flights last 2Δ/v, contacts π √(m/k) of each side."""
     law = PowerContact(stiffness=4.0e4, exponent=1.0, stiffness_below=9.0e4).with_clearance(0.1)
     period = 2.0 * 0.2 / 2.0 + np.pi / 200.0 + np.pi / 300.0
     motion = Motion(one_mass(1.0, law), 3.0 * period, period / 1e3, velocity=np.array([2.0]))
@@ -259,8 +259,9 @@ def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
 
 
 def test_quadratic_stop_at_its_deepest(one_mass: OneMass) -> None:
-    """Reference: analytic. A mass m at v sinks in by p = (3 m v² / 2 k)^⅓ under F = k p², after
-    Γ(⅓) Γ(½) / (3 Γ(⅚)) p/v, from energy and a Beta integral."""
+    """Reference: analytic. A mass m with the speed v penetrates by p = (3 m v² / 2 k)^⅓ under
+    F = k p², by energy, after the time Γ(⅓) Γ(½) / (3 Γ(⅚)) p/v, by a Beta integral.
+    """
     stop = PowerContact(stiffness=1.0e6, exponent=2.0).upper()
     depth = (3.0 * 100.0 * 2.0**2 / (2.0 * 1.0e6)) ** (1.0 / 3.0)
     half = gamma(1.0 / 3.0) * gamma(0.5) / (3.0 * gamma(5.0 / 6.0)) * depth / 2.0
@@ -276,8 +277,9 @@ def test_quadratic_stop_at_its_deepest(one_mass: OneMass) -> None:
 def test_bouncing_ball_keeps_its_height(
     one_mass: OneMass, stiffness: float, exponent: float, step: float
 ) -> None:
-    """Reference: analytic. 1 kg falls 1 mm again and again on a hard floor, and comes up to where
-    it was, whether or not the step resolves the blow of 10 to 100 µs."""
+    """Reference: analytic. 1 kg falls 1 mm on a stiff floor repeatedly, and returns to the initial
+    height, even if the step does not resolve the impact of 10 to 100 µs.
+    """
     floor = PowerContact(stiffness, exponent).lower().with_clearance(1.0e-3)
     run = FixedStep(step)(Motion(one_mass(1.0, floor, force=-10.0), 3.0, 1e-3))
     assert run.data.attrs["contact_changes"] > 60
@@ -291,7 +293,7 @@ def test_bouncing_ball_keeps_its_height(
 
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-2, 1.0e-3, 1.0e-4])
 def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: float) -> None:
-    """Reference: analytic. The line through two places of a fall misses by g h²/8 at most."""
+    """Reference: analytic. Linear interpolation of a fall has an error of at most g h²/8."""
     stop = PowerContact(stiffness=100.0, exponent=1.0).lower().with_clearance(2.0)
     motion = Motion(one_mass(1.0, stop, force=-10.0), 1.0, 2.0e-2, velocity=np.array([-1.0]))
     exact = (np.sqrt(41.0) - 1.0) / 10.0
@@ -315,7 +317,7 @@ def test_first_contact_is_the_earliest_of_all_rows() -> None:
 def test_first_contact_late_at_once_or_never(
     one_mass: OneMass, place: float, speed: float, first: float
 ) -> None:
-    """Reference: analytic. A mass comes to a stop at 0.1 m, lets go of it, or stays away."""
+    """Reference: analytic. A mass reaches a stop at 0.1 m, begins in contact, or never touches."""
     system = one_mass(1.0, PowerContact(stiffness=1.0, exponent=1.0).upper().with_clearance(0.1))
     run = FixedStep(3e-4)(Motion(system, 0.5, 0.01, np.array([place]), np.array([speed])))
     assert run.first_contact == pytest.approx(first, rel=1e-6, nan_ok=True)
@@ -323,7 +325,9 @@ def test_first_contact_late_at_once_or_never(
 
 
 def test_units_do_not_matter() -> None:
-    """Reference: analytic. The same system in mm, t and s, before chaos; √t·mm are √1000 √kg·m."""
+    """Reference: analytic, the same system in mm, t and s until chaos; 1 √t·mm is √1000/1000
+    √kg·m.
+    """
     si, scale = two_modes(), np.sqrt(1000.0)
     law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0).with_clearance(
         1e3 * si.laws[0].above
@@ -343,8 +347,9 @@ def test_units_do_not_matter() -> None:
 
 
 def test_a_closed_contact_is_a_spring() -> None:
-    """Reference: analytic, a mass on a spring under a load that rises to −5 N within 10.4 ms, and
-    the impulse that momentum and loads ask for."""
+    """Reference: analytic, a mass on a spring under a load that rises to −5 N within 10.4 ms; and
+    the impulse by the change of momentum.
+    """
     weight, stiffness, rise, load = 10.0, 1.0e6, 0.0104, -5.0
     ramp = Excitation(np.array([load]), PiecewiseLinear((0.0, rise), (0.0, 1.0)))
     seen = {"tip": Observer(np.ones(1)), "speed": Observer(np.ones(1), "m/s", 1)}
@@ -362,8 +367,9 @@ def test_a_closed_contact_is_a_spring() -> None:
 
 
 def test_output_intervals_change_nothing() -> None:
-    """Reference: other code path, outputs ten times as far apart: means are of ten, peaks the
-    largest of them."""
+    """Reference: other code path, output intervals ten times as long. Means are averages of ten,
+    peaks their maximum.
+    """
     motion = Motion(rubbing(*PRESSED, excitations=[SHAKEN]), 0.1, 1e-3, velocity=THROWN)
     fine, coarse = (FixedStep(1e-3)(replace(motion, output_step=s)) for s in (1e-3, 1e-2))
     np.testing.assert_allclose(fine.states[::10], coarse.states, atol=1e-11)
@@ -375,7 +381,7 @@ def test_output_intervals_change_nothing() -> None:
 
 
 def test_energy_residual_gives_a_warning() -> None:
-    """Reference: by hand. 0.3 J of 2 J put in are not there."""
+    """Reference: by hand. 0.3 J of an input of 2 J are missing."""
     energies = np.array([np.zeros(7), [1.0, 0.5, 0.2, 2.0, 0.0, 0.0, 0.0]])
     check_energy(energies, bound=0.16)
     message = "the energy residual is 0.15 of the work done, above the bound of 1e-06"
@@ -387,7 +393,7 @@ def test_energy_residual_gives_a_warning() -> None:
 
 
 def test_unloaded_segments_stay_at_rest(one_mass: OneMass) -> None:
-    """Reference: analytic. A boom may have segments without load, whose gaps close at no speed."""
+    """Reference: analytic. Segments without load stay at rest."""
     run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0).with_clearance(0.1)), 0.1))
     assert not run.states.any()
     assert np.isnan(run.first_contact)
@@ -406,8 +412,9 @@ def test_a_peak_is_no_less_than_the_mean(what: str, step: float) -> None:
 
 
 def test_shims_touch_from_the_start() -> None:
-    """Reference: analytic, two one-sided rows: what shims press from both sides is closed at t = 0,
-    and opens and closes on a side as that side does alone."""
+    """Reference: analytic, two one-sided rows. With shims both contacts are closed at t = 0. Each
+    side opens and closes as it does alone.
+    """
     shims = PowerContact(1.0e4, 1.0).with_clearance(-1.0e-3)
     both = boom(shims)
     apart = boom(
@@ -422,8 +429,9 @@ def test_shims_touch_from_the_start() -> None:
 
 
 def test_a_ball_rides_on_a_cantilever() -> None:
-    """Reference: other code, scheme and data of Siconos' ImpactingEulerBernouilliBeam in steps of
-    20 µs. Both chatter, and so does the time at which the ball leaves, after 50 ms."""
+    """Reference: other code, scheme and data of Siconos' ImpactingEulerBernouilliBeam with steps of
+    20 µs. Chatter causes a scatter of the time of about 50 ms at which the ball leaves.
+    """
     stop = PowerContact(1.0e7, 1.0, damping=5.0).lower().with_clearance(HEIGHT)
     run = FixedStep(1e-4)(falling(ELEMENTS, stop, 0.06))
     expected = moreau_jean(2e-5)[::50] - [HEIGHT, 0.0]

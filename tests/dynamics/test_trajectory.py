@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A trajectory labels what the integrator leaves and measures it."""
+"""Labels and measures of trajectories."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -56,7 +56,7 @@ def test_variables_dims_and_units(one_mass: Callable[..., GapSystem]) -> None:
 
 
 def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> None:
-    """Three rows at two stops report the forces of two rows. Reference: other code path."""
+    """Reference: other code path. Three rows at two stops give the forces of two rows."""
     row = np.array([[0.8], [-0.5]])
     laws = [STOP, STOP.law.with_clearance(5.0e-3)]
     whole = modal_system([10.0], [2.0], row, laws, stations=[9.0, 10.0])
@@ -75,7 +75,9 @@ def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> Non
 
 
 def test_stations_have_directions_and_friction_forces() -> None:
-    """Reference: other code path. Two friction rows of one station are one of both limits."""
+    """Reference: other code path. Two friction rows of a station are equivalent to one with the sum
+    of limits.
+    """
     system = modal_system(
         [10.0],
         [2.0],
@@ -105,8 +107,9 @@ def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
 
 
 def test_energy_residual_by_hand() -> None:
-    """Reference: analytic. 1 J at first, 4 J of work, 0.5 J lost to damping, friction and contact,
-    0.2 J too much."""
+    """Reference: analytic. 1 J initially, 4 J of work, 0.5 J of losses each by damping, friction
+    and contact, and 0.2 J too much.
+    """
     energies = np.array([[0.5, 0.3, 0.2] + 4 * [0.0], [2.0, 2.0, 0.7, 4.0, 0.2, 0.1, 0.2]])
     assert energy_residual(energies) == pytest.approx([0.0, 0.2 / 4.0], rel=1e-12)
     # Without work what there was at first is the measure, and at rest there is none.
@@ -136,7 +139,7 @@ T = np.linspace(0.0, 6.0, 6001)
 def test_first_peak_of_a_slow_motion(
     side: float, tip: Array, time: float, height: float, within: tuple[float, float]
 ) -> None:
-    """Reference: analytic; motions downwards peak as their mirror images."""
+    """Reference: analytic. Downward motions have the peaks of their mirror images."""
     found = deflections(side * tip, 6.0).first_peak()
     assert found[0] == pytest.approx(time, abs=within[0], nan_ok=True)
     assert found[1] == pytest.approx(side * height, abs=within[1], nan_ok=True)
@@ -159,7 +162,9 @@ def test_rates_are_those_of_the_motion(one_mass: Callable[..., GapSystem]) -> No
 def test_blows_from_both_sides_within_an_output_interval_do_not_cancel(
     one_mass: Callable[..., GapSystem],
 ) -> None:
-    """Reference: analytic, v √(k m) of a free mass between two stops in two rows, and in one."""
+    """Reference: analytic, v √(k m) of a free mass between two stops, with two rows and with
+    one.
+    """
     both = one_mass(2.0, STOP)
     apart = replace(
         both,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A small system that impacts make chaotic, and the linear one that it is without its stops."""
+"""A small system that is chaotic by impacts, and the linear system without its stops."""
 
 from dynamics.contact import PowerContact
 from tests.modal import modal_system

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The examples of a notebook's length give the numbers that they should."""
+"""Results of the short examples."""
 
 import sys
 from dataclasses import replace
@@ -34,7 +34,7 @@ def of(name: str) -> pytest.MarkDecorator:
 
 @of("bouncing_ball")
 def test_a_ball_bounces(example: ModuleType) -> None:
-    """Reference: analytic. A fall lasts √(2h/g), a contact (2/ω)(π − atan(v ω/g))."""
+    """Reference: analytic. A fall lasts √(2h/g), and a contact (2/ω)(π − atan(v ω/g))."""
     motion = example.fall()
     fall = np.sqrt(2.0 * example.HEIGHT / example.GRAVITY)
     omega = np.sqrt(example.STIFFNESS)
@@ -50,7 +50,7 @@ def test_a_ball_bounces(example: ModuleType) -> None:
 def test_changed_case_equals_the_case_of_a_changed_file(
     example: ModuleType, tmp_path: Path
 ) -> None:
-    """Reference: other code path, a case file with the number in it."""
+    """Reference: other code path, a case file with this number."""
     text = (pt.CASES / "coarse.toml").read_text("utf-8")
     file = tmp_path / "case.toml"
     file.write_text(text.replace("play = 0.014", "play = 0.007"), "utf-8")
@@ -62,7 +62,9 @@ def test_changed_case_equals_the_case_of_a_changed_file(
 
 @of("boom_in_python")
 def test_the_fly_falls_freely_through_its_play(example: ModuleType) -> None:
-    """Reference: analytic. A uniform load q moves a free uniform beam by q t²/2m, unbent."""
+    """Reference: analytic. A uniform load q moves a free uniform beam by q t²/2m without
+    bending.
+    """
     mass = example.boom().segments[1].mass_per_length
     expected = np.sqrt(example.PLAY * mass / -example.LOAD)
     motion = pt.BeamElements(example.boom(), element_length=1.0).simulate(1.0)
@@ -72,14 +74,16 @@ def test_the_fly_falls_freely_through_its_play(example: ModuleType) -> None:
 
 @of("what_play_adds")
 def test_play_turns_the_fly(example: ModuleType) -> None:
-    """Reference: analytic. The fly rises by Δ at 6 m, sinks by Δ at 8 m, so by 7 Δ at 14 m."""
+    """Reference: analytic. The fly moves up by Δ at 6 m and down by Δ at 8 m, hence by 7 Δ at 14
+    m.
+    """
     added = example.deflection(bonded=False) - example.deflection(bonded=True)
     assert added == pytest.approx(-7.0 * 5.0e-3, rel=2e-3)
 
 
 @of("own_contact_law")
 def test_a_rubber_stop_takes_all_the_energy(example: ModuleType) -> None:
-    """Reference: analytic. ½ m v² = ½ k p² + ¼ c p⁴ at the deepest."""
+    """Reference: analytic. ½ m v² = ½ k p² + ¼ c p⁴ at the largest penetration."""
     law, speed = example.RubberStop(1.0e5, 1.0e9), 3.0
     depth = np.sqrt((np.sqrt(law.linear**2 + 2.0 * law.cubic * speed**2) - law.linear) / law.cubic)
     motion = example.strike(law, speed)
@@ -90,7 +94,7 @@ def test_a_rubber_stop_takes_all_the_energy(example: ModuleType) -> None:
 
 @of("own_integrator")
 def test_another_integrator_finds_the_same(example: ModuleType) -> None:
-    """Reference: other code, the time step; before chaos parts the two."""
+    """Reference: other code, the program's time step, before chaos."""
     system = replace(CHAOTIC, laws=[pt.PowerContact(1.0e4, 2.0).with_clearance(0.02)])
     other = simulate(system, 2.0, 1e-2, integrator=example.RungeKutta())
     ours = simulate(system, 2.0, 1e-2, integrator=FixedStep(1e-5))
@@ -106,7 +110,7 @@ def test_another_integrator_finds_the_same(example: ModuleType) -> None:
 
 @of("sweep")
 def test_the_mass_rebounds_as_asked(example: ModuleType) -> None:
-    """Reference: analytic, the restitution that the damping is made for."""
+    """Reference: analytic, the restitution from which the damping is computed."""
     for asked in (0.3, 0.7, 1.0):
         assert example.rebound(asked) == pytest.approx(asked, abs=2e-3)
 
@@ -114,7 +118,7 @@ def test_the_mass_rebounds_as_asked(example: ModuleType) -> None:
 @pytest.mark.slow
 @of("boom_in_python")
 def test_beams_and_shells_are_one_boom(example: ModuleType) -> None:
-    """Reference: other code, the one to the other; both fly freely at first."""
+    """Reference: other code: beams and shells are compared. Both move freely at first."""
     pytest.importorskip("dolfinx", reason="shells need FEniCSx")
     boom = example.boom()
     shell = pt.Shell(boom, mesh_size=0.4).simulate(0.5)

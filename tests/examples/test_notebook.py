@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The notebook of the examples, run again beside its outputs."""
+"""Comparison of the examples' notebook with its stored outputs."""
 
 import json
 from copy import deepcopy

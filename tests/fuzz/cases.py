@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Case files with errors in a value, in a key, in a table, in the bytes."""
+"""Case files with errors in values, keys, tables or bytes."""
 
 import re
 from collections.abc import Callable
@@ -81,7 +81,7 @@ def _other_value(text: str, random: Random) -> str:
 
 
 def _other_number(text: str, random: Random) -> str:
-    """One number, perhaps inside a list or a table."""
+    """Return the file with another number, perhaps in a list or a table."""
     number = random.choice(list(_NUMBER.finditer(text)) or [None])
     if number is None:
         return text

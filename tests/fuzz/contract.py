@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contract of every command for any input, and a process that checks it.
 
-Exit status 0, 1, 2 or 3; nothing on stderr but one line, shorter than 300 characters, printable,
-where it is not 0, besides progress; 4 GB; 60 s of CPU beyond what was announced.
+The exit status is 0, 1, 2 or 3. If it is not 0, stderr has a single printable line of less than
+300 characters besides progress. A command needs at most 4 GB, and 60 s of CPU time more than
+announced.
 """
 
 import os
@@ -43,7 +44,7 @@ class Ending:
 
     Args:
         status: status of its exit; negative for the signal that killed it.
-        err: what it wrote on stderr.
+        err: text on stderr.
         seconds: seconds of CPU.
         memory: largest resident set in bytes.
     """

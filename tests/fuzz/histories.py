@@ -10,7 +10,7 @@ GOOD = "0.0, 0.0\n0.2, 1.0\n0.5, -0.25\n"
 
 
 def put(path: Path, random: Random) -> None:
-    """Make a file, or something in its place."""
+    """Make a file, or another object at its path."""
     random.choice(_KINDS)(path, random)
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A sample of ``make fuzz``, and whether a breach would be seen."""
+"""A sample of ``make fuzz``, and detection of breaches."""
 
 import subprocess
 import sys

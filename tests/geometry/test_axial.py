@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What each segment carries of the forces along the boom, against sums by hand."""
+"""Axial forces of each segment, compared with sums by hand."""
 
 from dataclasses import replace
 
@@ -41,7 +41,9 @@ def at(segment: Segment, *places: float) -> list[float]:
 
 
 def test_weights_compress_below_and_pull_behind_the_support() -> None:
-    """Reference: analytic. The fly hands its weight over at its tail; the arm is held at 1 m."""
+    """Reference: analytic. The fly transfers its weight at its tail; the arm has its support at 1
+    m.
+    """
     arm, fly = with_compression(segments(), [JOINT], [], gravity=5.0)
     assert at(fly, 6.5, 10.0, 13.9) == pytest.approx(
         [5.0 * LIGHT * length for length in (7.5, 4.0, 0.1)], rel=1e-12
@@ -53,7 +55,9 @@ def test_weights_compress_below_and_pull_behind_the_support() -> None:
 
 
 def test_a_thrust_goes_by_the_lock_into_the_next_segment() -> None:
-    """Reference: analytic. At the tail unless told; at a pin; at the foot of a cylinder."""
+    """Reference: analytic. The force transfers at the tail by default, at a lock, or at the
+    foot.
+    """
     rope = [Thrust(1, 14.0, 1000.0)]
     for locked, of_fly, of_arm in (
         (None, [1000.0, 1000.0, 1000.0], [1000.0, 0.0, 0.0]),
@@ -91,7 +95,7 @@ def test_masses_collars_and_diaphragms_weigh_along_the_boom() -> None:
 
 
 def test_each_of_three_segments_carries_the_outboard_forces() -> None:
-    """Reference: analytic, the sum of the thrusts outboard; a tension pulls."""
+    """Reference: analytic, the sum of the outboard thrusts, with negative tension."""
     arm, fly = segments()
     jib = Segment.of_section("jib", 12.0, 20.0, STEEL, INNER)
     second = Joint(outer=1, inner=2, stations=(12.0, 14.0), play=0.01)
@@ -132,7 +136,7 @@ def test_a_lock_is_on_the_outer_segment_and_not_beyond_the_inner_one() -> None:
 def test_drawn_out_a_force_goes_along(
     carrier: Carrier, locked: float | None, entered: MovingForce | None
 ) -> None:
-    """Reference: other code path, the forces of the boom built there."""
+    """Reference: other code path, the forces in the boom built at this extension."""
     ways = PiecewiseLinear([0.0, 1.0], [0.0, 1.0])
     rope, drive = [Thrust(1, 14.0, 1000.0)], Drive(ways, ("inner", "outer"), 0.0, carrier)
     joint = replace(JOINT, drive=drive, locked_at=locked)

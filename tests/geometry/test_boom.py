@@ -95,7 +95,7 @@ def test_places_of_three_segments(paper_boom: Boom) -> None:
 
 
 def test_places_where_something_acts(paper_boom: Boom, spatial_boom: Boom) -> None:
-    """Stations of the joints along z and along y, then stops; nodes wherever a force may be."""
+    """Stations are ordered by joints along z, joints along y, stops; nodes are at all forces."""
     loads = (Load(0, "z", 5.0, 4.0, np.ones_like), Load(0, "z", 5.0, None, np.ones_like))
     stop = Stop(1, 14.0, 0.002, PowerContact(1.0e9, 1.0, stiffness_below=0.0))
     outer, inner = paper_boom.segments
@@ -291,7 +291,7 @@ def test_a_clamped_segment_is_held_by_itself(paper_boom: Boom) -> None:
 
 
 def test_a_chain_is_held_from_either_end(steel: Material, paper_boom: Boom) -> None:
-    """Supports on the last segment hold the first one as well as the other way round."""
+    """Supports on the last segment are as sufficient as supports on the first one."""
     outer, inner = (replace(s, section=None, supports=()) for s in paper_boom.segments)
     (joint,) = paper_boom.joints
     last = replace(
@@ -302,7 +302,7 @@ def test_a_chain_is_held_from_either_end(steel: Material, paper_boom: Boom) -> N
 
 
 def test_boxes_that_fit_to_round_off_are_accepted(paper_boom: Boom) -> None:
-    """The inferred boxes leave the play to round-off, and that is enough."""
+    """The inferred boxes have the play except for round-off, which is accepted."""
     outer, inner = paper_boom.segments
     assert free_room(outer.section, inner.section)[0] == pytest.approx(14.0e-3, rel=1e-12)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pads: on the axis in the plane, in the corners of the boxes in space."""
+"""Positions of pads: on the axis in flat booms, in the corners of boxes in space."""
 
 from dataclasses import replace
 
@@ -75,7 +75,7 @@ def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
 
 
 def test_stations_are_those_of_the_boom(spatial_boom: Boom) -> None:
-    """Three segments and a stop, one joint bonded or none."""
+    """The boom has three segments and a stop, and one bonded joint or none."""
     (joint,) = spatial_boom.joints
     inner = spatial_boom.segments[1]
     box = replace(inner.section, height=0.4, width=0.2)
@@ -99,7 +99,9 @@ def test_stations_are_those_of_the_boom(spatial_boom: Boom) -> None:
 
 
 def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
-    """Reference: analytic. Each side presses with the whole law; all pads rub with the whole N."""
+    """Reference: analytic. The pads of a side have the whole contact law, all pads have the whole
+    N.
+    """
     (joint,) = spatial_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     found = pads(replace(spatial_boom, joints=(joint,)))
@@ -118,8 +120,9 @@ def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
 def test_a_station_presses_corners_evenly_or_about_itself(
     paper_boom: Boom, station: float, start: float, ends: tuple[float, float]
 ) -> None:
-    """Reference: analytic. A unit force whose resultant is at the station, on a tenth of a metre of
-    the outer segment, [0, 10] m: even within, along a line from 4/c down to -2/c at an end."""
+    """Reference: analytic. A unit force on 0.1 m of the outer segment, [0, 10] m, has its resultant
+    at the station. It is uniform inside the segment, and linear from 4/c to −2/c at an end.
+    """
     stretch = ContactInterval.from_station(paper_boom.segments[0], station, 0.1)
     assert (stretch.start, stretch.end) == pytest.approx((start, start + 0.1))
     assert stretch.line_load(np.array([start, start + 0.1])) == pytest.approx(ends)

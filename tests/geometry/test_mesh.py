@@ -68,7 +68,7 @@ def line_length(mesh: SegmentMesh, edges: Indices) -> float:
 
 
 def test_tube_is_closed_between_its_ends(mesh: SegmentMesh) -> None:
-    """Every edge lies between two triangles but for the two end outlines; no node is loose."""
+    """Each edge has two triangles except at both end outlines; no node is unused."""
     open_edges = [edge for edge, count in edge_counts(mesh.triangles).items() if count != 2]
     assert all(edge_counts(mesh.triangles)[edge] == 1 for edge in open_edges)
     x = mesh.points[np.array(open_edges), 0]
@@ -86,7 +86,7 @@ def test_no_two_points_coincide(mesh: SegmentMesh) -> None:
 
 
 def test_area_is_the_perimeter_times_the_length(mesh: SegmentMesh) -> None:
-    """Reference: analytic, of the whole and of each wall."""
+    """Reference: analytic, the area of the whole mesh and of each wall."""
     assert areas(mesh).sum() == pytest.approx(2.0 * (0.4945 + 0.3027) * 10.0, rel=1e-12)
     for number, wall in enumerate(WALLS):
         side = BOX.width if wall in ("bottom", "top") else BOX.height
@@ -107,7 +107,9 @@ def test_walls_lie_on_the_mid_lines(mesh: SegmentMesh) -> None:
 
 
 def test_diaphragm_fills_the_outline_and_shares_its_nodes(closed_mesh: SegmentMesh) -> None:
-    """Reference: analytic, the enclosed area; three triangles at its outline, two at an end."""
+    """Reference: analytic, the enclosed area. Edges of its outline have three triangles, at an end
+    two.
+    """
     for number, x in enumerate((9.0, 10.0), start=len(WALLS)):
         plate = closed_mesh.walls == number
         assert areas(closed_mesh)[plate].sum() == pytest.approx(BOX.height * BOX.width, rel=1e-12)
@@ -132,7 +134,9 @@ def test_a_diaphragm_leaves_the_walls_as_they_are(closed_mesh: SegmentMesh) -> N
 
 
 def test_plates_have_their_thicknesses() -> None:
-    """Reference: analytic, the volume of walls, of a collar on all of them, and of two plates."""
+    """Reference: analytic, the volume of walls, of a collar around all walls, and of two
+    diaphragms.
+    """
     box = BoxSection(height=0.5, width=0.3, flange=0.008, web=0.006)
     segment = replace(
         box_segment("box", 0.0, 10.0, box),
@@ -266,7 +270,7 @@ def test_coincident_lines_are_both_in_the_gmsh_file(tmp_path: Path) -> None:
 
 @contextmanager
 def files_of_at_most(size: int) -> Iterator[None]:
-    """As on a disk that is nearly full: bytes beyond ``size`` cannot be written."""
+    """Limit files to ``size`` bytes, as on a nearly full disk."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
     try:
@@ -287,7 +291,7 @@ def test_a_full_disk_is_noticed(tmp_path: Path, room: int) -> None:
 
 
 def grouped(read: meshio.Mesh, kind: str, name: str) -> Array:
-    """Corners (num_cells, nodes, 3) of the cells in a physical group."""
+    """Return the corners (num_cells, nodes, 3) of the cells in a physical group."""
     tag = read.field_data[name][0]
     tags = read.cell_data_dict["gmsh:physical"][kind]
     return read.points[read.cells_dict[kind][tags == tag]]
@@ -334,7 +338,9 @@ def _signals(name: str) -> int:
 
 
 def test_meshing_keeps_signal_handlers() -> None:
-    """Reference: by construction. gmsh starts PETSc, which resets SIGTERM and SIGPIPE."""
+    """Reference: the handlers before meshing. gmsh starts PETSc, which resets SIGTERM and
+    SIGPIPE.
+    """
     terminate, pipe = (1 << (number - 1) for number in (signal.SIGTERM, signal.SIGPIPE))
     before = signal.signal(signal.SIGTERM, lambda *_: None)
     try:
@@ -350,7 +356,7 @@ PLATE_BREAKS = {"start": 0.0, "plate": 1.0, "end": 2.0}
 
 
 def meshes(section: Section) -> list[SegmentMesh]:
-    """Even, and graded towards the diaphragm."""
+    """Return a uniform mesh, and a mesh that is graded towards the diaphragm."""
     zone = RefinementZone((1.0, 0.0, -1.0), (1.0, 1.0, 1.0), 0.03, 0.5)
     return [
         mesh_segment(section, PLATE_BREAKS, 0.06, closed=("plate",)),
@@ -382,7 +388,7 @@ def test_each_plate_has_its_place_area_and_thickness(name: str) -> None:
 
 @pytest.mark.parametrize("name", SECTIONS)
 def test_polygon_meshes_are_symmetric(name: str) -> None:
-    """Reference: symmetry. Corners and triangles, in each mirror of the section."""
+    """Reference: symmetry of corners and triangles about each mirror plane of the section."""
     section = SECTIONS[name]
     for mesh in meshes(section):
         for axis in section.mirrors:
@@ -414,8 +420,9 @@ def _longest(mesh: SegmentMesh) -> Array:
 
 
 def test_graded_mesh_is_conforming_and_complete(graded: SegmentMesh) -> None:
-    """Reference: analytic. Two triangles at every edge, one at the ends, three at the diaphragm;
-    areas of walls and plate."""
+    """Reference: analytic. Edges have two triangles, one at the ends and three at the diaphragm.
+    The areas of walls and diaphragm are exact.
+    """
     edges = Counter(
         tuple(sorted((t[i], t[i - 1]))) for t in graded.triangles.tolist() for i in range(3)
     )
@@ -432,8 +439,9 @@ def test_graded_mesh_is_conforming_and_complete(graded: SegmentMesh) -> None:
 
 
 def test_graded_mesh_is_fine_in_zones_and_coarse_elsewhere(graded: SegmentMesh) -> None:
-    """Reference: analytic. Edges are within the nearest zone's limit; a metre away 0.05 m by nearly
-    0.2 m."""
+    """Reference: analytic. Edges are within the limit of the nearest zone. At a distance of 1 m
+    they are 0.05 m by nearly 0.2 m.
+    """
     places = np.column_stack([graded.points[:, 0], np.abs(graded.points[:, 1:])])
     allowed = np.minimum(CORNER.edge_length(places), PAD.edge_length(places))
     sides = _longest(graded) / np.sqrt(2.0)
@@ -459,8 +467,9 @@ def test_lines_of_a_graded_mesh_are_complete(graded: SegmentMesh) -> None:
 
 
 def test_refinement_zones_are_at_loads_supports_and_stiffeners(paper_boom: Boom) -> None:
-    """Reference: by hand, with a collar, a diaphragm and pads. Four times the tolerance, twice the
-    size."""
+    """Reference: by hand, with a collar, a diaphragm and pads. Four times the tolerance gives twice
+    the edge length.
+    """
     outer, inner = paper_boom.segments
     b, h = 0.5 * outer.section.width, 0.5 * outer.section.height
     stiff = replace(outer, collars=(Collar((8.0, 8.5), 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Polygons of plates: their properties, plates, faces and mirrors, and what is no polygon."""
+"""Polygons of plates: properties, plates, faces, mirrors, and invalid polygons."""
 
 import re
 from collections.abc import Sequence
@@ -25,7 +25,7 @@ ALL = {"trapezoid": TRAPEZOID, "hexagon": HEXAGON, "octagon": OCTAGON, "u": U}
 def rectangle(
     top: float, bottom: float, right: float, left: float, at: float = 0.0
 ) -> PolygonSection:
-    """0.6 m high and 0.4 m wide."""
+    """Return a rectangle 0.6 m high and 0.4 m wide with given thicknesses."""
     corners = ((at - 0.2, -0.3), (at + 0.2, -0.3), (at + 0.2, 0.3), (at - 0.2, 0.3))
     return PolygonSection(corners, (bottom, right, top, left))
 
@@ -39,7 +39,7 @@ def regular(sides: int, side: float, wall: float) -> PolygonSection:
 
 @pytest.mark.parametrize("walls", [(0.04, 0.02, 0.01, 0.01), (0.02, 0.02, 0.01, 0.012)])
 def test_a_rectangle_has_the_numbers_of_a_box(walls: tuple[float, float, float, float]) -> None:
-    """Reference: other code, the box's own formulas, wherever the corners are counted from."""
+    """Reference: other code, the formulas of the box, for any origin of the corners."""
     polygon, box = (
         rectangle(*walls, at=0.7),
         BoxSection(0.6, 0.4, *(walls[i] for i in (0, 2, 1, 3))),
@@ -61,8 +61,9 @@ def test_a_rectangle_has_the_numbers_of_a_box(walls: tuple[float, float, float, 
 
 
 def test_it_tapers_wherever_its_corners_begin() -> None:
-    """Reference: by hand. Between a section and itself, its corners listed from another one and the
-    other way around, all are that section."""
+    """Reference: by hand. A taper between equal sections is constant, for any first corner and
+    order.
+    """
     corners = ((-0.1, -0.25), (0.1, -0.25), (0.2, 0.0), (0.1, 0.25), (-0.1, 0.25), (-0.2, 0.0))
     thick = (0.008, 0.006, 0.006, 0.009, 0.006, 0.006)
     tail = closed_polygon(corners, thick)
@@ -76,7 +77,7 @@ def test_it_tapers_wherever_its_corners_begin() -> None:
 
 
 def test_an_upright_rectangle_is_a_box() -> None:
-    """Reference: other code, the box's own formulas, those of its webs among them."""
+    """Reference: other code, the formulas of the box, including the areas of its webs."""
     box = BoxSection(height=0.6, width=0.4, flange=0.02, web=0.01)
     same = closed_polygon(rectangle(0.02, 0.02, 0.01, 0.01).corners, (0.02, 0.01, 0.02, 0.01))
     for name in ("area", "second_moment_of_area", "shear_area", "lateral_shear_area"):
@@ -111,7 +112,7 @@ def test_many_plates_are_a_tube() -> None:
 
 
 def _between(normals: Array, offsets: Array, z: float) -> float:
-    """How wide the half-planes n·x ≤ c leave it at a level, in m."""
+    """Return the width in m of the intersection of half-planes n·x ≤ c at a level."""
     across = np.abs(normals[:, 0]) > 1e-9
     if (normals[~across, 1] * z > offsets[~across]).any():
         return 0.0
@@ -121,7 +122,7 @@ def _between(normals: Array, offsets: Array, z: float) -> float:
 
 
 def _level_by_level(section: Section, power: int) -> float:
-    """∫ z^power dA of the material within the walls' surfaces."""
+    """Return ∫ z^power dA over the material between the surfaces of the walls."""
     tangents = np.array([plate.tangent for plate in section.plates])
     normals = np.column_stack([tangents[:, 1], -tangents[:, 0]])
     midpoints = np.array([plate.start for plate in section.plates])
@@ -166,7 +167,7 @@ def test_on_its_side(name: str) -> None:
 
 @pytest.mark.parametrize("name", ALL)
 def test_wherever_its_corners_begin(name: str) -> None:
-    """Reference: analytic. Another first corner, the other way around: the same plates."""
+    """Reference: analytic. Another first corner or order of corners gives the same plates."""
     section = ALL[name]
     corners = (*section.corners[2:], *section.corners[:2])
     shifted = PolygonSection(corners, (*section.thicknesses[2:], *section.thicknesses[:2]))
@@ -180,7 +181,7 @@ def test_wherever_its_corners_begin(name: str) -> None:
 
 
 def test_plates_faces_and_mirrors() -> None:
-    """Reference: analytic, of shapes drawn by hand. Images are images to the last bit."""
+    """Reference: analytic, known shapes. Mirror images are exact to the last bit."""
     assert [plate.name for plate in HEXAGON.plates] == [
         "bottom", "right-1", "right-2", "top", "left-2", "left-1",
     ]  # fmt: skip
@@ -199,7 +200,7 @@ def test_plates_faces_and_mirrors() -> None:
 
 
 def test_sizes_of_the_short_forms() -> None:
-    """Reference: analytic. The U's facets touch the circles of its bends."""
+    """Reference: analytic. The facets of the U-section are tangent to the circles of its bends."""
     for section in (HEXAGON, OCTAGON, U):
         assert section.size("z") == pytest.approx(0.50, rel=1e-12)
     assert [section.size("y") for section in (HEXAGON, OCTAGON, U)] == pytest.approx(

@@ -54,7 +54,7 @@ def test_a_box_worked_by_hand() -> None:
 
 
 def test_a_box_on_its_side() -> None:
-    """Reference: analytic, y and z exchanged; what does not know of the two stays."""
+    """Reference: analytic, y and z exchanged. Properties without direction are equal."""
     side = BOX.turned()
     assert side == BoxSection(height=0.40, width=0.60, flange=0.01, web=0.04)
     assert side.second_moment_of_area == BOX.lateral_second_moment_of_area
@@ -86,9 +86,9 @@ def test_area_and_second_moments_against_integration_over_the_plane() -> None:
 
 
 def torsion_by_stress_function(height: float, width: float, wall: float, cells: int) -> float:
-    """2 ∫ φ dA of Prandtl's stress function on a grid with ``cells`` across the wall.
+    """Return 2 ∫ φ dA of Prandtl's stress function on a grid with ``cells`` across the wall.
 
-    −∇²φ = 2 with φ = 0 on the outside; the hole is one unknown.
+    The equation is −∇²φ = 2 with φ = 0 outside; φ of the hole is a single unknown.
     """
     d = wall / cells
     shape = round((width + wall) / d) + 1, round((height + wall) / d) + 1
@@ -114,7 +114,8 @@ def torsion_by_stress_function(height: float, width: float, wall: float, cells: 
 
 def test_torsion_constant_in_the_limit_of_thin_walls() -> None:
     """Reference: other code, finite differences for Prandtl's stress function. Bredt's error halves
-    with the wall."""
+    with the wall.
+    """
     errors = []
     for wall in (0.1, 0.05, 0.025):
         exact = torsion_by_stress_function(1.0, 0.6, wall, cells=6)
@@ -134,7 +135,9 @@ def test_torsion_constant_in_the_limit_of_thin_walls() -> None:
 def test_boxes_of_the_paper(
     ratio: float, outer_mm: tuple[float, ...], inner_mm: tuple[float, ...]
 ) -> None:
-    """Reference: other code, to its four digits; A, J and the room of 2Δ to round-off."""
+    """Reference: other code, to its four digits. A, J and the clearance 2Δ are exact to
+    round-off.
+    """
     outer = infer_outer_section(PAPER_AREAS[0], PAPER_SECOND_MOMENTS[0], ratio)
     inner = infer_inner_section(PAPER_AREAS[1], PAPER_SECOND_MOMENTS[1], outer, 7.0e-3)
     for box, printed in ((outer, outer_mm), (inner, inner_mm)):
@@ -149,7 +152,9 @@ def test_boxes_of_the_paper(
 
 
 def test_clear_room_by_hand() -> None:
-    """Reference: analytic. Hole of 0.56 m x 0.39 m around a box 0.51 m x 0.33 m outside."""
+    """Reference: analytic, a hole of 0.56 m x 0.39 m around a box with outer sizes 0.51 m x 0.33
+    m.
+    """
     inner = BoxSection(height=0.49, width=0.30, flange=0.02, web=0.03)
     assert free_room(BOX, inner)[0] == pytest.approx(0.05, rel=1e-12, abs=0.0)
     assert free_room(BOX, inner)[1] == pytest.approx(0.06, rel=1e-12, abs=0.0)
@@ -169,7 +174,7 @@ def uniform_box(height: float, ratio: float, wall: float) -> BoxSection:
 @given(plates)
 @example((0.5, 1.5, 0.15))
 def test_outer_box_round_trip(numbers: tuple[float, float, float]) -> None:
-    """Reference: analytic. A box's own A, J and ratio lead back to it."""
+    """Reference: analytic. The A, J and ratio of a box give the same box."""
     box = uniform_box(*numbers)
     found = infer_outer_section(box.area, box.second_moment_of_area, box.height / box.width)
     assert found.height == pytest.approx(box.height, rel=1e-9)
@@ -183,7 +188,7 @@ def test_outer_box_round_trip(numbers: tuple[float, float, float]) -> None:
 def test_inner_box_round_trip(
     numbers: tuple[float, float, float], clearance: float, side_room: float, outer_wall: float
 ) -> None:
-    """Reference: analytic. An outer box is built around a given one; the room leads back to it."""
+    """Reference: analytic. The inner box follows from the clearance in an outer box around it."""
     box = uniform_box(*numbers)
     assume(side_room > 1e-6)
     outer = BoxSection(
@@ -210,7 +215,7 @@ def test_no_uniform_box_closes_a_clearance_of_14_mm() -> None:
 
 
 def test_no_uniform_box_is_as_thick_as_its_room() -> None:
-    """Half of the height that a clearance leaves is the thickest wall."""
+    """The largest wall thickness is half of the remaining height."""
     message = (
         "no uniform-wall box with A = 0.0005 m² and J = 0.0001 m⁴ closes a clearance of 0.3 m "
     )
@@ -257,8 +262,9 @@ def test_bad_boxes_are_refused(dimension: str, value: float, message: str) -> No
 
 
 def test_shear_flow_of_a_box_by_hand() -> None:
-    """Reference: analytic, t b h/4 J at the end of half a flange, plus (t/2J)(h²/4 − z²) over the
-    web."""
+    """Reference: analytic, t b h/4 J at the end of half a flange, plus (t/2J)(h²/4 − z²) along the
+    web.
+    """
     b, h, t = 0.4, 0.6, 0.01
     bending = t * h**3 / 6.0 + b * t * h**2 / 2.0
     corner, hump = t * b * h / (4.0 * bending), t * h**2 / (8.0 * bending)
@@ -284,7 +290,9 @@ def test_it_is_the_force_and_does_not_twist(name: str, direction: Direction) -> 
 @pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("direction", ["z", "y"])
 def test_carriers_hold_a_force_through_the_axis(name: str, direction: Direction) -> None:
-    """Reference: analytic. In a rigid motion they give its part along the force, and no turn."""
+    """Reference: analytic. Under rigid motions the forces do work on the translation along the
+    force only.
+    """
     section = ALL[name]
     found = section.shear_plates(direction)
     forces = sum(force * section.plates[n].tangent for n, force in found)
@@ -305,7 +313,7 @@ def test_flats_carry_nothing_along_z_and_the_inclined_plates_alike() -> None:
 
 
 def _by_small_steps(section: Section, direction: Direction) -> tuple[float, float]:
-    """Shear area in m² and the force's arm in m, by sums over 20 000 pieces of the mid-line."""
+    """Return the shear area in m² and the lever arm in m by sums over 20 000 pieces of mid-line."""
     count = 20_000 // len(section.plates)
     parts = (np.arange(count) + 0.5) / count
     places = np.concatenate(
@@ -335,7 +343,7 @@ def test_shear_areas_and_centre_against_small_steps(section: PolygonSection) -> 
 
 
 def test_the_shear_centre_of_a_box_with_unequal_webs() -> None:
-    """Reference: other code, sums over small steps; with equal webs it is on the axis."""
+    """Reference: other code, sums over small pieces. With equal webs it is on the axis."""
     box = BoxSection(0.6, 0.4, 0.02, 0.02, left_web=0.01)
     assert shear_centre(box.plates)[0] == pytest.approx(_by_small_steps(box, "z")[1], abs=1e-7)
     assert shear_centre(box.plates)[0] > 0.04
@@ -348,7 +356,9 @@ OUTER, INNER = (0.41, -0.31, 0.32), (0.39, -0.29, 0.28)
 
 
 def test_properties_worked_by_hand() -> None:
-    """Reference: analytic, by hand. The outer rectangle less the inner one, with Steiner's part."""
+    """Reference: analytic, the outer rectangle less the inner one, with the parallel axis
+    theorem.
+    """
     areas = [width * (top - bottom) for width, bottom, top in (OUTER, INNER)]
     midpoints = [0.5 * (bottom + top) for _, bottom, top in (OUTER, INNER)]
     area = areas[0] - areas[1]
@@ -416,7 +426,7 @@ def test_faces_count_from_the_centroid() -> None:
 
 
 def test_a_force_through_the_centroid_goes_to_the_flanges_by_the_lever() -> None:
-    """Reference: analytic. The parts sum to one, and their resultant is in the centroid."""
+    """Reference: analytic. The forces sum to 1, with the resultant at the centroid."""
     forces = [(n, part * UNEQUAL.plates[n].tangent[0]) for n, part in UNEQUAL.shear_plates("y")]
     assert sum(force for _, force in forces) == pytest.approx(1.0, rel=1e-15)
     arms = [force * UNEQUAL.plates[number].midpoint[1] for number, force in forces]
@@ -448,7 +458,7 @@ def _with_inner(boom: Boom, section: BoxSection) -> Boom:
 
 
 def test_each_wall_of_its_mesh_has_its_place_area_and_thickness() -> None:
-    """Reference: analytic. The mesh is its own image in y; a diaphragm fills the box."""
+    """Reference: analytic. The mesh is symmetric about y = 0; a diaphragm fills the box."""
     mesh = mesh_segment(UNEQUAL, {"start": 0.0, "end": 2.0}, 0.1, closed=("end",))
     corners = mesh.points[mesh.triangles]
     areas = 0.5 * np.linalg.norm(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Polygons beside finite elements over the section, by the program sectionproperties."""
+"""Polygons, compared with finite elements over the section by the program sectionproperties."""
 
 import json
 from dataclasses import replace
@@ -51,7 +51,7 @@ def thinner(section: PolygonSection, part: float) -> PolygonSection:
 
 @cache
 def elsewhere(section: PolygonSection) -> dict[str, Any]:
-    """Of quadratic triangles, some of them across the thinnest wall, from the centroid."""
+    """Return the properties by quadratic triangles, several across the thinnest wall."""
     walls = trapezoids(section.plates)
     outline, hole = walls[:, 0].tolist(), walls[:, 3].tolist()
     given = json.dumps([outline, hole, 0.5 * min(section.thicknesses) ** 2])
@@ -60,7 +60,7 @@ def elsewhere(section: PolygonSection) -> dict[str, Any]:
 
 @pytest.mark.parametrize("name", ALL)
 def test_area_and_second_moments(name: str) -> None:
-    """Reference: other code; both are exact for what is bounded by straight lines."""
+    """Reference: other code. Both are exact for straight boundaries."""
     section = ALL[name]
     found = elsewhere(section)
     for key in ("area", "second_moment_of_area", "lateral_second_moment_of_area"):
@@ -70,9 +70,9 @@ def test_area_and_second_moments(name: str) -> None:
 
 @pytest.mark.parametrize("name", ALL)
 def test_torsion_shear_areas_and_shear_centre_of_thin_walls(name: str) -> None:
-    """Reference: other code, extrapolated from half and a quarter of the thickness to none: what
-    corners carry otherwise than mid-lines goes with the thickness. It is 0.3 to 1.2 % of these
-    walls themselves."""
+    """Reference: other code, extrapolated from half and a quarter of the thickness to 0, since the
+    effect of corners is proportional to the thickness. It is 0.3 to 1.2 % for these walls.
+    """
     halves = [thinner(ALL[name], part) for part in (0.5, 0.25)]
     for key in OF_WALLS:
         half, quarter = (elsewhere(one)[key] / getattr(one, key) for one in halves)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What holds a boom, what does not, and what loads press. Reference: statics by hand."""
+"""Supported and unsupported booms, and loads on stops. Reference: statics by hand."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -81,8 +81,10 @@ def test_unloaded_stop_gives_no_support(paper_boom: Boom, loads: tuple[Load, ...
 
 
 def test_a_collar_presses_a_stop_by_its_weight(steel: Material) -> None:
-    """Reference: by hand. Beyond the hinge at 4 m weigh 75.36 kg/m · 10 m · 1 m, before it a collar
-    of 7850 kg/m³ · 1.4 m · 1 m · 30 mm on a lever of 3.5 m: 754 and 1154 kg m."""
+    """Reference: by hand. About the hinge at 4 m, the moment of the part beyond it is
+    75.36 kg/m · 10 m · 1 m = 754 kg m. A collar of 7850 kg/m³ · 1.4 m · 1 m · 30 mm with the lever
+    arm 3.5 m has 1154 kg m.
+    """
     box = BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006)
     assert steel.density * box.area == pytest.approx(75.36)
     arm = Segment.of_section("arm", 0.0, 10.0, steel, box, supports=(Support(4.0),))
@@ -128,7 +130,7 @@ def test_a_boom_is_not_held(
 
 
 def test_in_space_a_boom_is_held_sideways_too(spatial_boom: Boom) -> None:
-    """A pin lets it turn sideways, a hinge does not, and two cylinders side by side do not."""
+    """A pin permits lateral rotation; a hinge and a pair of cylinders prevent it."""
     pair = replace(ARM, spread=1.0)
     assert held(spatial_boom, ACROSS, cylinders=(ARM,))
     assert held(spatial_boom, HINGE, cylinders=(pair,))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far a drive may draw a segment. Reference: lengths by hand."""
+"""Permitted travels of drives. Reference: lengths by hand."""
 
 from dataclasses import replace
 from typing import Any
@@ -55,12 +55,14 @@ def drawn(
 def test_travel_may_reach_the_least_overlap(
     steel: Material, start: float, end: float, travel: float, least: float
 ) -> None:
-    """1.2 - 0.7 = 0.5 m of overlap are left, 0.3 m of the fly are out; both less by round-off."""
+    """An overlap of 1.2 − 0.7 = 0.5 m and 0.3 m of the fly remain; both are smaller by
+    round-off.
+    """
     assert drawn(steel, start, end, travel, least).telescopes
 
 
 def test_no_segment_is_drawn_in_through_a_diaphragm(steel: Material) -> None:
-    """From 2.5 to 1.5 m, with a plate at 2 m; 0.4 m leave it alone."""
+    """From 2.5 to 1.5 m the segment hits a plate at 2 m; with 0.4 m it does not reach it."""
     plated = {"diaphragms": (Diaphragm(2.0, 0.008),)}
     assert drawn(steel, 2.5, 9.0, -0.4, base=plated)
     with pytest.raises(BoomError) as caught:
@@ -73,8 +75,9 @@ def test_no_segment_is_drawn_in_through_a_diaphragm(steel: Material) -> None:
 
 
 def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
-    """Of 0.40 to 0.36 m and 0.34 to 0.30 m less walls 26 mm are free at first, 16 mm less at 9
-    m."""
+    """Sections taper from 0.40 to 0.36 m and from 0.34 to 0.30 m. Initially 26 mm are free between
+    the walls, at 9 m 16 mm less.
+    """
     sections = (
         BoxSection(height, width, flange, web=0.006)
         for height, width, flange in (
@@ -123,7 +126,7 @@ PADS = (
 def test_pads_stay_on_both_segments(
     steel: Material, joint: dict[str, Any], key: str, message: str
 ) -> None:
-    """1.2 m of overlap at first. A pad at 5.38 m ends at 5.42 m, and 0.02 m beyond the base."""
+    """The initial overlap is 1.2 m. A pad at 5.38 m ends at 5.42 m, or 0.02 m beyond the base."""
     place = 6.5 + 4.8 - 6.0
     assert drawn(steel, place, 11.3, 1.0, **joint).telescopes
     with pytest.raises(BoomError) as caught:

@@ -19,7 +19,9 @@ from tests.geometry.test_polygon import ALL, HEXAGON
 
 
 def test_plates_meet_where_their_surfaces_do() -> None:
-    """Reference: analytic. A box's trapezoids have the corners of its outside and of its hole."""
+    """Reference: analytic. The trapezoids of a box have the corners of its outer and inner
+    surface.
+    """
     walls = trapezoids(BoxSection(0.6, 0.4, flange=0.04, web=0.01).plates)
     outside = [(-0.205, -0.32), (0.205, -0.32), (0.205, 0.32), (-0.205, 0.32)]
     hole = [(-0.195, -0.28), (0.195, -0.28), (0.195, 0.28), (-0.195, 0.28)]
@@ -28,14 +30,14 @@ def test_plates_meet_where_their_surfaces_do() -> None:
 
 
 def test_room_of_boxes() -> None:
-    """Reference: analytic. Outside 0.52 x 0.34 m in a hole of 0.58 x 0.38 m."""
+    """Reference: analytic, a box with outer sizes 0.52 x 0.34 m in a hole of 0.58 x 0.38 m."""
     outer, inner = BoxSection(0.6, 0.4, 0.02, 0.02), BoxSection(0.5, 0.33, 0.02, 0.01)
     assert free_room(outer, inner) == pytest.approx((0.06, 0.04), rel=1e-12)
     assert free_room(outer, inner, 0.05) == pytest.approx((0.06, 0.04), rel=1e-12)
 
 
 def _smaller(section: Section, clear: float) -> PolygonSection:
-    """Return the section whose plates lie inside the given ones by a gap of ``clear`` m."""
+    """Return the section with plates inside the given ones by a gap of ``clear`` in m."""
     tangents = np.array([plate.tangent for plate in section.plates])
     normals = np.column_stack([tangents[:, 1], -tangents[:, 0]])
     walls = np.array([plate.thickness for plate in section.plates])
@@ -49,9 +51,10 @@ def _smaller(section: Section, clear: float) -> PolygonSection:
 
 
 def test_room_between_inclined_plates() -> None:
-    """Reference: analytic. In a hexagon with the same gap g everywhere the flats leave 2 g along z,
-    and so do plates of the slope n_z, 2 g/n_z, more than that. Along y all is up to these: 2 g/n_y;
-    where the play has been used up to one side, n_z times half of it is gone."""
+    """Reference: analytic. In a hexagon with a uniform gap g, the flat plates leave 2 g along z,
+    less than the 2 g/n_z of inclined plates. Along y inclined plates leave 2 g/n_y. If the section
+    is at one end of its play along z, this decreases by n_z times half the play.
+    """
     inner, gap = _smaller(HEXAGON, 0.01), 0.01
     n_y, n_z = HEXAGON.plates[1].tangent * [1.0, -1.0]
     n_y, n_z = HEXAGON.plates[1].tangent[1], -HEXAGON.plates[1].tangent[0]
@@ -63,7 +66,7 @@ def test_room_between_inclined_plates() -> None:
 
 
 def test_inclined_plates_stand_in_the_way() -> None:
-    """Reference: analytic. A box in an octagon, whose corners meet the chamfers first."""
+    """Reference: analytic. The corners of a box in an octagon touch the chamfers first."""
     outer = octagon(0.5, 0.4, 0.1, 0.01, 0.01, 0.01)
     box = BoxSection(0.28, 0.28, 0.01, 0.01)
     # Chamfers are at |y| + |z| = 0.35 − 0.01/√2 within, the box's corner at (0.145, 0.145).
@@ -156,7 +159,7 @@ def padded(steel: Material, widths: Mapping[PadSide, float]) -> Boom:
 
 
 def test_a_pad_has_the_room_of_its_own_wall(steel: Material) -> None:
-    """Half of a wall 0.5 m high has room for 0.15 m, half of one 0.2 m wide has not."""
+    """Half a wall of 0.5 m has room for 0.15 m, half a wall of 0.2 m does not."""
     assert padded(steel, WIDTHS).joints[0].padded
     with pytest.raises(BoomError) as caught:
         padded(steel, {**WIDTHS, "below": 0.15})

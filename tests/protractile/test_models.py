@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Models of a boom that no case file declares, beside the same ones from a case file."""
+"""Models of a boom in Python, compared with the same models of a case file."""
 
 import tomllib
 from dataclasses import replace
@@ -78,7 +78,7 @@ def declared(model: ModelTable, **tables: Any) -> pt.Case:
 def test_motion_equals_the_motion_of_a_case_file(
     boom: pt.Boom, kind: str, keys: dict[str, Any]
 ) -> None:
-    """Reference: other way to say it, to the bit."""
+    """Reference: other code path, the case file, to the last bit."""
     if "mesh_size" in keys or "calibrated_by" in keys:
         pytest.importorskip("dolfinx", reason="shells need FEniCSx")
     if "calibrated_by" in keys:
@@ -91,14 +91,14 @@ def test_motion_equals_the_motion_of_a_case_file(
 
 
 def test_play_of_a_joint_changes_the_first_contact(boom: pt.Boom) -> None:
-    """Reference: analytic. A free fall across half the play takes the root of it in time."""
+    """Reference: analytic. The duration of a free fall is proportional to the root of the play."""
     near = replace(boom, joints=[replace(boom.joints[0], play=0.002)])
     touched = [pt.BeamElements(b).simulate(0.1).first_contact for b in (boom, near)]
     assert touched[1] == pytest.approx(touched[0] / np.sqrt(5.0), rel=1e-3)
 
 
 def test_a_model_has_its_own_contact(boom: pt.Boom) -> None:
-    """Reference: other way to say it, to the bit."""
+    """Reference: other code path, the case file, to the last bit."""
     model = pt.BeamElements(boom, contact={"stiffness": 1.0e7, "exponent": 1.5})
     softer = [replace(boom.joints[0], contact=pt.PowerContact(1.0e7, exponent=1.5))]
     one, other = (m.simulate(0.1) for m in (model, pt.BeamElements(replace(boom, joints=softer))))
@@ -128,7 +128,7 @@ def test_keys_are_those_of_the_table(boom: pt.Boom) -> None:
 
 
 def test_weight_equals_the_weight_of_a_case_file(boom: pt.Boom) -> None:
-    """Reference: other way to say it, to the bit."""
+    """Reference: other code path, the case file, to the last bit."""
     model = pt.BeamElements(pt.with_weight(boom, angle=30.0), element_length=1.0)
     results = pt.run_case(declared(model, gravity={"angle": 30.0}))
     tip = results.trajectories["tip"].sel(model=model.name)
@@ -136,7 +136,7 @@ def test_weight_equals_the_weight_of_a_case_file(boom: pt.Boom) -> None:
 
 
 def test_start_and_damping_equal_a_case_file(boom: pt.Boom) -> None:
-    """Reference: other way to say it, to the bit."""
+    """Reference: other code path, the case file, to the last bit."""
     model = pt.BeamElements(boom, element_length=1.0)
     results = pt.run_case(
         declared(

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A shell made by hand: an outer segment that bends beyond its supports at 0 and 2 m, an inner one
-that moves as a rigid body."""
+that moves as a rigid body.
+"""
 
 import numpy as np
 import xarray as xr

@@ -54,7 +54,8 @@ def test_a_point_load_at_rest_bends_as_it_should(tmp_path: Path) -> None:
 
 def test_boom_at_rest_has_contact_forces_and_no_peak(tmp_path: Path) -> None:
     """Reference: analytic, the lever rule on the stop; a stiff stop carries 3/8 of a uniform
-    load."""
+    load.
+    """
     floor = {"x": 10.0, "play": 0.0, "stiffness": 0.0, "stiffness_below": 1e12}
     stop = table("[[stop]]", segment="beam", **floor)
     results = run(tmp_path, REST + load(magnitude=-1000.0) + stop)
@@ -75,7 +76,8 @@ def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
 
 def test_a_payload_hangs_from_the_tip_with_its_mass(tmp_path: Path) -> None:
     """Reference: analytic. A large mass swings at √(3 E J / m L³) about the deflection of its
-    weight."""
+    weight.
+    """
     moved = tip(tmp_path, "[payload]\nmass = 2e4\n")
     static = -2.0e4 * 9.80665 * 10.0**3 / (3.0 * BENDING)
     # A beam's mass adds 33/140 of itself to the tip (Rayleigh).

@@ -171,7 +171,8 @@ PRESSED = table("[[axial]]", force=3e5) + elements("beam", theory="euler-bernoul
 
 def test_a_tapered_boom_is_pressed_most_where_it_is_drawn_to(tmp_path: Path) -> None:
     """Reference: by hand. The tail comes to 9 m, nine tenths of the way from 12 to 6 mm and from
-    0.7 to 0.5 m, where 300 kN press four walls of 6.6 mm; at the start, at 5 m, of 9 mm."""
+    0.7 to 0.5 m, where 300 kN press four walls of 6.6 mm; at the start, at 5 m, of 9 mm.
+    """
     head, outer, inner, *_ = (CASES / "drawn-out.toml").read_text("utf-8").split("[[segment]]\n")
     numbers = outer[outer.index("mass_per_length") : outer.index("load")]
     box = "section = { height = 0.45, width = 0.25, flange = 0.006, web = 0.006 }\n"

@@ -47,7 +47,8 @@ def turning_beam(frame: FrameMotion, tip: float = 0.0) -> tuple[GapSystem, GapSy
 @pytest.mark.parametrize("key", ["slew", "luff"])
 def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: float) -> None:
     """Reference: published, Wright, Smith, Thresher and Wang (1982), in √(E J/m̄)/L². In the plane
-    of rotation the square of the frequency is smaller by that of the speed."""
+    of rotation the square of the frequency is smaller by that of the speed.
+    """
     rate = np.rad2deg(speed * UNIT)
     system, moving = turning_beam(FrameMotion(**{key: Stroke(20.0 * rate, rate, 1.0)}))
     found = np.sqrt(moving.at_time(10.0).in_own_modes().omega2.min()) / UNIT

@@ -122,7 +122,8 @@ def test_boxes_buckle_in_calculix_as_here(
     tmp_path: Path, box: LoadedBox, n: int, count: int, tolerance: float
 ) -> None:
     """Reference: other code, CalculiX, linear buckling on the same mesh; factors between 1 and
-    2."""
+    2.
+    """
     shell, load, forces = box.pressed(n)
     text = deck(box.name, [shell], [], [load], f"*BUCKLE\n{count + 1}")
     (tmp_path / "box.inp").write_text(text, "utf-8")

@@ -86,7 +86,8 @@ def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, BuiltModel]) 
 
 def test_it_moves_as_the_shell(built: dict[str, BuiltModel]) -> None:
     """Reference: other code, the shell's tip as a part of its range; textbook beams miss it by
-    far."""
+    far.
+    """
     shell = tip(built["shell"].system)
 
     def error(name: str) -> float:

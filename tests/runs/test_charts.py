@@ -21,7 +21,8 @@ def unpacked(packed: dict[str, str]) -> np.ndarray:
 
 def test_numbers_come_as_they_are() -> None:
     """Reference: the values themselves, to the 24 bits of a 32-bit float; a name cannot end the
-    script."""
+    script.
+    """
     time, values = np.linspace(0.0, 1.0, 7), np.array([0.0, 1.5, -2.25, 3.1, 1e-9, 7.0, 8.0])
     text = pack_charts({"tip": Chart(time, "mm", [Curve("</script>", values, "#000000")])})
     assert "<" not in text

@@ -45,7 +45,8 @@ def test_pointwise_differences_by_hand() -> None:
 
 def test_divergence_levels_of_two_models() -> None:
     """Reference: analytic. The spread π·1e-4·exp(t) passes 1 % at 3.5 s and 20 % at 6.5 s, or
-    within a quarter period of it; one delayed by 50 ms differs by sin(0.05 π) up to there."""
+    within a quarter period of it; one delayed by 50 ms differs by sin(0.05 π) up to there.
+    """
     found = compare(ensemble(growth=1.0), ensemble(delay=0.05, growth=1.0), CUTOFF)
     assert found.pointwise.until == pytest.approx(np.log(100.0 / np.pi), abs=0.25)
     assert found.pointwise.largest == pytest.approx(np.sin(0.05 * np.pi), rel=1e-2)
@@ -88,7 +89,8 @@ def test_predictable_models_have_no_distribution() -> None:
 
 def test_a_chaotic_system_is_like_itself() -> None:
     """Reference: the system itself under other changes. Pointwise within 1 % up to the horizon,
-    and of one distribution after it."""
+    and of one distribution after it.
+    """
     one, other = (
         integrate_ensemble(Motion(CHAOTIC, 60.0, 1e-2), 16, 1e-6, seed, "load") for seed in (1, 2)
     )
@@ -171,7 +173,8 @@ def test_gain_equals_two_filter_passes() -> None:
 
 def test_known_peaks_under_a_ripple() -> None:
     """Reference: analytic. The swing peaks at 0.5, 1.5, … s; a ripple at 7 Hz moves the raw
-    signal's peaks by up to 70 ms and lifts them by a tenth."""
+    signal's peaks by up to 70 ms and lifts them by a tenth.
+    """
     ripple = 0.1 * np.cos(2.0 * np.pi * 7.0 * TIME + 1.0)
     times, heights = slow_peaks(swing() + ripple, TIME, CUTOFF)
     np.testing.assert_allclose(times[1:-1], np.arange(1, 9) + 0.5, atol=2e-3)

@@ -72,7 +72,8 @@ def test_the_reference_is_the_most_complicated_model(
 
 def test_late_and_low_model_differs_at_each_level() -> None:
     """Reference: analytic. Half as high, 50 ms late, within 1 % until 4 s and then a quarter of a
-    period apart; distributions of a cosine and of its half are apart by arccos."""
+    period apart; distributions of a cosine and of its half are apart by arccos.
+    """
     late = np.where(TIME < 4.0, 0.0, 0.25)
     members = {
         name: [swing(scale, shift), swing(scale, shift + late)]

@@ -80,7 +80,8 @@ def test_every_model_stands_on_its_cylinder(case: Case) -> None:
 
 def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(case: Case) -> None:
     """Reference: analytic, the arm of its line about the pin, the moment of the weights, and
-    the component along the boom between pin and lug."""
+    the component along the boom between pin and lug.
+    """
     told = printed_check(case)
     row = next(line for line in told.split("cylinder of")[1].splitlines() if "base" in line)
     _, x, length, arm, force = row.split()

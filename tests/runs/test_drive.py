@@ -317,7 +317,8 @@ def _check_figures(figures: Sequence[Figure]) -> None:
 @pytest.mark.parametrize(("time", "extension"), [(0.0, 5.4), (8.0, 9.4)])
 def test_a_crane_telescopes_out_of_all_its_segments(time: float, extension: float) -> None:
     """Reference: the same boom built as far drawn out, without drives, at rest under its load; its
-    nodes are at its stations, where elements of 1 m that are drawn there miss 0.3 %."""
+    nodes are at its stations, where elements of 1 m that are drawn there miss 0.3 %.
+    """
     drawn = shipped("crane-telescopes")
     still = change(drawn, **{"joint.drive.travel": 0.0, "joint.extension": extension})
     tips = []

@@ -138,7 +138,8 @@ def test_another_case_is_another_motion(moved: list[int]) -> None:
 
 def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
     """Reference: by hand. The shell is made where it is asked for, as PETSc wants it; beams are
-    another thread's, and what keeps one from its motion is told when that is asked for."""
+    another thread's, and what keeps one from its motion is told when that is asked for.
+    """
     beam, lost, shell = (
         SimpleNamespace(name=name, needs_shell=name == "shell")
         for name in ("beam", "lost", "shell")

@@ -208,7 +208,8 @@ def answers(model: str, folder: Path, case: str = CASE) -> ModelDesignResults:
 
 def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
     """Reference: analytic. A boom of one coordinate swings to twice its rest after half a
-    period."""
+    period.
+    """
     series = table("[[model]]", name="one", kind="kantorovich", terms=[1], base="complete")
     found = answers(series, tmp_path)
     assert {peak.what for peak in found.motion.peaks} == {"deflection", "bending moment"}

@@ -19,7 +19,8 @@ def test_cycles_are_those_of_the_standard() -> None:
 
 def test_a_curve_has_the_points_of_the_code() -> None:
     """Reference: external, EN 1993-1-9, 7.1, category 71: 2e6 cycles of 71 N/mm², 52.3 and 28.7
-    N/mm²."""
+    N/mm².
+    """
     sizes = 1e6 * np.array([142.0, 71.0, 52.31, 40.0, 28.74, 28.70])
     expected = [2e6 / 8.0, 2e6, 5e6, 5e6 * (52.31 / 40.0) ** 5, 1e8, np.inf]
     np.testing.assert_allclose(endurance(sizes, 71e6), expected, rtol=1e-3)
@@ -27,7 +28,8 @@ def test_a_curve_has_the_points_of_the_code() -> None:
 
 def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
     """Reference: by hand, 10/2e6 (115/71)³ of a run, 20 000 times that of a life, range 10^⅓ 100
-    MPa."""
+    MPa.
+    """
     time = np.linspace(0.0, 10.0, 10 * 400 + 1)
     stress = 50e6 * np.cos(2.0 * np.pi * time)
     table = LifeTable(detail_category=71.0, partial_factor=1.15, repeats=20_000)

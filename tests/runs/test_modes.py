@@ -84,7 +84,8 @@ def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
 
 def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
     """Reference: analytic, ω² = 2k/m of the heave and k L²/2I of the pitch of a bar on two
-    springs."""
+    springs.
+    """
     bar = Segment.of_section("bar", 0.0, 4.0, steel, BOX)
     segment = replace(bar, supports=(Support(0.0, stiffness=1e6), Support(4.0, stiffness=1e6)))
     boom = Boom((segment,), ())

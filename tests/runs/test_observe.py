@@ -58,7 +58,8 @@ def turned(folder: Path, model: str) -> Results:
 )  # fmt: skip
 def test_a_free_segment_turns_as_a_rigid_body(tmp_path: Path, model: str) -> None:
     """Reference: analytic, (0.01 + 0.02 (x − 9)) t until the head's play of 7 mm is taken at 0.233
-    s."""
+    s.
+    """
     if model == "shell":
         pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     data = turned(tmp_path, model).trajectories.isel(model=0)

@@ -52,7 +52,8 @@ def test_a_stress_alone_has_its_own_factor(ratio: float) -> None:
 
 def test_shear_interacts() -> None:
     """Reference: analytic, 1/α = 1/(2 α_x) + √(1/(4 α_x²) + 1/α_τ²), in bending a circle; shear
-    5.34."""
+    5.34.
+    """
     pressed, sheared = 0.5, 0.4
     factor = panel_factor(STEEL, SLENDERNESS, (-4.0 * pressed * UNIT,) * 2, 5.34 * sheared * UNIT)
     expected = 0.5 * pressed + np.hypot(0.5 * pressed, sheared)

@@ -56,7 +56,8 @@ def test_characteristic_instants_are_those_of_the_motion(shell: Scene) -> None:
 
 def test_an_instant_is_shown_once(shell: Scene) -> None:
     """Reference: by hand. Pressed from the start there is no first contact, and a largest force
-    within 2 % of the run of the first peak is not seen twice."""
+    within 2 % of the run of the first peak is not seen twice.
+    """
     motion = shell.motion.copy(deep=True)
     motion["contact_force_peak"][:] = 1.0e3
     assert characteristic_instants(motion) == pytest.approx(
@@ -247,7 +248,8 @@ def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
 @pytest.mark.usefixtures("_opengl")
 def test_loads_masses_and_cylinders_are_marked_where_the_boom_is(shell: Scene) -> None:
     """Reference: analytic. Symbols of 30 pt: a red arrow and a black ball at the tip, a bar along
-    the cylinder."""
+    the cylinder.
+    """
     payload = PayloadTable(mass=100.0)
     down = LoadTable(segment="inner", x="head", magnitude=-1.0e3)
     marked = moving_scene(CASE.model_copy(update={"payload": payload, "loads": (down,)}))

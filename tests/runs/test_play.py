@@ -122,7 +122,8 @@ LAW = PowerContact(1e6, 1.0).with_clearance(0.01)
 @pytest.fixture
 def pair() -> GapSystem:
     """1 kg on a spring of 100 N/m, 1 kg that hangs in it by a play of 10 mm each way, with 5 N on
-    it, and a rest on the ground far below."""
+    it, and a rest on the ground far below.
+    """
     return modal_system(
         [100.0, 0.0],
         [0.0, -5.0],
@@ -170,7 +171,8 @@ def test_where_nothing_presses_all_is_bonded(pair: GapSystem) -> None:
 
 def test_lateral_contacts_of_both_walls_are_bonded() -> None:
     """Reference: by hand. 5 N bulge the walls by 50 mm, 4 N move the mass by 40 mm to the right
-    wall, where it presses. Without play both stay in place, and 1 N moves the rest by 1/4 m."""
+    wall, where it presses. Without play both stay in place, and 1 N moves the rest by 1/4 m.
+    """
     law = PowerContact(1e5, 1.0).with_clearance(0.08)
     system = modal_system(
         [100.0, 100.0, 4.0],

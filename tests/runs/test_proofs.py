@@ -193,7 +193,8 @@ def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float)
 
 def test_cycles_of_a_motion(tmp_path: Path) -> None:
     """Reference: other code path, the fatigue life of a run; of some fifty cycles the run counts
-    one half."""
+    one half.
+    """
     text = ARM.replace("{ partial", "{ detail_category = 80.0, partial").replace(
         "= 1.0 }", "= 4.0 }", 1
     )

@@ -102,7 +102,8 @@ WAVE = PiecewiseLinear(np.arange(0.0, 10.0, 0.1).tolist(), [0.0, 1.0, 1.0, 0.0] 
 @pytest.mark.parametrize("load", [Sine(5.0), Ramp(0.2), WAVE])
 def test_quasi_static_motion_has_no_residual_vibration(load: History) -> None:
     """Reference (analytic): F/(1 + 3 r²) of springs of 1 and 3 N/m, a row r; no swing at all, where
-    the load moves it by 0.5 m at least."""
+    the load moves it by 0.5 m at least.
+    """
     assert of_follower(load) < 0.01 * 0.5
 
 

@@ -102,7 +102,8 @@ def test_contact_in_the_run_is_contact_in_the_picture(
     shell: Scene, scale: float, section: float
 ) -> None:
     """Reference: analytic. In contact the mid-surfaces of two walls are one wall thickness
-    apart; on the opposite side the distance is larger by twice the clearance."""
+    apart; on the opposite side the distance is larger by twice the clearance.
+    """
     (overlap,) = shell.overlaps
     assert overlap == (0, 1, [0, 1], [9.0, 10.0], CLEARANCE)
     moved = np.zeros_like(shell.points)
@@ -162,7 +163,8 @@ def test_the_only_joint_is_not_named(shell: Scene) -> None:
 
 def test_from_above_y_points_up(shell: Scene) -> None:
     """Reference: analytic. A boom in space, turned so that its width is its height; what moves up
-    comes towards the eye."""
+    comes towards the eye.
+    """
     motion = moving_trajectories().sel(model="shell").isel(station=[0, 1, 0, 1])
     motion = motion.assign(tip_lateral=-2.0 * motion["tip"])
     side, above = Scene.views(moving_fields(), motion, shipped("spatial"))
@@ -183,7 +185,8 @@ def test_scale_is_round_and_fits(largest: float, scale: float) -> None:
 
 def test_the_motion_of_an_overlap_as_a_whole_is_left_out(shell: Scene) -> None:
     """Reference: analytic. Of a parabola w = c x² over 1 m a chord's turn is taken, at the chord's
-    middle w″/12 · (1/2)² of it is left at most; the inner segment keeps how it lies beside it."""
+    middle w″/12 · (1/2)² of it is left at most; the inner segment keeps how it lies beside it.
+    """
     whole, left = shell.displacement(0.5), shell.relative_displacements(0.5, 0, (9.0, 10.0))
     x, _, z = shell.points.T
     flange = shell.flange_in_plane(0, 1)
@@ -202,7 +205,8 @@ def test_the_motion_of_an_overlap_as_a_whole_is_left_out(shell: Scene) -> None:
 
 def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
     """Reference: analytic. What is the same all over a wall stays so up to its folds; a field that
-    is linear along x is met between the triangles around a point."""
+    is linear along x is met between the triangles around a point.
+    """
     stress = shell.stress
     walls = stress.wall.astype(float) + 10.0 * shell.segment
     smooth = smooth_corners(stress, shell.triangles, walls)
@@ -233,7 +237,8 @@ def bent(boom: Boom) -> BeamOutput:
 
 def test_sections_stay_plane_and_follow_their_axis(paper_boom: Boom) -> None:
     """Reference (analytic): at the end of the boom w = 3.61 m and w′ = 0.38, of which the points of
-    a section at z have z w′ along x."""
+    a section at z have z w′ along x.
+    """
     scene, _ = still(paper_boom, bent(paper_boom))
     ends = scene.points[:, 0] == paper_boom.tip
     moved = scene.displacement(1.0)[ends]
@@ -350,7 +355,8 @@ def test_sections_are_as_large_as_the_case_says(name: str) -> None:
 
 def test_a_force_down_points_down() -> None:
     """Reference: an arrow's head is at the place that it marks; on a boom that stands upright what
-    acts across it comes from the left, and a payload hangs all the same."""
+    acts across it comes from the left, and a payload hangs all the same.
+    """
     case = shipped("crane")
     acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
     load_across = acts["24.52 kN down, perpendicular to the boom within 0.5 s"]
@@ -401,7 +407,8 @@ def test_a_page_shows_the_drawn_places_and_stresses(shown: View) -> None:
 
 def test_drives_move_segments_in_the_viewer(shown: View) -> None:
     """Reference (analytic): the inner segment moves back along x by 2 m a second, the outer one
-    not; both bend as they do without a drive."""
+    not; both bend as they do without a drive.
+    """
     out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
     boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
     motion = moving_scene(extension=-2.0 * TIME).motion
@@ -420,7 +427,8 @@ def test_drives_move_segments_in_the_viewer(shown: View) -> None:
 
 def test_symbols_follow_the_boom_and_its_supports_stay(shown: View) -> None:
     """Reference (analytic): the heads of the arrows are at the lower edge of the segment that they
-    load, in its plane of symmetry; hinges stand at 0 and 2 m."""
+    load, in its plane of symmetry; hinges stand at 0 and 2 m.
+    """
     scene = shown.scene
     scale = pack_view(shown, 0.0)["magnified"]
     rest = scene.magnify(np.zeros_like(scene.points), scale)

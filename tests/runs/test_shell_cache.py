@@ -88,7 +88,8 @@ def varied(case: Case, play: float, times: float, ramp: float) -> Case:
 
 def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) -> None:
     """Reference: other code, the same boom reduced with its own play and loads, by contact
-    compliances."""
+    compliances.
+    """
     cache = Cache(tmp_path / "cache")
     reduce(varied(case, 0.014, 1.0, 0.5), cache)
     other = varied(case, 0.004, -3.0, 0.1)

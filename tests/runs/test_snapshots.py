@@ -25,7 +25,8 @@ TIME = np.arange(1001) / 1000
 
 def results(*shells: str) -> Results:
     """Shells whose tips swing once a second by 100 mm, to the sides half as far and more slowly,
-    and touch at 0.25 s with 2 kN."""
+    and touch at 0.25 s with 2 kN.
+    """
     case = case_file.select(shipped("coarse"), "", ["shell"], None)
     models = tuple(case.models[0].model_copy(update={"name": name}) for name in shells)
     force = np.zeros((len(shells), TIME.size, 1))

@@ -44,7 +44,8 @@ def told(case: Case) -> list[str]:
 
 def test_masses_forces_and_tips_are_those_of_hand() -> None:
     """Reference: by hand, the lever rule; other code, 9.916 mm of elements; play adds 7 + 14 · 9
-    mm."""
+    mm.
+    """
     lines = told(shipped("coarse"))
     assert "outer 831.6 0 5" in lines
     assert "all 1382 0 8.586" in lines

@@ -123,7 +123,8 @@ def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
 
 def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
     """Reference: by hand. The lever rule presses pads of 1 m of overlap by 27 and 21.6 kN; 550.7 kg
-    on 200 kN/m swing at 3.03 Hz, damped by 500/2√(k m), and the critical speed from the formula."""
+    on 200 kN/m swing at 3.03 Hz, damped by 500/2√(k m), and the critical speed from the formula.
+    """
     shown = printed_check(drawn_by(tmp_path, ROPE), 300)
     assert (
         "The drive of 'inner' moves 550.7 kg, with a frequency of 3.03 Hz and a damping ratio of "
@@ -155,7 +156,8 @@ def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
 @pytest.mark.slow
 def test_a_run_tells_how_it_sticks_and_slips(tmp_path: Path) -> None:
     """Reference: analytic. While it slips the force of the drive is friction and m Δṡ/Δt, and what
-    it has come is what was drawn less the lag; beside a stiff drive nothing else changes."""
+    it has come is what was drawn less the lag; beside a stiff drive nothing else changes.
+    """
     short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.3"}
     case = drawn_by(tmp_path, ROPE.replace("2e5", "2e6"), **short)
     results = run_case(case, models=["kantorovich-5"])
@@ -202,7 +204,8 @@ def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
 
 def test_a_stiff_rope_pulls_as_a_stiff_drive(tmp_path: Path) -> None:
     """Reference: analytic. On 1e10 N/m its force is that of the stiff drive against the friction of
-    each moment, and what speeds 550.7 kg up on the S-curve, 0.1 % of the largest apart."""
+    each moment, and what speeds 550.7 kg up on the S-curve, 0.1 % of the largest apart.
+    """
     short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.2"}
     rope = "least_overlap = 1.0, stiffness = 1e10, dashpot = 2e6 }"
     results = run_case(drawn_by(tmp_path, rope, **short), models=["kantorovich-5"])

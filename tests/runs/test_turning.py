@@ -43,7 +43,8 @@ LUFF = "[luff]\ntravel = 10.0\ntime = 3.0\n"
 
 def test_bar_turned_with_a_constant_acceleration() -> None:
     """Reference: analytic, an Euler-Bernoulli cantilever under −m̄ x α̈: w(t) = −4 α̈ Σ (−1)ⁿ⁺¹ L
-    (1 − cos ω t)/(λ ω)², about −11 m̄ α̈ L⁵/(120 E I)."""
+    (1 − cos ω t)/(λ ω)², about −11 m̄ α̈ L⁵/(120 E I).
+    """
     length, mass, bending = 6.0, 40.0, 2.1e11 * 8.0e-6
     beam = Segment(
         "beam", 0.0, length, Material(2.1e11, 0.3, 7850.0), mass, 8.0e-6, rotary_inertia=0.0,
@@ -125,7 +126,8 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
 @pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
 def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, most: float) -> None:
     """Reference: the vibration without the shaper: a thousandth of it without play, a quarter with
-    4 mm."""
+    4 mm.
+    """
     slew = "[damping]\nmodal = 0.02\n[slew]\ntravel = 12.0\ntime = 1.5\n"
     plain = slewing_arm(tmp_path, slew)
     model = plain.models[0].model_copy(update={"bonded_joints": bonded})

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The same boom in SI and in mm, t and s: nothing compares a dimensional number with one of its
-own."""
+own.
+"""
 
 from collections.abc import Callable
 from dataclasses import replace

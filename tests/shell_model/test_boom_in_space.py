@@ -41,7 +41,8 @@ def _differ(found: Array, expected: Array) -> float:
 @pytest.mark.slow
 def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
     """Reference: this shell in its plane: compliances and motion to 1e-9 until the first contact,
-    then 1 % in 0.3 s."""
+    then 1 % in 0.3 s.
+    """
     flat, space = (reduced(one, 0.5, moments=2).system for one in (flat_boom(), boom_in_space()))
     for sigma in SHIFTS:
         expected = _compliance(flat, flat.rows, sigma)
@@ -75,7 +76,8 @@ def octagonal_boom() -> Boom:
 )
 def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off: float) -> None:
     """Reference: symmetry: frequencies, compliances and loads with directions exchanged, to
-    round-off."""
+    round-off.
+    """
     joint = upright.joints[0]
     lying = Boom(
         tuple(segment.turned() for segment in upright.segments),
@@ -142,7 +144,8 @@ def test_each_pad_rubs_where_it_presses() -> None:
 @pytest.mark.slow
 def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
     """Reference: analytic. Pressed sideways the boom loses energy at each station, gains
-    none, and rubs with less than μ times the largest blow."""
+    none, and rubs with less than μ times the largest blow.
+    """
     motion = AdaptiveStep()(
         Motion(reduced(boom_in_space(friction=0.2, sideways=0.5), 0.5).system, 0.3)
     )

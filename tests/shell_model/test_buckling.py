@@ -64,7 +64,8 @@ def test_tension_has_no_factor() -> None:
 
 def test_finite_strips_know_walls_and_columns() -> None:
     """Reference: analytic, k = 4 of a square tube, 5.33 in bending; a long tube is Euler's
-    column."""
+    column.
+    """
     strips, width = Strips.of(TUBE, STEEL), 0.4
     stress = UNIT * (0.004 / width) ** 2
     found = strips.lowest(3.0 * width, range(1, 7), lambda y, z: np.full_like(z, -stress))
@@ -150,7 +151,8 @@ BOOMS = touching(flat_boom(), LAW), touching(boom_in_space(sideways=0.3), LAW, L
 @pytest.mark.parametrize("boom", BOOMS, ids=["flat", "in space"])
 def test_segments_of_a_boom_buckle_between_their_contacts(boom: Boom) -> None:
     """Reference: analytic. Twice the forces have half the factor; the outer segment buckles
-    first."""
+    first.
+    """
     options = ShellOptions(0.25)
     shell, state = at_rest(boom, options)
     twice = replace(state, forces=[2.0 * one for one in state.forces])

@@ -77,7 +77,8 @@ def test_walls_carry_the_axial_force_of_the_cylinder() -> None:
 @pytest.mark.parametrize("stiffness", [2.0e7, 1.0e11], ids=["elastic", "stiff"])
 def test_a_luffed_shell_rests_as_its_beam(stiffness: float) -> None:
     """Reference: other code, Timoshenko elements: the force to round-off, the tip 0.2 and 0.4 %
-    lower."""
+    lower.
+    """
     boom = luffed(replace(CYLINDER, stiffness=stiffness))
     found, expected = at_rest(shell(boom)), at_rest(beam(boom))
     assert found["cylinder_force"] == pytest.approx(expected["cylinder_force"], rel=1e-6)
@@ -120,7 +121,8 @@ def test_a_shell_turns_on_a_spring(stiffness: float) -> None:
 @pytest.mark.slow
 def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
     """Reference: other code, Timoshenko and Bredt: statics and two frequencies. Two cylinders
-    resist the slope and the twist of a boom under wind."""
+    resist the slope and the twist of a boom under wind.
+    """
     free = boom_in_space()
     outer, inner = free.segments
     joint = replace(free.joints[0], bonded=True)

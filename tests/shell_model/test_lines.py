@@ -42,7 +42,8 @@ def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
 @pytest.mark.parametrize("tolerance", [None, 0.02])
 def test_section_forces_of_a_shell_follow_statics(tolerance: float | None) -> None:
     """Reference: by hand, V = 55.07 s and M = −55.07 s²/2 with s = 19 − x, on uniform and graded
-    meshes."""
+    meshes.
+    """
     options = ShellOptions(mesh_size=0.2, contact_tolerance=tolerance)
     line, position = at_rest(flat_boom(), options)[1]
     found = line.read(position)
@@ -55,7 +56,8 @@ def test_section_forces_of_a_shell_follow_statics(tolerance: float | None) -> No
 @pytest.mark.slow
 def test_a_pressed_shell_bears_its_loads_across() -> None:
     """Reference: by hand. −500 N/m and −44,049 N on a column under half of Euler's force; walls
-    carry up to 2.2 times as much across themselves."""
+    carry up to 2.2 times as much across themselves.
+    """
     clamp = Support(0.0, "clamped")
     box = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
     free = box_segment("boom", 0.0, 10.0, box, load=-500.0, supports=(clamp,))
@@ -74,7 +76,8 @@ def test_a_pressed_shell_bears_its_loads_across() -> None:
 @pytest.mark.slow
 def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
     """Reference: another model, shear-flexible elements: section forces within 1 %, deflections
-    within 2 %."""
+    within 2 %.
+    """
     boom = boom_in_space(sideways=0.4)
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     system = gap_system(touching(boom, LAW, LATERAL_LAW), models)
@@ -102,7 +105,8 @@ def test_cuts_pass_no_triangle() -> None:
 
 def test_cuts_are_where_something_acts() -> None:
     """Reference: by hand. A loaded place stays a cut; lines beside it that leave short bands do
-    not."""
+    not.
+    """
     edges = np.linspace(0.0, 10.0, 1001)
     spans = np.column_stack([edges[:-1], edges[1:]])
     cuts = band_boundaries(spans, [2.01])

@@ -29,7 +29,8 @@ SIZES = (0.8, 0.4, 0.2)
 @pytest.mark.slow
 def test_no_rigid_motion_fills_it() -> None:
     """Reference: analytic. Rigid modes open no squeezed station: other shifts leave the local
-    compliance."""
+    compliance.
+    """
     shell = reduced(flat_boom(), 0.4, moments=2)
     system = shell.system
     rigid = system.rows[:, system.omega2 == 0.0]
@@ -206,7 +207,8 @@ def test_estimated_compliance_follows_the_shell(
 @pytest.mark.slow
 def test_a_pad_on_the_corners_bends_no_wall() -> None:
     """Reference: other code path, stations at the midpoints of the pads; narrow pads are near from
-    above."""
+    above.
+    """
 
     def local(boom: Boom) -> float:
         return float(reduced(boom, 0.1, contact_tolerance=0.05).local_compliance.max())

@@ -110,7 +110,8 @@ FOLDED = Member([(-0.2, 0.3), (0.0, 0.3), (0.0, -0.3), (0.2, -0.3)], False, 0.01
 
 def strains_at_centroids(patch: Patch, solution: Array) -> tuple[Array, Array, Array]:
     """ε (num_triangles, 2, 2), κ, γ (num_triangles, 2) along the plate's x and y, from the nodes'
-    values and the shape functions' slopes."""
+    values and the shape functions' slopes.
+    """
     shell = patch.shell
     corners = patch.points[patch.triangles] @ OBLIQUE
     # Slopes of the three barycentric coordinates, (num_triangles, 3, 2).
@@ -145,7 +146,8 @@ def strains_at_centroids(patch: Patch, solution: Array) -> tuple[Array, Array, A
 @pytest.mark.parametrize("state", constant_strains(), ids=lambda state: state.name)
 def test_constant_strains_are_exact(state: ConstantStrain) -> None:
     """Reference: analytic. Fields between edges that are held so, and the strains of every facet,
-    which the test takes from the nodes itself."""
+    which the test takes from the nodes itself.
+    """
     patch = Patch.of()
     assert patch.error(state) < 1.0e-11
     found = strains_at_centroids(patch, patch.solve(state))
@@ -158,7 +160,8 @@ def test_constant_strains_are_exact(state: ConstantStrain) -> None:
 
 def test_rigid_motions_have_no_strain() -> None:
     """Reference: analytic, no force on any node, against the forces when every other node alone
-    moves. A folded shell, oblique in space."""
+    moves. A folded shell, oblique in space.
+    """
     points, triangles = FOLDED.mesh(3, 5)
     turn = np.asarray(Rotation.from_rotvec([-0.8, 0.5, 1.9]).as_matrix())
     shell = StaticShell(points @ turn.T, triangles, FOLDED.thickness, STEEL)
@@ -209,7 +212,8 @@ def test_the_shell_gives_way_as_the_plate() -> None:
 @pytest.mark.parametrize(("edges", "allowed"), [(2, 5.0e-3), (4, 5.0e-4)])
 def test_a_twisted_beam_gives_way_as_published(edges: int, allowed: float) -> None:
     """Reference: external, 5.4245e-3 and 1.7532e-3, MacNeal and Harder 1985; a tenth of the error
-    at twice the edges."""
+    at twice the edges.
+    """
     assert np.array(twisted_beam(edges)) == pytest.approx(
         np.array(PUBLISHED.twisted_beam), rel=allowed
     )
@@ -217,7 +221,8 @@ def test_a_twisted_beam_gives_way_as_published(edges: int, allowed: float) -> No
 
 def test_a_curved_shell_needs_a_stiff_drilling_tie() -> None:
     """Reference: external, 5.4245e-3 and 1.7532e-3; up to 10⁴ of the default within 0.1 %, the soft
-    tie 5 % off."""
+    tie 5 % off.
+    """
     stiff = np.array([twisted_beam(4, drilling) for drilling in (2.0, 20.0, 200.0, 2.0e3, 2.0e4)])
     assert (np.ptp(stiff, axis=0) < 1.0e-3 * stiff[0]).all()
     soft = np.array(twisted_beam(4, 1.0e-2)) / PUBLISHED.twisted_beam

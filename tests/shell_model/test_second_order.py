@@ -55,7 +55,8 @@ def sparse(matrix: PETSc.Mat) -> csr_array:
 
 def test_geometric_stiffness_of_a_rigid_rotation() -> None:
     """Reference: analytic. K_G of a unit rotation is ∫P dx, with a collar and self-weight; of a
-    translation 0."""
+    translation 0.
+    """
     fly = replace(telescope(0.0).segments[1], collars=(Collar((7.0, 8.0), 0.004),))
     (pressed,) = with_compression([fly], [], [Thrust(0, 9.0, 4e4)], gravity=9.0)
     mesh = segment_mesh(Boom((replace(pressed, supports=HELD),), ()), 0, OPTIONS)
@@ -84,7 +85,8 @@ def column(part: float) -> Boom:
 
 def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
     """Reference: other code path, (K − K_G) u = f of all dofs within 1e-5 at 40 % of the critical
-    force."""
+    force.
+    """
     boom = column(0.4)
     full = assemble_segment(MPI.COMM_SELF, boom.segments[0], segment_mesh(boom, 0, OPTIONS))
     assert full.geometric is not None

@@ -71,7 +71,8 @@ def _overhang_compliance(box_shell: Shells, size: float) -> float:
 @pytest.mark.slow
 def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
     """Reference: analytic, a² (l + a) / 3EJ + (a + a²/l) / G A_web, l = 2 m, a = 8 m; 0.1 % apart,
-    a third of the flanges' shear flow."""
+    a third of the flanges' shear flow.
+    """
     bending = 64.0 * 10.0 / (3.0 * STEEL.youngs_modulus * BOX.second_moment_of_area)
     shear = (8.0 + 32.0) / (STEEL.shear_modulus * BOX.shear_area)
     assert shear > 0.02 * bending  # the tolerance is smaller than the effect
@@ -83,7 +84,8 @@ def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
 
 def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
     """Reference: analytic, lifted and pitched; shifted, yawed and rolled, where (y, z) moves by φ
-    (−z, y)."""
+    (−z, y).
+    """
     shell = box_shell(0.25)
     outline, corners = shell.outline(10.0), CornerLines(shell)
     at_end, within = (ContactInterval.from_station(shell.segment, x, 0.1) for x in (10.0, 7.3))
@@ -114,7 +116,8 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
 @pytest.mark.slow
 def test_a_length_of_a_corner_gives_way_alike_on_any_mesh(box_shell: Shells) -> None:
     """Reference: analytic. Changes by halved meshes fall to a third over a length, and stay at a
-    point."""
+    point.
+    """
     section = BoxSection(0.2, 0.2, 0.006, 0.006)
 
     def local(size: float, length: float) -> float:
@@ -186,7 +189,8 @@ def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
 
 def test_point_masses_have_mass_and_no_rotary_inertia(box_shell: Shells) -> None:
     """Reference: analytic: 100 kg to translations, 70·3² + 30·5² kg·m² to pitch and yaw, none to
-    roll."""
+    roll.
+    """
     masses = (PointMass(2.0, 70.0), PointMass(10.0, 30.0))
     bare, loaded = (
         np.array([motion @ times(shell.mass, motion[:, None])[:, 0] for motion in motions.T])

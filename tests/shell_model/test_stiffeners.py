@@ -135,7 +135,8 @@ def test_an_outline_where_a_diaphragm_stands_has_the_walls_nodes_alone() -> None
 
 def test_a_stiffened_shell_mirrors_itself() -> None:
     """Reference: analytic. Nothing moves along y or turns about x; the box on its side has equal
-    frequencies."""
+    frequencies.
+    """
     shell = shell_of(COLLARS, PLATES, HELD)
     outline = shell.outline(8.0)
     force = shell.row(outline.wall_deflection("z"))
@@ -223,7 +224,8 @@ def test_strips_on_the_flanges_bend_as_by_hand() -> None:
 @pytest.mark.parametrize("x", [0.0, 5.0])
 def test_a_diaphragm_stops_the_breathing_of_the_section(x: float) -> None:
     """Reference: analytic. The plate between flanges pulled apart is a hundred times stiffer than
-    walls."""
+    walls.
+    """
     rows = []
     for plates in ((), (Diaphragm(x, 0.008),)):
         shell = shell_of(diaphragms=plates)

@@ -256,7 +256,8 @@ def axial_force(shell: ShellStress, x: float) -> float:
 
 def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
     """Reference: by hand, −P/A in every wall, with m̄ g (L − x) of weight; a collar takes its
-    share."""
+    share.
+    """
     force, gravity = 0.1 * CRITICAL, 9.80665
     boom = column((CLAMP,), force)
     shell = stressed(boom)
@@ -315,7 +316,8 @@ def shell() -> ShellStress:
 
 def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
     """Reference: analytic, 1 MPa at the flanges; a spot raises the mean of a patch by a
-    thirtieth."""
+    thirtieth.
+    """
     history = stress_near_places(shell, [1.0, 3.0, 9.0], ["box"])
     near = history["von_mises"].sel(segment="box")
     assert near.sel(place=1.0).max() == pytest.approx(1.0e6, rel=1e-5)

@@ -128,7 +128,8 @@ def test_a_tilted_approach_presses_as_its_integral() -> None:
 @pytest.mark.slow
 def test_every_point_has_its_share_of_the_penalty() -> None:
     """Reference: analytic. Weights are positive and add up; points belong to the nearest
-    station."""
+    station.
+    """
     law = replace(LAW.law, stiffness_below=0.5e13).with_clearance(LAW.above)
     system = _system(flat_boom(), law=law)
     sides, stiffnesses = np.array([one.terms[0][:2] for one in system.laws]).T
@@ -246,7 +247,8 @@ def test_pads_are_for_stations_near_webs(line: ContactLine) -> None:
 @pytest.mark.parametrize("sides", [("above", "below"), ("above", "below", "left", "right")])
 def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     """Reference: by hand, the mean (b³ − a³)/3(b − a) of a parabola for each pad; weights as
-    stiffnesses."""
+    stiffnesses.
+    """
     boom = flat_boom() if len(sides) == 2 else boom_in_space()
     pads = tuple(
         SlidePad(0.1, width, offset, side=side, thickness=POLYAMIDE * 0.1 * width / stiffness)

@@ -80,7 +80,8 @@ def test_it_bends_as_its_beam(shape: str) -> None:
 @pytest.mark.parametrize("shape", ENDS)
 def test_its_walls_stand_where_the_section_is(shape: str) -> None:
     """Reference: by hand. Nodes lie on the section at their x; mass of the beam; 1 N/m on each
-    half."""
+    half.
+    """
     boom = cantilever(shape)
     (shell,) = assemble_segments(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
     segment, mesh = boom.segments[0], shell.mesh

@@ -138,7 +138,8 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
 @pytest.mark.slow
 def test_no_ring_of_the_mesh_is_felt() -> None:
     """Reference: analytic, the lever rule; compliances of pads are straight from ring to ring
-    within 0.1 %."""
+    within 0.1 %.
+    """
     ways = np.linspace(0.5, 2.0, 49)
     (travel,) = shell(0.0, DRIVE).system.travels
     compliances, forces, pulls = [], [], []

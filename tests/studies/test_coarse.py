@@ -144,7 +144,8 @@ def test_contact_forces_hold_the_segment() -> None:
 @pytest.mark.slow
 def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
     """Reference: analytic away from contacts; near them refinement doubles the stress at a
-    point."""
+    point.
+    """
     found = stress.study(silent, STRESS)
     assert all(verification.holds for verification in found.verifications)
     beam = next(

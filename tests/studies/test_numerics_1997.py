@@ -138,7 +138,8 @@ def survey(samples: Sequence[Sample], reached: float) -> Survey:
 
 def test_outcomes_follow_from_the_runs() -> None:
     """Reference: by hand: two of four runs part after 6 s, two break out at 6.5 s, a solver reaches
-    2 of 7 s."""
+    2 of 7 s.
+    """
     alike, parting = (swing(), swing(), swing()), (swing(), swing(), swing(late=0.4))
     lost = sample(*alike, gained=2.0, since=6.5)
     outcomes = survey([sample(*parting), sample(*parting), lost, lost], 2.0).outcomes

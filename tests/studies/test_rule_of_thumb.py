@@ -29,7 +29,8 @@ def rule(bending: float, shear: float = 0.0) -> Rule:
 
 def fallen(deflection: float, free: float) -> tuple[float, float, float]:
     """Height of the peak, speed where the forces balance, and period, of a unit mass that falls
-    through a free way under a unit force and is caught by a spring."""
+    through a free way under a unit force and is caught by a spring.
+    """
     omega = deflection**-0.5
     amplitude = np.sqrt(deflection**2 + 2.0 * deflection * free)
     caught = np.pi - np.arctan(np.sqrt(2.0 * free / deflection))

@@ -60,7 +60,8 @@ def test_an_oscillator_turns_as_the_textbook_says(scheme: Scheme, phase: float) 
 
 def test_known_errors_in_ten_steps_a_period() -> None:
     """Reference: by hand: periods longer by (ω h)²/12 less a twentieth, shorter by (ω h)²/24;
-    Wilson damps."""
+    Wilson damps.
+    """
     phase = 2.0 * np.pi / 10.0
     newmark, wilson, central = (textbook_root(scheme, phase) for scheme in ALL)
     assert period_elongation(newmark, phase) == pytest.approx(phase**2 / 12.0, rel=0.05)
@@ -71,7 +72,8 @@ def test_known_errors_in_ten_steps_a_period() -> None:
 
 def test_wilson_overshoots_and_newmark_does_not() -> None:
     """Reference: analytic, ω h = 50: Newmark stays within 1 m, Wilson overshoots (Goudreau and
-    Taylor 1973)."""
+    Taylor 1973).
+    """
     far = {
         scheme: np.abs(integrate(let_go, scheme, False).trajectory.states).max()
         for scheme in (NEWMARK, WILSON)

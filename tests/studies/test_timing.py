@@ -124,7 +124,8 @@ def data(folder: Path) -> Any:
 @pytest.mark.slow
 def test_generic_solvers_err_no_more_than_the_time_step(data: Any) -> None:
     """Reference: other code, the time step of the same level; at most a hundred times as
-    accurate."""
+    accurate.
+    """
     entries = iter(data["solvers"])
     for step, solvers in SIZES.levels:
         ours = next(entries)

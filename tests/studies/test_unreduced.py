@@ -167,7 +167,8 @@ def test_friction_below_its_limit_holds_exactly() -> None:
 @pytest.mark.slow
 def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
     """Reference: other code, the reduced shell through the first blow; where a station presses and
-    sticks at once, the sum of both forces is unique."""
+    sticks at once, the sum of both forces is unique.
+    """
     boom = flat_boom(friction=0.2)
     system = reduce_boom(touching(boom, _SOFT), ShellOptions(0.5), MPI.COMM_SELF).system
     reference = FixedStep(1.0e-5)(Motion(system, 0.4))
@@ -257,7 +258,8 @@ def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
 
 def test_a_block_on_a_rough_floor_stays_or_slides() -> None:
     """Reference: analytic. Below μN nothing moves; above, the rest times the compliance, and loss
-    μN s."""
+    μN s.
+    """
     rows = ResistingRows([], [DryFriction(0.5, 0, 20.0)], np.array([[1.0e-3]]), onward=2.0)
     assert rows.forces(np.array([9.0e-3])) == pytest.approx([9.0], rel=1.0e-14)
     assert rows.displacements == pytest.approx([0.0], abs=1.0e-17)

@@ -62,7 +62,8 @@ def test_two_ranks_run_a_shell_as_one_does(
     two_ranks: Ranks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Reference: one rank until the first contact; the highest modes ring at the head by less than
-    1e-4."""
+    1e-4.
+    """
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     case = tmp_path / "case.toml"
     text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.12")
