@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motions with friction to the last bit, and a record of the worker that compiled their loop."""
+"""Motions with friction to the last bit, and a record of the worker that compiled the time loop."""
 
 from pathlib import Path
 

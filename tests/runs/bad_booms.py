@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Numbers and booms that cannot be; see ``bad_edits``."""
+"""Invalid numbers and booms; see ``bad_edits``."""
 
 from tests.runs.coarse_case import CONTACT, adding, replacing
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Slips in how segments touch and rub; see ``bad_edits``."""
+"""Errors in contacts and friction; see ``bad_edits``."""
 
 from tests.runs.coarse_case import CONTACT, FROM_EXPONENT, adding, replacing
 

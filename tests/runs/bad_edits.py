@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Slips in a case file: what stands in the coarse case, what replaces it, and the line it earns."""
+"""Errors in a case file: text of the coarse case, its replacement, and the expected message."""
 
 from tests.runs.bad_booms import NUMBERS
 from tests.runs.bad_contacts import CONTACTS

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Slips in the form of a case file: keys, types, what is missing; see ``bad_edits``."""
+"""Errors in keys and types of a case file, and missing keys; see ``bad_edits``."""
 
 from tests.runs.coarse_case import CONTACT, replacing
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What cases of several tests say alike, and how they are read and refused."""
+"""Common parts of case files for several tests, and their reading and refusal."""
 
 import json
 from collections.abc import Iterator
@@ -65,7 +65,7 @@ section = {{ {", ".join(sizes)} }}
 
 
 def joint(inner: str, outer: str, play: float, span: tuple[float, float], more: str = "") -> str:
-    """Of a segment in another, with stations at both ends of their overlap; 1 GN/m unless said."""
+    """Return a joint with stations at both ends of the overlap, by default of 1 GN/m."""
     stiffness = "" if "stiffness" in more else "stiffness = 1e9"
     return f"""
 [[joint]]
@@ -100,7 +100,7 @@ def shipped(name: str) -> Case:
 
 
 def refusal(folder: Path, content: str | bytes) -> str:
-    """Why a case of a text is refused, behind the name of its file."""
+    """Return the message of a refused case, after the name of its file."""
     with pytest.raises(BadInput) as refused:
         read_case(folder, content)
     return str(refused.value).removeprefix(f"{folder / 'case.toml'}: ")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The coarse case as its file has it, for tests that change a line of it."""
+"""Text of the coarse case, for tests that change a line of it."""
 
 from collections.abc import Mapping
 

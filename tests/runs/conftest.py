@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Sweeps that are planned and not run, and the figures that are saved."""
+"""Planned sweeps without runs, and saved figures."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +13,9 @@ from tests.runs.sweeping import COARSE, FAST, Planned
 
 @pytest.fixture
 def planned(here: Path) -> Planned:
-    """Plans a sweep of case.toml, the coarse case until shortly after its first contact."""
+    """Return a function that plans a sweep of the coarse case until shortly after its first
+    contact.
+    """
     text = COARSE.read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.2")
     Path("case.toml").write_text(text, encoding="utf-8")
 

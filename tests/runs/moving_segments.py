@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A shell made by hand: an outer segment that bends beyond its supports at 0 and 2 m, an inner one
-that moves as a rigid body.
+"""Fields of an invented shell: the outer segment bends beyond its supports at 0 and 2 m, and the
+inner segment is rigid.
 """
 
 import numpy as np
@@ -21,7 +21,7 @@ TIME = np.linspace(0.0, 2.0, 401)
 
 
 def shape(points: Array, deflection: Array, slope: Array) -> Array:
-    """(num_points, 3) motion of plane sections."""
+    """Return the displacements (num_points, 3) of plane sections."""
     return np.stack([-points[:, 2] * slope, np.zeros(len(points)), deflection], axis=1)
 
 
@@ -66,7 +66,9 @@ def moving_fields() -> xr.Dataset:
 
 
 def moving_trajectories() -> xr.Dataset:
-    """Contact from 0.2 s on; the largest mean force at 0.5 s, the hardest blow at 1.6 s."""
+    """Return trajectories with contact from 0.2 s on, the largest mean force at 0.5 s and the
+    largest peak force at 1.6 s.
+    """
     swing = np.sin(np.pi * TIME) ** 2
     force = np.where(TIME[:, None] >= 0.2 - 1e-9, [-2.0e4, 1.8e4] * swing[:, None], 0.0)
     peak = 1.2 * force
@@ -88,11 +90,11 @@ def moving_trajectories() -> xr.Dataset:
 
 
 def moving_scene(case: Case = CASE, state: float = 1.0, **motion: Array) -> Scene:
-    """Seen from the side.
+    """Return the scene of the fields from the side.
 
     Args:
         case: case of the same segments.
-        state: what multiplies the motion's coordinates.
+        state: factor of the motion's coordinates.
         motion: other results (time,).
     """
     fields = moving_fields()

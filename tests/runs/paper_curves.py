@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Curves that models of the paper's case might have, and the verdicts on them."""
+"""Invented curves of the models of the paper's case, and the verdicts on them."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -44,10 +44,10 @@ def swing(height: float, duration: float = 10.0) -> np.ndarray:
 
 
 def curves(duration: float = 10.0, **heights: float) -> dict[str, dict[str, np.ndarray]]:
-    """Tip and head of every model of the paper's case; heights by name, _ for -.
+    """Return tip and head of every model of the paper's case; heights by name, with _ for -.
 
-    Up to the first contact all with play are those of ``kantorovich-5``. A head moves a tenth of
-    that one's tip, and differs by 0.3 of what its own tip differs from it.
+    Up to the first contact, models with play are equal to ``kantorovich-5``. A head is a tenth of
+    its tip, plus 0.3 of the difference of the model's own tip from it.
     """
     peaks = PEAKS | {name.replace("_", "-"): height for name, height in heights.items()}
     touching = np.arange(round(duration * 1000) + 1) / 1000 > FIRST_CONTACT
@@ -106,7 +106,7 @@ def verdict(
 
 
 def members(tips: Mapping[str, np.ndarray]) -> xr.Dataset:
-    """Ensembles from the members' tips, (num_members, num_times) by the model's name."""
+    """Return ensembles from the tips (num_members, num_times) of members, by model name."""
     time = np.arange(next(iter(tips.values())).shape[1]) / 1000
     return xr.Dataset(
         {"tip": (("model", "member", "time"), np.array(list(tips.values())))},
@@ -115,10 +115,10 @@ def members(tips: Mapping[str, np.ndarray]) -> xr.Dataset:
 
 
 def stratifying(drift: float, early: float = 0.0, count: int = 32) -> dict[str, np.ndarray]:
-    """Members of all models with play, which swing alike for six seconds.
+    """Return members of all models with play that vibrate alike for six seconds.
 
-    Each model is ``early`` s later than the one before it from the start, and by ``drift`` more
-    from the sixth second on.
+    Each model is later than the previous one by ``early`` in s, and from six seconds on by
+    ``drift`` more.
     """
     time = np.arange(10_001) / 1000
     delays = early + drift * np.clip(time - 6.0, 0.0, 1.0)

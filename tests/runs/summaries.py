@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Summaries of runs that nobody has made."""
+"""Summaries of invented runs."""
 
 from __future__ import annotations
 
@@ -39,18 +39,18 @@ def model_summary(**changes: Any) -> ModelSummary:
 
 
 def steps_for_peaks(fewest: int | None) -> StepsForPeaks:
-    """So many steps keep three peaks."""
+    """Return a result with three peaks that need this number of steps."""
     return StepsForPeaks(peaks=3, within=0.01, duration=4.0, fewest=fewest, trials=[])
 
 
 def summary_of(models: Mapping[str, ModelSummary], **more: Any) -> Summary:
-    """Of a run of these models."""
+    """Return the summary of a run of these models."""
     plain = {"title": "A boom", "case_hash": "", "versions": {}, "failures": {}}
     return Summary.model_validate(plain | {"models": models} | more)
 
 
 def changed(results: Results, model: str, **changes: Any) -> Results:
-    """Results whose summary says something else of a model."""
+    """Return results with changed entries of a model in the summary."""
     summary = results.summary.model_copy(deep=True)
     for name, value in changes.items():
         setattr(summary.models[model], name, value)

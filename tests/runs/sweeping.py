@@ -17,7 +17,7 @@ Planned = Callable[..., Plan]
 
 
 def run(planned: Plan, folder: Path = Path("out")) -> list[Outcome]:
-    """All outcomes of a sweep, run in this process."""
+    """Return all outcomes of a sweep, run in this process."""
     sweep.prepare(folder, planned.file)
     with ThreadPoolExecutor(1) as pool:
         return sweep.run_points(planned, folder, pool, lambda *_: None)

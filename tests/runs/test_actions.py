@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What acts on a boom, from the case file to the motion."""
+"""Loads, weights and initial states of a case, and their motions."""
 
 from pathlib import Path
 
@@ -33,7 +33,7 @@ FIRST = (1.875104069 / 10.0) ** 2 * np.sqrt(BENDING / 83.16)
 
 
 def run(folder: Path, text: str) -> Results:
-    """Results of the cantilever with what ``text`` says besides."""
+    """Return the results of the cantilever with the additional tables ``text``."""
     return run_case(read_case(folder, CANTILEVER + text + ELEMENTS))
 
 
@@ -47,15 +47,13 @@ def tip(folder: Path, text: str) -> np.ndarray:
 
 
 def test_a_point_load_at_rest_bends_as_it_should(tmp_path: Path) -> None:
-    """Reference: analytic, P L³ / 3 E J, under a load that has acted for ever and goes on."""
+    """Reference: analytic, P L³ / 3 E J, under a load that acts before and after t = 0."""
     moved = tip(tmp_path, REST + load(x=10.0, magnitude=-500.0))
     assert moved == pytest.approx(np.full(moved.size, -500.0 * 10.0**3 / (3.0 * BENDING)), rel=1e-6)
 
 
 def test_boom_at_rest_has_contact_forces_and_no_peak(tmp_path: Path) -> None:
-    """Reference: analytic, the lever rule on the stop; a stiff stop carries 3/8 of a uniform
-    load.
-    """
+    """Reference: analytic. A stiff stop carries 3/8 of a uniform load."""
     floor = {"x": 10.0, "play": 0.0, "stiffness": 0.0, "stiffness_below": 1e12}
     stop = table("[[stop]]", segment="beam", **floor)
     results = run(tmp_path, REST + load(magnitude=-1000.0) + stop)
@@ -65,7 +63,7 @@ def test_boom_at_rest_has_contact_forces_and_no_peak(tmp_path: Path) -> None:
 
 
 def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
-    """Reference: analytic. It starts where the load held it, and swings about zero."""
+    """Reference: analytic. It starts from the deflection under the load, and vibrates about 0."""
     moved = tip(tmp_path, load(x=10.0, magnitude=-500.0, released=True))
     held = -500.0 * 10.0**3 / (3.0 * BENDING)
     assert moved[0] == pytest.approx(held, rel=1e-6)
@@ -75,7 +73,7 @@ def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
 
 
 def test_a_payload_hangs_from_the_tip_with_its_mass(tmp_path: Path) -> None:
-    """Reference: analytic. A large mass swings at √(3 E J / m L³) about the deflection of its
+    """Reference: analytic. A large mass vibrates at √(3 E J / m L³) about the deflection by its
     weight.
     """
     moved = tip(tmp_path, "[payload]\nmass = 2e4\n")
@@ -87,7 +85,7 @@ def test_a_payload_hangs_from_the_tip_with_its_mass(tmp_path: Path) -> None:
 
 
 def test_the_ground_s_acceleration_is_a_load_on_every_mass(tmp_path: Path) -> None:
-    """Reference: the same loads given one by one."""
+    """Reference: the same inertia loads, specified one by one."""
     payload = table("[payload]", mass=300.0, gravity=0.0)
     given = load(magnitude=83.16, frequency=0.7) + load(x=10.0, magnitude=300.0, frequency=0.7)
     shaken = table("[[base]]", acceleration=-1.0, frequency=0.7)
@@ -96,7 +94,7 @@ def test_the_ground_s_acceleration_is_a_load_on_every_mass(tmp_path: Path) -> No
 
 
 def test_a_thrown_segment_has_the_momentum_of_its_speed(tmp_path: Path) -> None:
-    """Reference: analytic. The support leaves nearly all of ½ m v² of a fine beam."""
+    """Reference: analytic. A beam with many elements keeps nearly all of ½ m v²."""
     results = run(tmp_path, "[start]\nvelocity = { beam = 0.1 }\n")
     kinetic = float(results.trajectories["kinetic_energy"].values[0, 0])
     whole = 0.5 * 831.6 * 0.1**2

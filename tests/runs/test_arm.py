@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The inspection arm with friction: in space, friction rows of pads in the corners are equal."""
+"""The inspection arm with friction, and equal friction rows of pads in the corners."""
 
 import tomllib
 from pathlib import Path

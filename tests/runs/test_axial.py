@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Forces along a boom from the case file on: what they are, what they soften, what is refused."""
+"""Axial forces of a case: values, second-order effects, refusals."""
 
 from pathlib import Path
 
@@ -32,14 +32,16 @@ FLY = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
 
 
 def pressed(folder: Path, text: str) -> list[list[float]]:
-    """P at 3 m and 7 m of the mast, at 7 m and 13 m of the fly."""
+    """Return P at 3 and 7 m of the mast, and at 7 and 13 m of the fly."""
     boom = build_boom(read_case(folder, LIFT + text))
     places = (np.array([3.0, 7.0]), np.array([7.0, 13.0]))
     return [s.compression(x).tolist() for s, x in zip(boom.segments, places, strict=True)]
 
 
 def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
-    """Reference: analytic, the masses outboard times g sin θ; hanging down they pull."""
+    """Reference: analytic, the outboard masses times g sin θ. If the boom hangs, they cause
+    tension.
+    """
     mast, fly = 7850.0 * MAST.area, 7850.0 * FLY.area
     text = "[gravity]\nangle = {}\n[payload]\nmass = 300.0\n"
     for angle, part in ((30.0, 0.5), (90.0, 1.0), (-30.0, -0.5)):
@@ -65,7 +67,7 @@ def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
 def test_a_rope_presses_the_boom_from_the_tip_to_the_base(
     tmp_path: Path, text: str, force: float
 ) -> None:
-    """Reference: analytic, what it carries over its falls."""
+    """Reference: analytic, the carried weight over the number of falls."""
     np.testing.assert_allclose(pressed(tmp_path, text), [[force, 0.0], [force, force]], rtol=1e-12)
 
 
@@ -79,7 +81,7 @@ def test_a_force_may_act_anywhere_and_pass_at_a_pin(tmp_path: Path) -> None:
 
 
 def test_a_pressed_boom_rests_lower(tmp_path: Path) -> None:
-    """Reference: analytic. The bonded tip's δ₀/(1 − 1/λ) to 2 %, with the λ that the run tells."""
+    """Reference: analytic, δ₀/(1 − 1/λ) of the bonded boom within 2 %, with λ of the run."""
     rest = '[start]\nstate = "equilibrium"\n' + BONDED
     tips = {}
     for name, text in (("straight", ""), ("pressed", "[[axial]]\nforce = 1.5e5\n")):
@@ -94,7 +96,7 @@ def test_a_pressed_boom_rests_lower(tmp_path: Path) -> None:
 
 
 def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
-    """Reference: what the summary of the run has."""
+    """Reference: the summary of the run."""
     case = read_case(tmp_path, LIFT + "[[axial]]\nforce = 4e4\n" + BONDED)
     results = run_case(case)
     table = buckling_table(results)
@@ -122,7 +124,7 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     ],
 )  # fmt: skip
 def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:
-    """Each on its slip, none on what is in proportion."""
+    """Each error causes its caution, and usual values cause none."""
     case = read_case(tmp_path, (LIFT + text + BONDED).replace("= 0.05", "= 0.5"))
     checked = printed_check(case).splitlines()
     told = run_case(case, models=["bonded"]).summary.cautions
@@ -170,8 +172,9 @@ PRESSED = table("[[axial]]", force=3e5) + elements("beam", theory="euler-bernoul
 
 
 def test_a_tapered_boom_is_pressed_most_where_it_is_drawn_to(tmp_path: Path) -> None:
-    """Reference: by hand. The tail comes to 9 m, nine tenths of the way from 12 to 6 mm and from
-    0.7 to 0.5 m, where 300 kN press four walls of 6.6 mm; at the start, at 5 m, of 9 mm.
+    """Reference: by hand, 300 kN on four walls. The tail moves from 5 m, with walls of 9 mm, to 9
+    m. There the taper from 12 to 6 mm and from 0.7 to 0.5 m is at nine tenths, with walls of 6.6
+    mm.
     """
     head, outer, inner, *_ = (CASES / "drawn-out.toml").read_text("utf-8").split("[[segment]]\n")
     numbers = outer[outer.index("mass_per_length") : outer.index("load")]

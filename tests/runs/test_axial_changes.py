@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Axial forces that change with time, of booms that slew and luff."""
+"""Axial forces that change with time in slewing and luffing."""
 
 from dataclasses import replace
 
@@ -26,7 +26,7 @@ UNIT = np.sqrt(2.1e11 * SECOND_MOMENT / MASS) / LENGTH**2
 def turning_beam(frame: FrameMotion, tip: float = 0.0) -> tuple[GapSystem, GapSystem]:
     """Return the system of a clamped beam with a mass in kg at its tip in a frame.
 
-    The second system has its axial forces and centrifugal terms, too.
+    The second system also has axial forces and centrifugal terms.
     """
     beam = Segment(
         "beam", 0.0, LENGTH, Material(2.1e11, 0.3, 7850.0), MASS, SECOND_MOMENT, 0.0,
@@ -47,7 +47,7 @@ def turning_beam(frame: FrameMotion, tip: float = 0.0) -> tuple[GapSystem, GapSy
 @pytest.mark.parametrize("key", ["slew", "luff"])
 def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: float) -> None:
     """Reference: published, Wright, Smith, Thresher and Wang (1982), in √(E J/m̄)/L². In the plane
-    of rotation the square of the frequency is smaller by that of the speed.
+    of rotation, the square of the frequency is smaller by the square of the speed.
     """
     rate = np.rad2deg(speed * UNIT)
     system, moving = turning_beam(FrameMotion(**{key: Stroke(20.0 * rate, rate, 1.0)}))
@@ -58,7 +58,9 @@ def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: fl
 
 
 def test_luffing_beam_column() -> None:
-    """Reference: other code, scipy's LSODA of three modes; the weight along grows to P_crit/6."""
+    """Reference: other code, scipy's LSODA with three modes. The axial weight increases to
+    P_crit/6.
+    """
     frame = FrameMotion(luff=SCurve(80.0, 1.0), gravity=10.0)
     system, moving = turning_beam(frame, tip=2.0e4)
     motion = FixedStep(5.0e-4)(build_motion(moving, 2.0, 0.01, at_rest=False))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Distance of beams from the shell in a sweep over play."""
+"""Distances of beams from the shell in a sweep over play."""
 
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -20,7 +20,9 @@ CASE = CASES / "beam-or-shell.toml"
 
 
 def test_better_beams_are_nearer_to_the_shell(here: Path) -> None:
-    """Reference: other code, the shell; each beam has what the one before it lacks."""
+    """Reference: other code, the shell. Each beam includes an effect that the previous one
+    neglects.
+    """
     text = CASE.read_text(encoding="utf-8").replace("duration = 5.0", "duration = 1.0")
     assert text.count("acceleration = 1.0") == 1
     text = text.replace("acceleration = 1.0", "acceleration = 10.0")

@@ -148,7 +148,7 @@ def test_cache_ignores_pipes_and_folders(tmp_path: Path, make: Callable[[Path], 
 
 
 def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
-    """Equal content has one key; a change of one unit in the last place has another."""
+    """Equal content has the same key. A change of the last bit changes the key."""
     segment = paper_boom.segments[0]
     same = replace(paper_boom, segments=(replace(segment), paper_boom.segments[1]))
     other = replace(segment, load=float(np.nextafter(segment.load, 0.0)))
@@ -171,7 +171,7 @@ def test_where_it_lies(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def test_no_cache_without_a_home_folder(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """As in a container whose user has a number alone."""
+    """As in a container, the user has a number but no name."""
     for name in ("PROTRACTILE_CACHE", "XDG_CACHE_HOME", "HOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("os.getuid", lambda: 2**31 - 7)
@@ -183,7 +183,7 @@ def test_no_cache_without_a_home_folder(
 
 
 def test_threads_wait_for_an_entry_in_progress(tmp_path: Path) -> None:
-    """Reference: by hand. Another entry, made meanwhile, neither waits nor lets them in."""
+    """Reference: by hand. An entry with another key does not wait and does not release them."""
     cache, order = Cache(tmp_path), list[str]()
     held = Event()
 
@@ -229,7 +229,7 @@ def test_a_boom_comes_back(paper_boom: Boom) -> None:
     ],
 )  # fmt: skip
 def test_an_array_comes_back_with_its_order_in_memory(array: npt.NDArray[Any]) -> None:
-    """Sums over another order would have other round-off."""
+    """Another order would change the round-off of sums."""
     found = again(array, np.ndarray)
     assert (found.dtype, found.shape) == (array.dtype, array.shape)
     assert found.tobytes() == array.tobytes()

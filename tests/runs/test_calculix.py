@@ -60,7 +60,9 @@ def readings(deck: Path) -> dict[str, float]:
 def test_a_boom_rests_in_calculix_as_here(
     tmp_path: Path, name: str, size: float | None, tolerance: float
 ) -> None:
-    """Reference: other code, CalculiX, its elements on the same mesh, from the state of contact."""
+    """Reference: other code, CalculiX with its own elements on the same mesh, in the same contact
+    state.
+    """
     case = reading.select(shipped(name), "", ["shell"], size)
     deck = tmp_path / "boom.inp"
     write(case, "", MPI.COMM_SELF, deck, None)
@@ -85,8 +87,8 @@ def test_a_boom_rests_in_calculix_as_here(
 @INSTALLED
 @pytest.mark.slow
 def test_axial_force_softens_a_boom_as_large_displacements_do_in_calculix(tmp_path: Path) -> None:
-    """Reference: other code, CalculiX with NLGEOM, which has no K_G of ours, under the weight and
-    40 % of Euler's force: 64 % more deflection than without this force.
+    """Reference: other code, CalculiX with NLGEOM instead of our K_G, under the weight and 40 % of
+    Euler's force. This force increases the deflection by 64 %.
     """
     boom, options = column(0.4), ShellOptions(mesh_size=0.2)
     (arm,) = boom.segments
@@ -121,8 +123,8 @@ def test_axial_force_softens_a_boom_as_large_displacements_do_in_calculix(tmp_pa
 def test_boxes_buckle_in_calculix_as_here(
     tmp_path: Path, box: LoadedBox, n: int, count: int, tolerance: float
 ) -> None:
-    """Reference: other code, CalculiX, linear buckling on the same mesh; factors between 1 and
-    2.
+    """Reference: other code, linear buckling by CalculiX on the same mesh, with factors between 1
+    and 2.
     """
     shell, load, forces = box.pressed(n)
     text = deck(box.name, [shell], [], [load], f"*BUCKLE\n{count + 1}")

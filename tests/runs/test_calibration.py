@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams that a shell calibrates, from a case file to a motion."""
+"""Calibrated beams, from the case file to the motion."""
 
 import json
 from pathlib import Path
@@ -66,13 +66,13 @@ def _built(case: Case, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Bu
 
 
 def tip(system: GapSystem) -> Array:
-    """At a small play and ten times the load, as gravity does."""
+    """Return the tip at a small play and ten times the load."""
     point = set_point(system, Point(play=4.0e-3, load=10.0))
     return np.asarray(move(point, 1.5).data["tip"].values)
 
 
 def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, BuiltModel]) -> None:
-    """Reference: other code, the shell's static compliance where it touches and rubs."""
+    """Reference: other code, the static compliance of the shell at contact and friction rows."""
     shell = elastic_compliance(built["shell"].system)
     sizes = np.sqrt(np.outer(np.diag(shell), np.diag(shell)))
 
@@ -85,8 +85,8 @@ def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, BuiltModel]) 
 
 
 def test_it_moves_as_the_shell(built: dict[str, BuiltModel]) -> None:
-    """Reference: other code, the shell's tip as a part of its range; textbook beams miss it by
-    far.
+    """Reference: other code, the tip of the shell, relative to its range. Textbook beams have much
+    larger errors.
     """
     shell = tip(built["shell"].system)
 
@@ -102,7 +102,7 @@ def test_it_moves_as_the_shell(built: dict[str, BuiltModel]) -> None:
 
 
 def test_all_read_the_same_shell(built: dict[str, BuiltModel]) -> None:
-    """Reference: non-regression, one entry of the cache."""
+    """Reference: non-regression, a single entry of the cache."""
     assert "reduction" in built["shell"].seconds
     for name in ("sprung", "fielded", "sprung-series"):
         assert "cache" in built[name].seconds
@@ -110,7 +110,7 @@ def test_all_read_the_same_shell(built: dict[str, BuiltModel]) -> None:
 
 
 def test_a_case_without_its_shell_still_has_it(case: Case, tmp_path: Path) -> None:
-    """Reference: analytic, the table that the name stands for, as the case is written and read."""
+    """Reference: the table of the named shell, after writing and reading the case."""
     alone = case_file.select(case, "", ["sprung"], 0.5)
     (model,) = alone.models
     assert model.needs_shell
@@ -121,7 +121,7 @@ def test_a_case_without_its_shell_still_has_it(case: Case, tmp_path: Path) -> No
 
 
 def test_runs_answer_as_the_shell(case: Case) -> None:
-    """Reference: other code, the shell's first modes with the joints pressed."""
+    """Reference: other code, the first modes of the shell with closed contacts."""
     case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.02})})
     results = run_case(case, ["shell", "sprung", "fielded"])
     assert results.summary.failures == {}
@@ -134,7 +134,7 @@ def test_runs_answer_as_the_shell(case: Case) -> None:
 
 @pytest.mark.usefixtures("few_figures")
 def test_a_run_leaves_its_card(case: Case, tmp_path: Path) -> None:
-    """Reference: non-regression, what the summary tells of the same calibration."""
+    """Reference: non-regression, the calibration in the summary."""
     alone = case_file.select(case, "", ["sprung"])
     run = run_models(alone, "", RunContext(MPI.COMM_SELF))
     run.evaluate()

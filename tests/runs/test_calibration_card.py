@@ -15,7 +15,7 @@ from tests.touching import touching
 
 
 def test_it_tells_stiffness_and_springs() -> None:
-    """Reference: analytic, 1/D of a diagonal residual compliance, and the factors given."""
+    """Reference: analytic, 1/D of a diagonal residual compliance, and given factors."""
     boom = build_boom(friction_case())
     law = PowerContact(1.0e9, 1.0).with_clearance(0.007)
     system = gap_system(

@@ -39,7 +39,7 @@ def test_the_effective_case_reads_back_as_itself(name: str) -> None:
 
 
 def test_any_text_and_number_survives_writing(tmp_path: Path) -> None:
-    """Reference: analytic. Quotes, escapes, and numbers that no short form holds."""
+    """Reference: the original text with quotes and escapes, and numbers with all digits."""
     title = 'quote " back\\slash é ∆ 𝔅'
     case = shipped("paper").model_copy(update={"title": title})
     joint = replace(case.joints[0], stiffness=1.0e13 / 3.0, stiffness_below=0.0)
@@ -80,7 +80,9 @@ def test_inferred_sections_have_the_beam_s_numbers_and_the_joint_s_play() -> Non
 
 
 def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(tmp_path: Path) -> None:
-    """Reference: analytic. A thin box: A = 2(h + b)t, J = A h²/12 (1 + 3/r)/(1 + 1/r) nearly."""
+    """Reference: analytic, a thin box: A = 2(h + b)t, and J = A h²/12 (1 + 3/r)/(1 + 1/r)
+    approximately.
+    """
     given = "section = { height = 0.6, width = 0.4, flange = 0.001, web = 0.001 }"
     text = COARSE.replace("mass_per_length = 83.16\n", given + "\n")
     for line in ("second_moment_of_area = 3.7986e-4\n", "rotary_inertia = 3.48\n"):
@@ -96,7 +98,7 @@ def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(tmp_path: Path)
 
 
 def test_a_section_goes_inwards_through_all_joints(tmp_path: Path) -> None:
-    """Reference: analytic, the clearances of a boom of three segments in any order."""
+    """Reference: analytic, the clearances of three segments, with joints in any order."""
     text = COARSE.replace("span = [9.0, 19.0]", "span = [9.0, 19.0]\nsupports = []")
     beam = {"mass_per_length": 40.0, "second_moment_of_area": 1.40e-4}
     third = table("[[segment]]", name="third", span=[18.0, 26.0], **beam)
@@ -264,7 +266,7 @@ def test_it_is_a_schema() -> None:
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
 def test_schema_accepts_the_shipped_cases(path: Path) -> None:
-    """As they are written, and as a run writes them again."""
+    """Both the shipped files and the files written by a run are valid."""
     assert faults(data(path.read_text(encoding="utf-8"))) == []
     assert faults(data(toml.dumps(load(str(path))))) == []
 

@@ -20,9 +20,7 @@ def unpacked(packed: dict[str, str]) -> np.ndarray:
 
 
 def test_numbers_come_as_they_are() -> None:
-    """Reference: the values themselves, to the 24 bits of a 32-bit float; a name cannot end the
-    script.
-    """
+    """Reference: the values, to the 24 bits of a 32-bit float. A name cannot end the script."""
     time, values = np.linspace(0.0, 1.0, 7), np.array([0.0, 1.5, -2.25, 3.1, 1e-9, 7.0, 8.0])
     text = pack_charts({"tip": Chart(time, "mm", [Curve("</script>", values, "#000000")])})
     assert "<" not in text
@@ -34,7 +32,9 @@ def test_numbers_come_as_they_are() -> None:
 
 
 def test_panels_share_their_abscissa_and_fill_the_height() -> None:
-    """Reference (analytic): two panels, each with its own ordinate, the band before its curve."""
+    """Reference: analytic, two panels, each with its own ordinate, and the band before its
+    curve.
+    """
     time, values = np.linspace(0.0, 1.0, 3), np.array([1.0, 2.0, 3.0])
     limits = values - 1.0, values + 1.0
     curves = [Curve("a", values, "#000000", band=limits), Curve("a", values, "#000000", panel=1)]
@@ -49,7 +49,7 @@ def test_panels_share_their_abscissa_and_fill_the_height() -> None:
 
 
 def test_thinned_curves_keep_their_extremes() -> None:
-    """Reference (analytic): samples of a noise; every stretch keeps its lowest and its highest."""
+    """Reference: analytic, samples of noise. Every interval keeps its minimum and maximum."""
     noise = np.random.default_rng(1).standard_normal(50_000)
     kept = extremes(noise, 100)
     assert kept.size <= 202
@@ -70,7 +70,7 @@ def test_long_runs_are_thinned_to_their_own_samples() -> None:
 
 
 def test_the_library_comes_whole() -> None:
-    """Reference: what the wheel has."""
+    """Reference: the content of the wheel."""
     library = pytest.importorskip("plotly.offline").get_plotlyjs()
     assert gzip.decompress(base64.b64decode(pack_plotly())).decode() == library
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Every command, and for every mistake of a user one line on stderr and its exit status."""
+"""All commands, and one line on stderr and an exit status for each error of a user."""
 
 import errno
 import json
@@ -47,7 +47,7 @@ def protractile(here: Path, capsys: pytest.CaptureFixture[str]) -> Protractile:
 
 
 def contents(folder: Path) -> dict[str, bytes]:
-    """All files of a folder, by their paths in it."""
+    """Return all files of a folder by their relative paths."""
     return {
         str(path.relative_to(folder)): path.read_bytes()
         for path in folder.rglob("*")
@@ -63,7 +63,7 @@ def edit(old: str, new: str) -> None:
 def in_a_process(
     folder: Path, *arguments: str, limit: int | None = None, **environment: str
 ) -> subprocess.CompletedProcess[str]:
-    """Python with such arguments in a folder that holds the coarse case, in so many bytes."""
+    """Run Python in a folder with the coarse case, with limited memory in bytes if given."""
     (folder / "case.toml").write_text(COARSE.replace("duration = 0.6", "duration = 0.2"), "utf-8")
 
     def keep_to_limit() -> None:
@@ -90,14 +90,14 @@ def test_check_prints_inferred_boxes(protractile: Protractile) -> None:
 
 
 def test_check_draws_the_boom(protractile: Protractile) -> None:
-    """Reference: a PNG file's first bytes (W3C 2003), and nothing else in the folder."""
+    """Reference: the first bytes of a PNG file (W3C 2003). The folder has no other new file."""
     assert protractile("check case.toml --picture boom.png").status == 0
     assert Path("boom.png").read_bytes().startswith(b"\x89PNG")
     assert sorted(contents(Path.cwd())) == ["boom.png", "case.toml"]
 
 
 def test_check_prints_modal_damping_ratios(protractile: Protractile) -> None:
-    """Reference: analytic, the ratio asked for, and nothing where no damping is."""
+    """Reference: analytic, the requested ratio, and no line without damping."""
     assert " % at" not in protractile("check case.toml").out
     Path("case.toml").write_text(COARSE + "\n[damping]\nmodal = 0.015\n", encoding="utf-8")
     answer = protractile("check case.toml")
@@ -179,7 +179,7 @@ def test_failing_numerics_are_one_line_and_no_results(protractile: Protractile) 
 
 
 def test_results_beyond_all_numbers_are_one_line(protractile: Protractile) -> None:
-    """The tip's deflection is finite, its energy is not."""
+    """The tip deflection is finite, but the energy is not."""
     edit("load = 83.16", "load = 1e150")
     edited = Path("case.toml").read_text(encoding="utf-8").replace("duration = 0.6", SHORT)
     Path("case.toml").write_text(edited, encoding="utf-8")
@@ -210,7 +210,7 @@ def test_a_loop_of_links_is_one_line(protractile: Protractile, command: str) -> 
 def test_a_temporary_folder_without_room_is_one_line(
     protractile: Protractile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """MPI would say so in many lines, and end the process."""
+    """MPI would print many lines and end the process."""
 
     def fill(*_: int) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
@@ -238,7 +238,9 @@ def test_a_temporary_folder_without_room_is_one_line(
 def test_foreign_environment_variables_have_no_effect(
     tmp_path: Path, variable: str, value: str
 ) -> None:
-    """A notebook's backend, which is installed where the notebook is, and a rank that is none."""
+    """The variables name a notebook's backend that is not installed, and a rank without a
+    launcher.
+    """
     # It imports matplotlib, and then, as whoever shares a shell, asks for the rank.
     drawn = "check", "case.toml", "--picture", "boom.png"
     export = "export", "case.toml", "--to", "opensees", "--model", "beam-fe"
@@ -248,7 +250,7 @@ def test_foreign_environment_variables_have_no_effect(
 
 
 def test_imports_without_memory_are_one_line(tmp_path: Path) -> None:
-    """In 250 MB of address space no library of linear algebra can be loaded."""
+    """250 MB of address space are too little for the libraries of linear algebra."""
     command = "-m", "protractile", "check", "case.toml"
     ended = in_a_process(tmp_path, *command, limit=250_000 * 1024)
     assert ended.stderr.count("\n") == 1
@@ -259,7 +261,7 @@ def test_imports_without_memory_are_one_line(tmp_path: Path) -> None:
 
 
 def test_a_contact_without_digits_is_one_line(protractile: Protractile) -> None:
-    """No number holds the penetration that such a contact needs beside its play."""
+    """The penetration is smaller than the last bit of the play."""
     edit("stiffness = 1e13", "stiffness = 1e100")
     status, out, err = protractile(f"run case.toml {SERIES} --out out")
     assert (status, out, err.count("\n")) == (3, "", 1)

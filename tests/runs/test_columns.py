@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""CSV files as programs write them are read as what they say, or refused in one line."""
+"""Reading of CSV files from other programs, or their refusal in one line."""
 
 from pathlib import Path
 
@@ -75,7 +75,7 @@ def test_files_are_read_as_spreadsheets_save_them(encoding: str) -> None:
     ("unit", "factor"), [("g", 9.80665), ("cm/s2", 0.01), ("mm/s²", 0.001), ("m/s^2", 1.0)]
 )
 def test_a_measured_quake_needs_no_acceleration(unit: str, factor: float) -> None:
-    """Reference: analytic, the standard gravity 9.80665 m/s²; a factor given multiplies it."""
+    """Reference: analytic, the standard gravity 9.80665 m/s², times a given factor."""
     csv = f"t (s),a ({unit})\n0,0\n0.5,0.3\n"
     for keys, times in (("", 1.0), ("acceleration = -2.0", -2.0)):
         (base,) = case_of(csv, keys, "base").base

@@ -101,7 +101,7 @@ def by_hand(angle: float, extension: float, dead: float, people: float, wind: fl
 
 
 def test_the_cylinder_of_a_lift_in_all_combinations(tmp_path: Path) -> None:
-    """Reference: analytic, moments about the pin; wall areas are those of mid-lines."""
+    """Reference: analytic, moments about the pin, with wall areas of mid-lines."""
     found = results(tmp_path, LIFT + CASES + FACTORS)
     assert [*found] == ["A, raised", "A, level", "B, level"]
     for name, numbers in (
@@ -115,7 +115,7 @@ def test_the_cylinder_of_a_lift_in_all_combinations(tmp_path: Path) -> None:
 
 
 def test_pads_and_foot_of_a_combination(tmp_path: Path) -> None:
-    """Reference: analytic, lever rule on the level fly between the midpoints of its pads."""
+    """Reference: analytic, lever rule on the level fly between the centres of its pads."""
     level = results(tmp_path, LIFT + CASES + FACTORS)["B, level"]
     tip = 1.1 * PEOPLE * G + 1.22 * WIND
     for station, lever in ((1, 2.05), (2, 4.95)):
@@ -133,7 +133,7 @@ def test_pads_and_foot_of_a_combination(tmp_path: Path) -> None:
 
 
 def test_load_cases_alone_have_unit_factors(tmp_path: Path) -> None:
-    """Reference: the same boom as a case of its own."""
+    """Reference: a separate case of the same boom."""
     found = results(tmp_path, LIFT + CASES)
     assert [*found] == ["raised", "level"]
     alone = LIFT.replace("magnitude = -1595.0", "magnitude = 0.0").replace(
@@ -145,7 +145,7 @@ def test_load_cases_alone_have_unit_factors(tmp_path: Path) -> None:
 
 
 def test_without_gravity_the_payload_alone_weighs(tmp_path: Path) -> None:
-    """Reference: analytic, force at the tip."""
+    """Reference: analytic, the force at the tip."""
     text = LIFT.replace("gravity = { angle = 45.0 }\n", "") + FACTORS.replace("0.0, p", "1.0, p")
     text = text.replace('load_cases = ["level"]\n', "").replace('group = "dead"', 'group = "test"')
     text = text.replace("wind = 1.22", "test = 3.0").replace("wind = 0.0", "test = 2.0")
@@ -158,7 +158,7 @@ def test_without_gravity_the_payload_alone_weighs(tmp_path: Path) -> None:
 
 
 def test_load_cases_in_millimetres_and_from_files(tmp_path: Path) -> None:
-    """Reference: non-regression, the same case in SI units; a file repeats a constant load."""
+    """Reference: non-regression, the same case in SI units. The file has the constant load."""
     (tmp_path / "wind.csv").write_text("0,1\n1,1\n", encoding="utf-8")
     text = (LIFT + CASES).replace('group = "wind"', 'group = "wind", file = "wind.csv"')
     plain = results(tmp_path, LIFT + CASES)["level"]

@@ -54,7 +54,7 @@ def states(tmp_path_factory: pytest.TempPathFactory) -> list[CombinationState]:
 
 
 def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationState]) -> None:
-    """Reference: other code path, a shell reduced for a combination alone."""
+    """Reference: other code path, a shell reduced for a single combination."""
     names = [one.combined.name for one in states]
     assert names == ["A, raised", "A, level", "B, level", "C, raised"]
     for state in states[2:]:
@@ -73,7 +73,7 @@ def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationSta
 
 
 def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path: Path) -> None:
-    """Reference: by hand; a factor multiplies loads, and so the stress, up to buckling."""
+    """Reference: by hand. The factor multiplies loads, and hence the stress, up to buckling."""
     case = read_case(tmp_path, TEXT)
     proofs = {(one.kind, one.part): one for one in prove(case, states).proofs}
     patches = {wall.segment: wall.patch for wall in states[0].walls}

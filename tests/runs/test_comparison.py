@@ -26,7 +26,9 @@ CUTOFF = 1.7
 
 
 def ensemble(delay: float = 0.0, height: float = 1.0, growth: float = 0.0) -> xr.Dataset:
-    """Swings with the period 1 s; members part in phase by ±1e-4 exp(growth t) s."""
+    """Return vibrations with the period 1 s; phases of members differ by ±1e-4 exp(growth t) in
+    s.
+    """
     parting = np.linspace(-1e-4, 1e-4, 9)[:, None] * np.exp(growth * TIME)
     parting = np.clip(np.vstack([np.zeros(TIME.size), parting]), -0.2, 0.2)
     tip = height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay - parting)))
@@ -34,7 +36,7 @@ def ensemble(delay: float = 0.0, height: float = 1.0, growth: float = 0.0) -> xr
 
 
 def test_pointwise_differences_by_hand() -> None:
-    """Reference: analytic. 0.02 sin²(πt) apart up to 0.5 s, so 1/51 of the larger range."""
+    """Reference: analytic. The difference 0.02 sin²(πt) up to 0.5 s is 1/51 of the larger range."""
     one, other = (ensemble(height=height)["tip"].values[0] for height in (1.0, 1.02))
     found = PointwiseDifferences.from_curves(one, other, TIME, 0.5)
     assert found.largest == pytest.approx(0.02 / 1.02, rel=1e-6)
@@ -44,8 +46,8 @@ def test_pointwise_differences_by_hand() -> None:
 
 
 def test_divergence_levels_of_two_models() -> None:
-    """Reference: analytic. The spread π·1e-4·exp(t) passes 1 % at 3.5 s and 20 % at 6.5 s, or
-    within a quarter period of it; one delayed by 50 ms differs by sin(0.05 π) up to there.
+    """Reference: analytic. The spread π·1e-4·exp(t) exceeds 1 % at 3.5 s and 20 % at 6.5 s, within
+    a quarter period. Until then, a model with a delay of 50 ms differs by sin(0.05 π).
     """
     found = compare(ensemble(growth=1.0), ensemble(delay=0.05, growth=1.0), CUTOFF)
     assert found.pointwise.until == pytest.approx(np.log(100.0 / np.pi), abs=0.25)
@@ -69,7 +71,7 @@ def test_peaks_beyond_the_spread_are_differences_of_the_models() -> None:
 
 
 def test_distance_of_shifted_distributions() -> None:
-    """Reference: analytic. Two normal laws a shift s apart have the distance 2 Φ(s/2) − 1."""
+    """Reference: analytic. Normal distributions with a shift s have the distance 2 Φ(s/2) − 1."""
     generator = np.random.default_rng(0)
     values = generator.normal(size=(10, TIME.size))
     for shift in (0.0, 0.5, 2.0):
@@ -88,8 +90,8 @@ def test_predictable_models_have_no_distribution() -> None:
 
 
 def test_a_chaotic_system_is_like_itself() -> None:
-    """Reference: the system itself under other changes. Pointwise within 1 % up to the horizon,
-    and of one distribution after it.
+    """Reference: the same system with other changes. Differences are below 1 % up to the horizon;
+    then both have the same distribution.
     """
     one, other = (
         integrate_ensemble(Motion(CHAOTIC, 60.0, 1e-2), 16, 1e-6, seed, "load") for seed in (1, 2)
@@ -115,7 +117,7 @@ def test_every_level_has_a_description() -> None:
 
 
 def swing(delay: float = 0.0, height: float = 1.0) -> np.ndarray:
-    """Peaks ``height`` high at 0.5, 1.5, … s, and later by ``delay``."""
+    """Return a vibration with peaks of ``height`` at 0.5, 1.5, … s plus ``delay``."""
     return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay)))
 
 
@@ -131,7 +133,7 @@ def test_apart_at_the_end_is_relative_to_the_larger_range() -> None:
     ("delay", "height", "expected"), [(0.1, 1.0, 0.1), (0.0, 0.8, 0.2), (-0.15, 0.9, 0.15)]
 )
 def test_distance_of_peaks(delay: float, height: float, expected: float) -> None:
-    """Reference: analytic. The larger of the delay over the period and the loss of height."""
+    """Reference: analytic, the larger of the delay over the period and the difference in height."""
     curves = np.array([swing(), swing(delay, height)])
     first, apart = peaks_apart(curves, TIME, CUTOFF)
     assert first[1:-1] == pytest.approx(
@@ -141,7 +143,7 @@ def test_distance_of_peaks(delay: float, height: float, expected: float) -> None
 
 
 def test_missing_peaks_have_infinite_distance() -> None:
-    """All of them, until a period and a half before the end."""
+    """This concerns all peaks until one and a half periods before the end."""
     still = swing()
     still[TIME > 4.0] = 0.0
     first, apart = peaks_apart(np.array([swing(), still]), TIME, CUTOFF)
@@ -162,7 +164,7 @@ def test_motions_without_peaks_have_no_distance() -> None:
 
 
 def test_gain_equals_two_filter_passes() -> None:
-    """Reference: analytic. 1 / (1 + (f/f_c)⁸) of Butterworth's order 4, squared by two passes."""
+    """Reference: analytic, 1 / (1 + (f/f_c)⁸) for two passes of a Butterworth filter of order 4."""
     middle = slice(3000, 7000)
     for frequency in (0.5, 1.0, CUTOFF, 2.5, 8.0):
         wave = np.cos(2.0 * np.pi * frequency * TIME)
@@ -172,8 +174,8 @@ def test_gain_equals_two_filter_passes() -> None:
 
 
 def test_known_peaks_under_a_ripple() -> None:
-    """Reference: analytic. The swing peaks at 0.5, 1.5, … s; a ripple at 7 Hz moves the raw
-    signal's peaks by up to 70 ms and lifts them by a tenth.
+    """Reference: analytic. The slow motion has peaks at 0.5, 1.5, … s. A ripple of 7 Hz moves the
+    peaks of the signal by up to 70 ms and increases them by a tenth.
     """
     ripple = 0.1 * np.cos(2.0 * np.pi * 7.0 * TIME + 1.0)
     times, heights = slow_peaks(swing() + ripple, TIME, CUTOFF)

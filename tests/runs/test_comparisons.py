@@ -38,7 +38,7 @@ def case_of(*names: str, friction: float = 0.0, pressed: tuple[float, ...] = PRE
 
 
 def swing(scale: float = 1.0, late: float = 0.0) -> np.ndarray:
-    """(num_times,) one swing a second, from rest; its range is ``scale``."""
+    """Return a vibration (num_times,) from rest with the period 1 s and the range ``scale``."""
     return 0.5 * scale * (1.0 - np.cos(2.0 * np.pi * (TIME - late)))
 
 
@@ -71,8 +71,9 @@ def test_the_reference_is_the_most_complicated_model(
 
 
 def test_late_and_low_model_differs_at_each_level() -> None:
-    """Reference: analytic. Half as high, 50 ms late, within 1 % until 4 s and then a quarter of a
-    period apart; distributions of a cosine and of its half are apart by arccos.
+    """Reference: analytic. The model has half the height and a delay of 50 ms. Its spread is within
+    1 % up to 4 s; then members differ by a quarter period. The distance of the distributions of a
+    cosine and half of it follows from arccos.
     """
     late = np.where(TIME < 4.0, 0.0, 0.25)
     members = {
@@ -109,7 +110,9 @@ def test_without_a_slow_motion_ensembles_are_not_compared() -> None:
 
 
 def test_with_friction_every_model_is_compared_to_the_end() -> None:
-    """Reference: analytic. A tip that is 0.1 too high until 5 s and 0.3 later, of a range of 1."""
+    """Reference: analytic, a tip that is too high by 0.1 up to 5 s and by 0.3 later, for a range of
+    1.
+    """
     above = swing() + np.where(TIME <= 5.0, 0.1, 0.3)
     data = trajectories(kantorovich_4=above, kantorovich_5=swing(), beam_fe_bonded=0.1 * swing())
     case = case_of(*SERIES, "beam-fe-bonded", friction=0.2)
@@ -128,14 +131,16 @@ def test_with_friction_every_model_is_compared_to_the_end() -> None:
 def test_friction_under_given_forces_is_regular(
     friction: float, pressed: tuple[float, ...]
 ) -> None:
-    """Reference: physics; what contacts press, and what nothing presses, leaves motion chaotic."""
+    """Reference: physics. Friction under contact forces, or without normal force, leaves motion
+    chaotic.
+    """
     case = case_of(*SERIES, friction=friction, pressed=pressed)
     data = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
     assert compare_models(case, data, None, None) is None
 
 
 def test_motion_with_stops_is_not_regular() -> None:
-    """Reference: physics; what bounces is chaotic, whatever rubs besides."""
+    """Reference: physics. Impacts on stops are chaotic in spite of friction."""
     case = case_of(*SERIES, friction=0.2)
     stop = StopTable(segment="inner", x=14.0, play=0.1, stiffness=1e7)
     assert case.regular
@@ -161,7 +166,9 @@ MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-bonded")
 
 
 def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
-    """Ten seconds of two models with play and one without; ``changes`` to the first of them."""
+    """Return ten seconds of two models with play and one without; ``changes`` apply to the
+    first.
+    """
     case = case_file.select(shipped("coarse"), "", MODELS, None)
     rubbing = {"friction": friction, "normal_forces": (4500.0, 5000.0)}
     joints = tuple(replace(joint, **rubbing) for joint in case.joints)
@@ -250,7 +257,7 @@ def test_growth_names_the_limit() -> None:
 
 
 def test_comparison_levels_name_class_and_difference() -> None:
-    """Reference: the classes that measure, and the numbers by hand, in mm and ms."""
+    """Reference: the classes of measures, and numbers by hand in mm and ms."""
     ensembles = {"kantorovich-4": LEVELS}
     tables = comparison_tables(results({"reference": "shell", "ensembles": ensembles}))
     for table, level in zip(

@@ -55,7 +55,7 @@ ARM = (3.0 * 1.9 + 0.3 * 1.8) / np.hypot(1.8, 1.9)
 
 
 def test_cylinder_of_the_boom_follows_the_case(case: Case, tmp_path: Path) -> None:
-    """As it is written, and as a run writes it again."""
+    """This holds for the case as written, and after a run has written it again."""
     for boom in (build_boom(case), build_boom(read_case(tmp_path, dumps(case)))):
         assert boom.segments[0].supports == (Support(0.0, "hinged", depth=0.2),)
         assert boom.cylinders == (
@@ -65,7 +65,9 @@ def test_cylinder_of_the_boom_follows_the_case(case: Case, tmp_path: Path) -> No
 
 
 def test_every_model_stands_on_its_cylinder(case: Case) -> None:
-    """Reference: analytic, moments about the hinge; at rest nothing moves, and energy is kept."""
+    """Reference: analytic, moments about the hinge. At rest nothing moves, and energy is
+    conserved.
+    """
     results, boom = run_case(case), build_boom(case)
     force = results.trajectories["cylinder_force"]
     assert force.attrs == {
@@ -79,8 +81,8 @@ def test_every_model_stands_on_its_cylinder(case: Case) -> None:
 
 
 def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(case: Case) -> None:
-    """Reference: analytic, the arm of its line about the pin, the moment of the weights, and
-    the component along the boom between pin and lug.
+    """Reference: analytic, the lever arm about the pin, the moment of the weights, and the axial
+    component between pin and lug.
     """
     told = printed_check(case)
     row = next(line for line in told.split("cylinder of")[1].splitlines() if "base" in line)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far models of a sweep are from its reference, as numbers, tables and charts."""
+"""Distances of models from the reference of a sweep, as numbers, tables and charts."""
 
 import csv
 from dataclasses import replace
@@ -40,13 +40,15 @@ RUBBING = "friction = 0.2\nnormal_forces = [4500.0, 5000.0]\n"
 
 
 def features(height: float, period: float) -> Features:
-    """Return a vibration of an amplitude in m, from rest, of a period in s."""
+    """Return a vibration from rest with an amplitude in m and a period in s."""
     tip = 0.5 * height * (1.0 - np.cos(2.0 * np.pi * TIME / period))
     return Features(tip, height, mean_period(TIME, tip), 2e3 * height, 1e8 * height)
 
 
 def test_distances_are_parts_of_the_reference() -> None:
-    """Reference: analytic; at 1 s swings of 0.5 and 0.4 s are in a valley and on a peak."""
+    """Reference: analytic. At 1 s, vibrations with the periods 0.5 and 0.4 s have a minimum and a
+    maximum.
+    """
     off = features(0.11, 0.4).distances_from(features(0.10, 0.4))
     heights = "first_peak_off", "pad_force_off", "stress_off", "tip_off"
     assert [off[name] for name in heights] == pytest.approx(4 * [0.1])
@@ -65,7 +67,7 @@ def test_distances_are_parts_of_the_reference() -> None:
 
 
 def test_a_pad_force_is_held() -> None:
-    """Reference: analytic; a blow of 1 ms in a window of 20 ms counts a twentieth."""
+    """Reference: analytic. An impact of 1 ms contributes a twentieth in a window of 20 ms."""
     forces = np.zeros((TIME.size, 2))
     forces[700, 0] = -4000.0
     forces[1000:, 1] = 150.0
@@ -92,7 +94,7 @@ def shown(data: xr.Dataset, planned: Plan) -> str:
 
 
 def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
-    """Reference: other code, both models in one run, their tips held against one another here."""
+    """Reference: other code path, the tips of both models in one run."""
     data = output.write(against, run(against), Path("out"))
     case = case_file.select(case_file.load("case.toml"), "", MODELS)
     results = run_case(case)
@@ -124,7 +126,7 @@ def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
 
 
 def test_sweep_states_comparison_time_and_step_error(against: Plan) -> None:
-    """Reference: analytic, friction is compared to the end; other code, what a single run says."""
+    """Reference: analytic: with friction, comparison to the end; other code path: a single run."""
     data = output.write(against, run(against), Path("out"))
     assert data["compared_until"].dims == ("joint.play",)
     assert data["compared_until"].values.tolist() == [0.9, 0.9]
@@ -141,7 +143,7 @@ def test_sweep_states_comparison_time_and_step_error(against: Plan) -> None:
 
 
 def test_tips_are_compared_up_to_the_horizon(against: Plan) -> None:
-    """Reference: analytic; what is cut off the tip is cut off nothing else."""
+    """Reference: analytic. Only the comparison of tips ends at the horizon."""
     results = run_case(case_file.select(case_file.load("case.toml"), "", MODELS[:1]))
     whole, part = (Features.of(results, MODELS[0], 1e6, until) for until in (0.9, 0.3))
     assert (whole.tip.size, part.tip.size) == (901, 301)
@@ -154,14 +156,18 @@ def test_tips_are_compared_up_to_the_horizon(against: Plan) -> None:
 
 
 def invented(factor: float, until: float = 0.9) -> Outcome:
-    """Return two models with tips off by a distance and by a tenth of it, and equal first peaks."""
+    """Return two models with distances of tips by a factor and a tenth of it, and equal first
+    peaks.
+    """
     parts: Quantities = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
     tips = {"kantorovich-4": factor, "beam-fe-bonded": 0.1 * factor}
     return Outcome({}, {}, {name: {**parts, "tip_off": tip} for name, tip in tips.items()}, until)
 
 
 def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
-    """Reference: invented numbers on both sides of the levels; what no model has, has no map."""
+    """Reference: invented numbers on both sides of the levels. Quantities without values have no
+    map.
+    """
     keys = ["joint.play=0.008,0.014", "segment.load=20,40"]
     sweeping = plan("case.toml", keys, MODELS, None, "kantorovich-5")
     Path("out").mkdir()
@@ -178,7 +184,7 @@ def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
 
 
 def test_maps_over_a_third_key_stand_side_by_side(against: Plan, sheets: list[Sheet]) -> None:
-    """Reference: invented numbers; seconds stand where tips are compared no longer than those."""
+    """Reference: invented numbers. Times are written at points with a shorter comparison."""
     keys = ["joint.friction=0.1,0.2", "joint.play=0.008,0.014", "segment.load=20,40"]
     sweeping = plan("case.toml", keys, MODELS, None, "kantorovich-5")
     outcomes = [invented(part) for part in (0.005, 0.03, 0.1, 0.5)]
@@ -236,7 +242,7 @@ def test_chaos_is_compared_until_its_horizon() -> None:
 
 @pytest.mark.slow
 def test_shell_reference_is_limited_by_its_horizon(tmp_path: Path) -> None:
-    """Reference: analytic, no tip can be told beyond the end; a shell is built once more for it."""
+    """Reference: analytic, no comparison beyond the end. The shell is built once more."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     case = case_file.select(shipped("coarse"), "", ["timoshenko", "shell"], 0.5)
     case = change(case, **{"time.duration": 0.3})

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a case says of how its boom is drawn out, slips in it, and what a run tells of it."""
+"""Drives of a case: keys, errors in them, and results of a run."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -59,7 +59,7 @@ def edited(*edits: tuple[str, str]) -> str:
 def test_a_drive_has_a_history(
     tmp_path: Path, drive: str, ways: list[float] | None, reach: tuple[float, float] | None
 ) -> None:
-    """Reference: analytic, where each drive is at the start, half way and at its end."""
+    """Reference: analytic, the extension at the start, in the middle and at the end."""
     (tmp_path / "ways.csv").write_text("t (ms);way (mm)\n0;0\n1000;2000\n4000;-1000\n")
     found = build_boom(read_case(tmp_path, edited((DRIVE, drive)))).joints[0].drive
     assert (found is None) == (ways is None)
@@ -179,13 +179,13 @@ exponent = 1.0
     ],
 )  # fmt: skip
 def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str) -> None:
-    """Reference: the line that a user reads."""
+    """Reference: exact message."""
     assert refusal(tmp_path, edited((before, after))) == message
 
 
 @pytest.mark.parametrize("name", ["extension", "drive_power-2", "drive_lag-3"])
 def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
-    """Reference: the line that a user reads."""
+    """Reference: exact message."""
     text = (CASES / "crane-telescopes.toml").read_text(encoding="utf-8")
     other, same = (
         text + table("[[observe]]", name=one, segment="fly", x="head")
@@ -196,7 +196,9 @@ def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
 
 
 def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) -> None:
-    """Reference: by hand; the drive begins as the load's sine is largest, between even times."""
+    """Reference: by hand. The drive starts at the maximum of the sine load, between sampled
+    times.
+    """
     late = ("time = 5.0", "start = 0.2083333333333, time = 0.02"), SHORT
     text = edited(*late) + table(
         "[[load]]", segment="inner", x="head", magnitude=500, frequency=1.2
@@ -208,13 +210,13 @@ def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) ->
 
 
 def test_of_no_rest_nothing_is_said_where_it_is_drawn_to() -> None:
-    """Reference: by hand; no model of a boom that is drawn may have a rest."""
+    """Reference: by hand. The models of a telescoping boom may have no equilibrium."""
     assert extension_note(shipped("drawn-out"), []) == ""
 
 
 @pytest.mark.usefixtures("unprinted")
 def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
-    """Reference: analytic, the ways of the case, and the drive's force from contact forces."""
+    """Reference: analytic, the travels of the case, and the drive force from contact forces."""
     results = run_case(read_case(tmp_path, edited(SHORT, FAST)), models=["kantorovich-5"])
     data = results.trajectories.sel(model="kantorovich-5")
     assert float(data["extension"][-1]) == pytest.approx(4.0)
@@ -230,7 +232,7 @@ def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
 
 
 def test_friction_of_a_drive_in_a_flat_boom_acts_along_it_alone(tmp_path: Path) -> None:
-    """Reference: the same joint with normal forces of zero from the sides."""
+    """Reference: the same joint with lateral normal forces of 0."""
     text = edited(("friction = 0.2 ", "normal_forces = [0.0, 0.0]\nfriction = 0.2 "))
     boom = build_boom(shipped("drawn-out"))
     assert boom.joints[0].friction == 0.2
@@ -263,7 +265,7 @@ def _check_table(results: Results, data: xr.Dataset) -> None:
 
 
 def _check_rests(results: Results) -> None:
-    """Check the states of rest.
+    """Check the static states.
 
     Reference: by hand. With 1 m of overlap play of 14 mm turns by 14 mrad, which lifts the tip,
     10 m on, by 133 mm; the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm.
@@ -316,8 +318,8 @@ def _check_figures(figures: Sequence[Figure]) -> None:
 
 @pytest.mark.parametrize(("time", "extension"), [(0.0, 5.4), (8.0, 9.4)])
 def test_a_crane_telescopes_out_of_all_its_segments(time: float, extension: float) -> None:
-    """Reference: the same boom built as far drawn out, without drives, at rest under its load; its
-    nodes are at its stations, where elements of 1 m that are drawn there miss 0.3 %.
+    """Reference: statics of the boom built at this extension, without drives, with nodes at its
+    stations. Without such nodes, elements of 1 m have an error of 0.3 %.
     """
     drawn = shipped("crane-telescopes")
     still = change(drawn, **{"joint.drive.travel": 0.0, "joint.extension": extension})
@@ -331,7 +333,9 @@ def test_a_crane_telescopes_out_of_all_its_segments(time: float, extension: floa
 
 
 def test_a_sweep_varies_how_fast_it_is_drawn() -> None:
-    """Reference: analytic, the fastest speed of an S-curve, twice the travel over its time."""
+    """Reference: analytic. The largest speed of an S-curve is twice its travel over its
+    duration.
+    """
     found = plan(str(CASES / "drawn-out.toml"), ["joint.drive.time=2:8:4"], ["beam-fe"], None)
     speeds = []
     for point in found.points:
@@ -342,7 +346,9 @@ def test_a_sweep_varies_how_fast_it_is_drawn() -> None:
 
 
 def test_check_prints_drives() -> None:
-    """Reference: the case, and analytic: an S-curve is twice as fast as it is in the mean."""
+    """Reference: the case, and analytic: the largest speed of an S-curve is twice its mean
+    speed.
+    """
     case = shipped("drawn-out")
     assert (
         "A drive extends 'inner' by 4 m from 0 to 5 s, at 1.6 m/s at most; the smallest overlap "
@@ -359,7 +365,7 @@ def test_largest_speed_is_the_steepest_slope(tmp_path: Path) -> None:
 
 
 def test_a_drawing_shows_where_a_segment_is_drawn_to() -> None:
-    """Reference: the case; the inner segment of 10 m from 5 m on goes 4 m farther."""
+    """Reference: the case. The inner segment of 10 m starts at 5 m and travels 4 m."""
     case = shipped("drawn-out")
     with rc_context(theme.RC):
         sheet = boom_sheet(case, build_boom(case))
@@ -371,7 +377,7 @@ def test_a_drawing_shows_where_a_segment_is_drawn_to() -> None:
 
 
 def test_resolving_times_have_both_ends() -> None:
-    """Reference: analytic; kinks very near to an even time replace it."""
+    """Reference: analytic. Kinks very near to a sampled time replace it."""
     kinks = (1.0e-9, 2.5 + 1.0e-9, 5.0 - 1.0e-9)
     times = resolving_times([PiecewiseLinear(kinks, (0.0, 1.0, 0.0))], 5.0)
     assert times[[0, 1, -2, -1]].tolist() == [0.0, kinks[0], kinks[2], 5.0]

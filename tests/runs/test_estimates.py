@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a run takes is told beforehand, and what takes much is not started unasked."""
+"""Estimates of memory and time, and refusal of large runs."""
 
 import os
 import re
@@ -64,7 +64,7 @@ def write(*edits: tuple[str, str]) -> None:
 
 
 def memory(*arguments: str) -> int:
-    """Largest resident set of a run in bytes."""
+    """Return the largest resident set of a run in bytes."""
     answer = subprocess.run(
         [sys.executable, "-c", PROGRAM, "run", "case.toml", "--out", "out", *arguments],
         env=os.environ | {"PYTHONPATH": str(ROOT)},
@@ -99,8 +99,8 @@ def memory(*arguments: str) -> int:
 def test_memory_is_not_above_the_estimate_and_not_far_below(
     edits: tuple[tuple[str, str], ...], options: tuple[str, ...], members: int | None
 ) -> None:
-    """Reference: external, the count of the operating system; a first run takes three times as
-    much.
+    """Reference: external, the operating system. The first run, with compilation, needs three times
+    as much.
     """
     write(*edits)
     case = case_file.load("case.toml")
@@ -138,7 +138,7 @@ def test_short_times_are_in_seconds(seconds: float, text: str) -> None:
     [("paper", 0.1, 0.01), ("paper", 0.2, 0.001), ("lift", 0.1, 0.002), ("spatial", 0.1, 0.002)],
 )
 def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolerance: float) -> None:
-    """Reference: the meshes themselves, 21 dofs a point."""
+    """Reference: the meshes, with 21 degrees of freedom per point."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     from shell_model.boom_shell import segment_mesh
 
@@ -161,7 +161,7 @@ def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolera
     ],
 )
 def test_excessive_memory_or_time_is_refused(edits: tuple[tuple[str, str], ...], line: str) -> None:
-    """Reference: non-regression; what a million outputs, dofs and steps take was measured."""
+    """Reference: non-regression, measured for a million outputs, degrees of freedom and steps."""
     write(*edits)
     with refused(
         f"case.toml: --large: missing, and it may take {line}; give it to start anyway, or "
@@ -172,7 +172,7 @@ def test_excessive_memory_or_time_is_refused(edits: tuple[tuple[str, str], ...],
 
 @pytest.mark.parametrize("name", ["lift", "coarse"])
 def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
-    """Reference: other code path, elements of 0.5 m within 1 %; those of 4 mm would take
+    """Reference: other code path, elements of 0.5 m, within 1 %. Elements of 4 mm would need
     minutes.
     """
     text = (CASES / f"{name}.toml").read_text(encoding="utf-8")
@@ -191,7 +191,7 @@ def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
 
 
 def test_a_sweep_takes_the_time_of_its_points(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: analytic. Two points at a time, all alike."""
+    """Reference: analytic, equal points, two at a time."""
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     write()
     points = [p.case for p in sweep_points.plan("case.toml", VARY, ["beam-fe"], None).points]

@@ -56,7 +56,7 @@ def boom_with_more(folder: Path) -> Case:
 
 
 class _Sinking(ModuleType):
-    """An OpenSees whose nodes sink by 1 mm a step and then rise by as much."""
+    """A substitute for OpenSees: nodes move down by 1 mm per step, then up again."""
 
     steps = 0
 
@@ -77,7 +77,7 @@ class _Sinking(ModuleType):
 def test_the_largest_tip_may_be_a_downward_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Reference: by hand, 5 mm down after five of ten steps."""
+    """Reference: by hand, −5 mm after five of ten steps."""
     script = tmp_path / "boom.py"
     write(boom_with_more(tmp_path), "", None, script, None)
     package, program = ModuleType("openseespy"), _Sinking("openseespy.opensees")
@@ -92,7 +92,7 @@ def test_the_largest_tip_may_be_a_downward_one(
 @INSTALLED
 @pytest.mark.slow
 def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
-    """Reference: other code, OpenSees, its elements, its Newton's method and its TR-BDF2."""
+    """Reference: other code, OpenSees with its elements, Newton's method and TR-BDF2."""
     case = boom_with_more(tmp_path)
     script = tmp_path / "boom.py"
     write(case, "", None, script, None)
@@ -109,7 +109,7 @@ def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
 @INSTALLED
 @pytest.mark.slow
 def test_lift_rests_on_its_cylinder_in_opensees_as_here(tmp_path: Path) -> None:
-    """Reference: other code, OpenSees, a truss for the cylinder of the level lift."""
+    """Reference: other code, OpenSees with a truss as the cylinder of the level lift."""
     level = {"gravity.angle": 0.0, "damping.modal": 0.0, "start.state": "rest"}
     case = pt.change(pt.load_case(CASES / "lift.toml"), **level)
     case = case_file.select(case, "", ["timoshenko"])
@@ -123,7 +123,9 @@ def test_lift_rests_on_its_cylinder_in_opensees_as_here(tmp_path: Path) -> None:
 @INSTALLED
 @pytest.mark.slow
 def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Path) -> None:
-    """Reference: other code, OpenSees; at rest what couples springs is less than a thousandth."""
+    """Reference: other code, OpenSees. The coupling of springs contributes less than a
+    thousandth.
+    """
     pytest.importorskip("dolfinx", reason="a shell calibrates it")
     from mpi4py import MPI
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments by length, drawn out by their joints: everything on them goes with them."""
+"""Segments by length at extensions of their joints, with all attached parts."""
 
 from pathlib import Path
 
@@ -90,7 +90,7 @@ def by_hand() -> Case:
 
 
 def test_a_boom_by_lengths_is_the_same_boom() -> None:
-    """Reference: the boom whose numbers are worked out by hand, to the last bit."""
+    """Reference: the boom with positions by hand, to the last bit."""
     assert build_boom(case_of(CRANE)) == build_boom(by_hand())
 
 
@@ -101,7 +101,7 @@ def test_a_drawn_out_case_reads_back_as_itself() -> None:
 
 @pytest.mark.parametrize(("extension", "tip"), [(1.0, 12.0), (4.0, 18.0), (8.5, 27.0)])
 def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
-    """Reference: analytic, lengths, extensions and overlaps; distances from ends are kept."""
+    """Reference: analytic, lengths, extensions and overlaps. Distances from ends stay constant."""
     boom = build_boom(change(case_of(CRANE), **{"joint.extension": extension}))
     base, middle, fly = boom.segments
     assert boom.tip == pytest.approx(tip, rel=1e-15)
@@ -163,8 +163,8 @@ def test_a_contradiction_is_one_line(relative: str, wrong: str, line: str) -> No
 
 
 def test_frequencies_over_the_extension_are_one_command() -> None:
-    """Reference: analytic, exact frequencies of the boom without play; play makes no boom
-    stiffer.
+    """Reference: analytic, exact frequencies of the bonded boom. Play does not increase
+    frequencies.
     """
     case_of(PAPER)
     command = ["frequencies", "crane.toml", "--vary", "joint.extension=5:9:3", "--out", "out"]

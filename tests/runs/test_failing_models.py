@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A model that fails costs the others nothing, and what is finished is not computed again."""
+"""Failing models without effect on others, and reuse of finished results."""
 
 import json
 from pathlib import Path
@@ -46,7 +46,7 @@ def write_case(step: str) -> None:
 
 @pytest.fixture
 def moved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Return the modes of each system with play that has moved."""
+    """Return a list of the numbers of modes of integrated systems with play."""
     modes: list[int] = []
     move = MotionPlan.trajectory
 
@@ -84,7 +84,7 @@ def test_nothing_is_written_where_all_fail(capsys: pytest.CaptureFixture[str]) -
 
 
 def test_the_next_run_goes_on(moved: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
-    """The first is broken off in its second model. Reference: one that is not."""
+    """The first run is interrupted in its second model. Reference: an uninterrupted run."""
     write_case("1e-4")
     assert protractile(*RUN, "--no-cache") == 0
     undisturbed = Path("out/trajectories.nc").read_bytes()
@@ -137,8 +137,8 @@ def test_another_case_is_another_motion(moved: list[int]) -> None:
 
 
 def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
-    """Reference: by hand. The shell is made where it is asked for, as PETSc wants it; beams are
-    another thread's, and what keeps one from its motion is told when that is asked for.
+    """Reference: by hand. The main thread makes the shell, as PETSc requires, and another thread
+    runs the beams. The failure of a beam is reported in its turn.
     """
     beam, lost, shell = (
         SimpleNamespace(name=name, needs_shell=name == "shell")
@@ -165,7 +165,7 @@ def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
 
 
 def test_interrupted_shell_waits_for_at_most_one_beam() -> None:
-    """Reference: by hand. A beam moves already, another one waits for its turn."""
+    """Reference: by hand. One beam is in motion, another one waits."""
     names = ("beam", "queued", "shell")
     models = [SimpleNamespace(name=name, needs_shell=name == "shell") for name in names]
     at_work, moved = Event(), []

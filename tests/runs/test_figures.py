@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Every figure is drawn from what a run has, shows all its models, and says its units."""
+"""Figures of a run, with all models and units."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
@@ -45,7 +45,7 @@ Everything = tuple[list[Figure], dict[str, Sheet]]
 
 
 class Drawn:
-    """Figures in a folder, and the matplotlib sheets behind them by their stems."""
+    """Figures in a folder, and their matplotlib sheets by the stems of file names."""
 
     def __init__(self, folder: Path) -> None:
         self.folder, self.sheets = folder, dict[str, Sheet]()
@@ -65,7 +65,7 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Drawn]:
     found, save = Drawn(tmp_path_factory.mktemp("figures")), Sheet.savefig
 
     def keep(sheet: Sheet, path: Path, **_: Any) -> None:
-        """Keep a sheet, and write it as small as proves that it can be drawn."""
+        """Keep a sheet, and write it at a small size to prove that it can be drawn."""
         found.sheets[Path(path).stem] = sheet
         sheet.set_dpi(SMALL)
         save(sheet, path)
@@ -79,12 +79,12 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Drawn]:
 def everything(
     results: Results, drawn: Drawn, tmp_path_factory: pytest.TempPathFactory
 ) -> Everything:
-    """All figures of the run."""
+    """Return all figures of the run."""
     return draw(results, tmp_path_factory.mktemp("everything")), dict(drawn.sheets)
 
 
 def model_of(line: Line2D) -> str:
-    """Without what a model without play is made of."""
+    """Return the model of a line, without its remark on bonded joints."""
     return str(line.get_label()).removesuffix(" (beam)")
 
 
@@ -148,7 +148,7 @@ def test_deflections_are_in_millimetres(results: Results, drawn: Drawn) -> None:
 
 
 def test_contact_forces_keep_their_impulse(results: Results, drawn: Drawn) -> None:
-    """Reference: analytic. A running mean has the sum of what it averages, but for its ends."""
+    """Reference: analytic. A running mean preserves the sum except at both ends."""
     (figure,) = drawn(first_contacts, results)
     assert len(figure.chart.curves) == 2 * len(WITH_PLAY)
     for curve in figure.chart.curves:
@@ -161,7 +161,7 @@ def test_contact_forces_keep_their_impulse(results: Results, drawn: Drawn) -> No
 
 
 def test_constant_contact_force_is_drawn_in_full(results: Results, drawn: Drawn) -> None:
-    """Reference: analytic. The running mean of a constant is that constant, at both ends too."""
+    """Reference: analytic. The running mean of a constant is this constant, also at both ends."""
     pressed = results.trajectories.copy(deep=True)
     pressed["contact_force"][:] = 1000.0
     for stretch in (pressed, pressed.isel(time=slice(0, 5))):
@@ -233,7 +233,7 @@ def test_figures_omit_values_that_are_not_finite(results: Results, tmp_path: Pat
 
 
 def test_the_title_follows_the_motion_downwards(results: Results, drawn: Drawn) -> None:
-    """A boom under its weight deflects downwards: the title tells how far, with the sign."""
+    """A boom under its weight deflects downwards; the title has the signed deflection."""
     down = results.trajectories.copy(deep=True)
     down["tip"] *= -1.0
     upwards, downwards = (
@@ -245,7 +245,7 @@ def test_the_title_follows_the_motion_downwards(results: Results, drawn: Drawn) 
 
 
 def test_initial_contact_is_no_first_contact(results: Results, drawn: Drawn) -> None:
-    """Reference: a summary in which all touches at 0 s, of a case without statements."""
+    """Reference: a summary with first contacts at 0 s."""
     models = {
         name: model.model_copy(update={"first_contact": 0.0 if name in WITH_PLAY else None})
         for name, model in results.summary.models.items()
@@ -272,7 +272,7 @@ def test_initial_contact_is_no_first_contact(results: Results, drawn: Drawn) -> 
 
 
 def test_energies_start_where_the_boom_does(results: Results, drawn: Drawn) -> None:
-    """Reference: by hand, 5 J of strain that were there at the start."""
+    """Reference: by hand, an initial strain energy of 5 J."""
     loaded = results.trajectories.assign(strain_energy=results.trajectories["strain_energy"] + 5.0)
     line = {}
     for name, run in {
@@ -322,7 +322,7 @@ def test_a_long_curve_has_no_gaps(tmp_path: Path) -> None:
 def test_peak_forces_have_labels_on_one_scale(
     results: Results, drawn: Drawn, spread: float
 ) -> None:
-    """Reference: the forces, from 20 kN to so many times that."""
+    """Reference: the forces, from 20 kN to ``spread`` times this value."""
     data = results.trajectories.copy(deep=True)
     rising = 2.0e4 * np.geomspace(1.0, spread, data.sizes["time"])
     peaks = data["contact_force_peak"]
@@ -350,7 +350,7 @@ def test_every_head_has_a_figure(results: Results, drawn: Drawn) -> None:
 
 
 def test_a_boom_in_space_moves_to_the_sides(results: Results, drawn: Drawn) -> None:
-    """Reference: the trajectories, half the tip's deflection to the sides."""
+    """Reference: the trajectories, with half the tip deflection laterally."""
     data = results.trajectories.assign(tip_lateral=0.5 * results.trajectories["tip"])
     data = data.assign_coords(direction=("station", ["z", "y"]))
     in_space = replace(results, trajectories=data)

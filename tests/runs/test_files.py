@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A file of a run is whole or not there, whatever interrupts the writing."""
+"""Complete or absent files of a run after any interruption of writing."""
 
 import os
 import subprocess
@@ -32,7 +32,7 @@ def contents(folder: Path) -> dict[str, str]:
 
 
 def write(folder: Path, *names: str) -> None:
-    """Files that hold all their names."""
+    """Write files whose content is the list of all names."""
     for name in names:
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(" ".join(names), encoding="utf-8")
@@ -67,7 +67,7 @@ def test_a_file_gets_its_name_when_it_is_complete(tmp_path: Path) -> None:
 
 
 def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
-    """By what was written; it has the rights of the old one."""
+    """The new folder replaces the old one, with its permissions."""
     folder = tmp_path / "figures"
     for names in (("a.png", "b.png"), ("b.png", "deep/c.png")):
         with atomic_folder(folder) as part:
@@ -81,7 +81,7 @@ def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", ["file", "folder"])
 def test_failing_write_keeps_the_old_file(tmp_path: Path, kind: str) -> None:
-    """An error of the disk names the file as the user knows it."""
+    """The error message has the path that the user gave."""
     place = tmp_path / "place"
     path = place if kind == "file" else place / "a.png"
     path.parent.mkdir(exist_ok=True)
@@ -101,7 +101,7 @@ def test_failing_write_keeps_the_old_file(tmp_path: Path, kind: str) -> None:
 
 
 def test_changed_folder_keeps_other_files(tmp_path: Path) -> None:
-    """What the user has put there is not listed, so that it may change."""
+    """Files of the user are not in the manifest, so that they may change."""
     folder = tmp_path / "out"
     with atomic_folder(folder) as part:
         write(part, "data", "report")
@@ -144,7 +144,7 @@ def test_folders_are_exchanged_on_every_disk(
 
 
 def test_folder_is_restored_after_a_killed_exchange(tmp_path: Path) -> None:
-    """Between two renames, where the disk takes two of them."""
+    """The process is killed between the two renames of a file system without exchange."""
     folder = tmp_path / "out"
     with atomic_folder(folder) as part:
         write(part, "earlier")
@@ -154,7 +154,9 @@ def test_folder_is_restored_after_a_killed_exchange(tmp_path: Path) -> None:
 
 
 def test_folder_changes_exclude_each_other(tmp_path: Path) -> None:
-    """Reference: by construction. The other one replaces the folder when it is left alone."""
+    """Reference: by construction. The other process replaces the folder after the lock is
+    released.
+    """
     folder = tmp_path / "out"
 
     def replace() -> None:

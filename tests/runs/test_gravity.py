@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a boom weighs, and what its segments are made of, from the case file on."""
+"""Weights and materials of a case."""
 
 from pathlib import Path
 
@@ -61,7 +61,7 @@ def test_everything_weighs_across_the_boom(tmp_path: Path, angle: float) -> None
 
 
 def test_from_rest_the_boom_swings_about_where_its_weight_holds_it(tmp_path: Path) -> None:
-    """Reference: analytic. The tip falls at g and swings to nearly twice the static deflection."""
+    """Reference: analytic. The tip falls with g and reaches nearly twice the static deflection."""
     moved = tip(change(read(tmp_path, "[gravity]\n"), **{"time.duration": 1.0}))
     static = tip(read(tmp_path, '[gravity]\n[start]\nstate = "equilibrium"\n'))[0]
     assert moved[0] == 0.0
@@ -69,7 +69,9 @@ def test_from_rest_the_boom_swings_about_where_its_weight_holds_it(tmp_path: Pat
 
 
 def test_a_payload_weighs_by_itself_alone_without_gravity(tmp_path: Path) -> None:
-    """Reference: analytic, F L³/3 E J of the payload, by the standard acceleration or its own."""
+    """Reference: analytic, F L³/3 E J of the payload with standard gravity or its own
+    acceleration.
+    """
     rest = '[payload]\nmass = 500.0\n{}\n[start]\nstate = "equilibrium"\n'
     for line, acceleration in (("", 9.80665), ("gravity = 4.0", 4.0)):
         moved = tip(read(tmp_path, rest.format(line)))
@@ -78,7 +80,7 @@ def test_a_payload_weighs_by_itself_alone_without_gravity(tmp_path: Path) -> Non
 
 
 def test_a_segment_has_its_own_material(tmp_path: Path) -> None:
-    """Reference: analytic. ρ A and E of each; the case's where a segment says nothing."""
+    """Reference: analytic, ρ A and E of each segment, by default with the material of the case."""
     (arm,) = build_boom(read(tmp_path, segment=f"material = {ALUMINIUM}")).segments
     assert arm.mass_per_length == pytest.approx(2700.0 * AREA, rel=1e-12)
     assert arm.bending_stiffness == pytest.approx(7e10 * SECOND_MOMENT, rel=1e-12)

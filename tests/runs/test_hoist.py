@@ -22,7 +22,7 @@ HOIST = (CASES / "hoist.toml").read_text(encoding="utf-8")
 
 
 def of_beam(case: Case) -> Case:
-    """Return a case with its series alone."""
+    """Return a case with its series only."""
     return case.model_copy(update={"models": case.models[:1]})
 
 
@@ -32,7 +32,7 @@ def static_tip(case: Case, time: float) -> float:
 
 
 def test_hanging_load_at_rest() -> None:
-    """Reference: the same boom under the load across it and the same force along it."""
+    """Reference: the same boom under the components of the load across and along it."""
     case = of_beam(shipped("hoist"))
     weight = 5000.0 * 9.80665
     across = LoadTable(segment="fly", x="head", magnitude=-0.5 * weight)  # type: ignore[arg-type] # read as in a file

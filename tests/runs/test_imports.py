@@ -50,7 +50,7 @@ except SystemExit as ended:
 
 
 def imported(node: ast.AST, for_types: bool) -> Iterator[str]:
-    """Every module, or name of one, that a file imports, inside functions, too."""
+    """Return every module, or name from a module, that a file imports, also inside functions."""
     if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING" and not for_types:
         return
     if isinstance(node, ast.Import):
@@ -64,7 +64,7 @@ def imported(node: ast.AST, for_types: bool) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def trees() -> dict[str, ast.Module]:
-    """Each of our modules, by its name."""
+    """Return the syntax tree of each module of the project, by its name."""
     return {
         ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): ast.parse(
             path.read_text("utf-8")
@@ -86,7 +86,7 @@ def test_no_module_imports_itself_by_way_of_others(graph: dict[str, set[str]]) -
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_a_room_knows_those_below(room: str, trees: dict[str, ast.Module]) -> None:
-    """For types, too; no room knows the studies, which prove it."""
+    """This also holds for imports of types. No package imports the studies."""
     own = (tree for name, tree in trees.items() if name.split(".")[0] == room)
     known = {found.split(".")[0] for tree in own for found in imported(tree, True)}
     assert known & ROOMS.keys() <= ROOMS[room] | {room}
@@ -131,7 +131,7 @@ def test_version_is_the_installed_one() -> None:
 
 
 def test_importing_the_package_keeps_warnings() -> None:
-    """The command alone is silent: a notebook hears what concerns it."""
+    """Only the command suppresses warnings; a notebook shows them."""
     program = "import warnings, protractile as pt; pt.load_case; warnings.warn('heard')"
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=ROOT, check=True, capture_output=True, text=True
@@ -180,7 +180,7 @@ KNOWS = re.compile(
 
 
 def test_no_other_module_knows_the_paper() -> None:
-    """Neither modules nor templates of the report; who imports it: ``test_imports.py``."""
+    """This holds for modules and for templates of the report."""
     modules = [path for room in PACKAGES for path in (ROOT / room).glob("**/*.py")]
     general = {*modules, *(ROOT / "runs/report/templates").iterdir()}.difference(CLIENT)
     assert len(general) > 150
@@ -206,7 +206,7 @@ SLOW = "figure-slow-peaks", "table-horizons", "table-slow-peaks"
     ],
 )  # fmt: skip
 def test_evidence_of_each_statement(case: str, changed: dict[str, list[str]]) -> None:
-    """Reference: the statements themselves; with friction others are meant."""
+    """Reference: the statements. A case with friction has other statements."""
     found = evidence(shipped(case))
     assert {key: [*anchors] for key, anchors in found.items()} == {
         "S1": [CLOSE_UP],
@@ -226,7 +226,9 @@ def test_evidence_of_each_statement(case: str, changed: dict[str, list[str]]) ->
 
 @pytest.mark.parametrize(("case", "numbers"), [("paper", (6, 7)), ("paper-friction", (8, 9))])
 def test_figures_name_their_counterparts(case: str, numbers: tuple[int, int]) -> None:
-    """Reference: the paper's Figs. 6 and 7 are without, 8 and 9 with friction."""
+    """Reference: external, Figs. 6 and 7 of the paper without friction, Figs. 8 and 9 with
+    friction.
+    """
     found = shipped(case)
     remarks = addition(found, []).remarks
     for place, number in zip(("tip", "head"), numbers, strict=True):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results at rest under the largest loads, and the largest results of a motion."""
+"""Static results under the largest loads, and the largest results of a motion."""
 
 from pathlib import Path
 
@@ -57,7 +57,7 @@ def extremes_of(folder: Path, text: str) -> dict[str, StaticExtreme]:
 
 
 def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
-    """Reference: analytic, lever rule between the midpoints of pads and M z/J of the boxes."""
+    """Reference: analytic, lever rule between the centres of pads, and M z/J of the boxes."""
     case = read_case(tmp_path, boom_of(RAMP))
     found = extremes_of(tmp_path, boom_of(RAMP))
     assert [*found] == [
@@ -92,7 +92,7 @@ def test_a_uniform_load_bends_between_nodes(tmp_path: Path) -> None:
 
 
 def test_largest_values_of_a_sine_and_a_ramp(tmp_path: Path) -> None:
-    """Reference: analytic, the sine at a quarter of its period, and at three quarters the sum."""
+    """Reference: analytic, the sine at a quarter of its period, and the sum at three quarters."""
     found = extremes_of(tmp_path, boom_of(RAMP + SINE))
     arm = found["stress, arm at 0 m"]
     inertia = build_boom(read_case(tmp_path, boom_of(RAMP))).segments[0].second_moment_of_area
@@ -102,7 +102,7 @@ def test_largest_values_of_a_sine_and_a_ramp(tmp_path: Path) -> None:
 
 
 def test_overloads_are_cautions(tmp_path: Path) -> None:
-    """Reference: exact messages, with pressures of the lever rule over 0.1 MPa."""
+    """Reference: exact messages, with pressures above 0.1 MPa by the lever rule."""
     text = boom_of(RAMP.replace("ramp = 0.1\n", ""), PAD.replace("1e6", "1e5"))
     found = [*extremes_of(tmp_path, text).values()]
     far = StaticExtreme("tip", "tip", "m", -0.1, -1.4, 0.25)
@@ -119,7 +119,7 @@ def test_overloads_are_cautions(tmp_path: Path) -> None:
 
 
 def test_loads_are_listed_with_their_largest_values(tmp_path: Path) -> None:
-    """Reference: the numbers of the case; the weight of its masses by hand."""
+    """Reference: the numbers of the case, and the weight of its masses by hand."""
     loads = (
         RAMP + SINE + '[[load]]\nsegment = "fly"\nfrom = 7.0\nto = 9.0\nmagnitude = -100.0\n'
         "table = [[0.0, 0.0], [0.5, -2.0], [1.5, 9.0]]\n"
@@ -207,7 +207,7 @@ def answers(model: str, folder: Path, case: str = CASE) -> ModelDesignResults:
 
 
 def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
-    """Reference: analytic. A boom of one coordinate swings to twice its rest after half a
+    """Reference: analytic. A boom with one coordinate reaches twice the static result after half a
     period.
     """
     series = table("[[model]]", name="one", kind="kantorovich", terms=[1], base="complete")
@@ -251,7 +251,7 @@ def test_lateral_reactions_are_reported(tmp_path: Path) -> None:
 
 
 def test_outer_corners_lie_on_the_outer_surfaces() -> None:
-    """Reference: by hand, half a thickness beyond the mid-lines; of a hexagon no more."""
+    """Reference: by hand, half a thickness beyond the mid-lines, at most so for a hexagon."""
     y, z = outer_corners(BoxSection(height=0.4, width=0.3, flange=0.008, web=0.006))
     np.testing.assert_allclose(np.abs(y), 0.153)
     np.testing.assert_allclose(np.abs(z), 0.204)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cycles are counted as the standard counts them, and do what its curves say."""
+"""Rainflow cycles and S-N curves of the standards."""
 
 import numpy as np
 import pytest
@@ -27,8 +27,8 @@ def test_a_curve_has_the_points_of_the_code() -> None:
 
 
 def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
-    """Reference: by hand, 10/2e6 (115/71)³ of a run, 20 000 times that of a life, range 10^⅓ 100
-    MPa.
+    """Reference: by hand, 10/2e6 (115/71)³ for a run, 20 000 times as much for a life, and the
+    equivalent range 10^⅓ 100 MPa.
     """
     time = np.linspace(0.0, 10.0, 10 * 400 + 1)
     stress = 50e6 * np.cos(2.0 * np.pi * time)

@@ -90,7 +90,7 @@ def test_bad_limit_is_refused(limits: str, line: str) -> None:
 
 @pytest.mark.usefixtures("few_figures")
 def test_the_exit_status_is_1_beyond_a_limit(capsys: pytest.CaptureFixture[str]) -> None:
-    """A limit of what no model has does not hold, either."""
+    """A limit of a quantity without values is not met, either."""
     write("tip = 0.001\npad_pressure = 1e6\ndecay_time = 10.0")
     for command in (["run", "case.toml", "--out", "out"], ["report", "out"]):
         with pytest.raises(SystemExit) as ended:

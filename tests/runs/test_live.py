@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The live page without a browser: its knobs, its answers, and requests that it refuses."""
+"""The live page without a browser: knobs, answers and refused requests."""
 
 import json
 import re
@@ -113,7 +113,7 @@ def check_results(
 def test_the_beam_has_the_numbers_of_a_run(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Reference: the same beam by a run of the case, at the tolerance of the page."""
+    """Reference: a run of the same beam at the tolerance of the page."""
     monkeypatch.setenv("PROTRACTILE_CACHE", str(tmp_path))
     draft = Draft.load(str(path))
     check_results(draft, {}, draft.beam(draft.changed({})).case, RunContext(), monkeypatch)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Loads on a part of a segment and moments, in every kind of model."""
+"""Partial loads and moments in every kind of model."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -26,7 +26,7 @@ BOX = "section = { height = 0.47, width = 0.41, flange = 0.006, web = 0.006 }\n"
 
 
 def tip_at_rest(case: Case) -> float:
-    """Deflection of the tip in m under all loads at the value 1 of their histories."""
+    """Return the tip deflection in m under all loads at the value 1 of their histories."""
     tools = BuildContext(MPI.COMM_SELF)
     system = build(case, build_boom(case), case.models[0], tools).system
     load = system.load + np.sum([x.load for x in system.excitations], axis=0)
@@ -34,13 +34,13 @@ def tip_at_rest(case: Case) -> float:
 
 
 def under_part(bending: float) -> float:
-    """Analytic: −q ∫ x² (3 L − x)/6 dx from 3 to 7 m over E J, the tip of a cantilever."""
+    """Return the tip of a cantilever, −q ∫ x² (3 L − x)/6 dx from 3 to 7 m over E J."""
     antiderivative = [10.0 * x**3 / 6.0 - x**4 / 24.0 for x in (3.0, 7.0)]
     return -500.0 * (antiderivative[1] - antiderivative[0]) / bending
 
 
 def under_moment(bending: float) -> float:
-    """Analytic: M a (L − a/2)/E J."""
+    """Return the tip of a cantilever, M a (L − a/2)/E J."""
     return 2.0e4 * 6.0 * (10.0 - 3.0) / bending
 
 
@@ -49,7 +49,7 @@ def under_moment(bending: float) -> float:
 def test_beams_rest_where_statics_put_them(
     tmp_path: Path, load: str, expected: Callable[[float], float], model: str
 ) -> None:
-    """The influence line of the tip is a cubic, or with the moment its slope; both have it."""
+    """Reference: analytic. Elements and series contain the influence line of the tip, a cubic."""
     found = tip_at_rest(read_case(tmp_path, CANTILEVER + load + model))
     assert found == pytest.approx(expected(BENDING), rel=1e-9)
 
@@ -58,7 +58,7 @@ def test_beams_rest_where_statics_put_them(
 def test_a_shell_rests_near_a_beam_with_shear(
     tmp_path: Path, load: str, expected: Callable[[float], float]
 ) -> None:
-    """Reference: other model of ours, Timoshenko elements; the mesh is good for 0.5 %."""
+    """Reference: other model, Timoshenko elements. The mesh has an error of 0.5 %."""
     beam = CANTILEVER.replace("mass_per_length = 83.16\n", BOX).replace(
         "second_moment_of_area = 3.7986e-4\n", ""
     )

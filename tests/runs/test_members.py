@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Ensembles of a run, and how few steps keep the slow motion's peaks."""
+"""Ensembles of a run, and the smallest number of steps that preserves slow peaks."""
 
 import json
 from dataclasses import replace
@@ -54,7 +54,7 @@ def run(case: Case, told: list[tuple[str, str, float]]) -> Run:
 
 
 def test_member_0_is_the_trajectory(run: Run) -> None:
-    """Reference: by hand, the model's own run, but for the single precision."""
+    """Reference: the run of the model, in single precision."""
     ensembles = run.results.ensembles
     assert ensembles["model"].values.tolist() == SERIES
     assert ensembles["tip"].dims == ("model", "member", "time")
@@ -67,7 +67,7 @@ def test_member_0_is_the_trajectory(run: Run) -> None:
 
 
 def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
-    """Reference: non-regression; the first press parts members within a second."""
+    """Reference: non-regression. After the first contact, members diverge within a second."""
     models = run.results.summary.models
     assert models["beam-fe-bonded"].ensemble is None
     for name in SERIES:
@@ -88,7 +88,7 @@ def test_progress_of_the_ensembles_is_told(run: Run, told: list[tuple[str, str, 
 
 
 def test_slow_is_below_the_closed_boom(case: Case) -> None:
-    """Reference: other code, the play-free beam's lowest frequency of 2.0852 Hz."""
+    """Reference: other code, the lowest frequency of the bonded beam, 2.0852 Hz."""
     boom = build_boom(case)
     assert slow_cutoff(boom, case.time) == pytest.approx(0.8 * 2.0852, rel=1e-3)
     for update in ({"duration": 0.5}, {"output_step": 0.5}):
@@ -96,7 +96,7 @@ def test_slow_is_below_the_closed_boom(case: Case) -> None:
 
 
 def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
-    """A mass that no eigenproblem survives is each model's to complain about."""
+    """If a mass prevents the eigenvalue analysis, each model reports it."""
     heavy = case.segments[0].model_copy(update={"mass_per_length": 1e300})
     segments = heavy.model_copy(update={"height_to_width": None}), *case.segments[1:]
     changed = case.model_copy(update={"segments": segments, "models": case.models[:1]})
@@ -104,7 +104,7 @@ def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
 
 
 def test_ensemble_data_have_names_and_units(run: Run) -> None:
-    """As the trajectories of the same places do."""
+    """They equal those of the trajectories of the same points."""
     ensembles = run.results.ensembles
     assert ensembles.attrs["Conventions"] == "CF-1.8"
     for name, values in ensembles.data_vars.items():
@@ -132,7 +132,7 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
 
 @pytest.fixture
 def sheets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Sheet]:
-    """Those that are drawn, by their names."""
+    """Return the drawn sheets by their names."""
     found: dict[str, Sheet] = {}
     monkeypatch.setattr(Sheet, "savefig", lambda sheet, path, **_: found.update({path.stem: sheet}))
     return found
@@ -239,7 +239,7 @@ def five_terms() -> tuple[GapSystem, float]:
 
 
 def peaks_of(system: GapSystem, cutoff: float, spread: float) -> SlowPeaks:
-    """Slow peaks of one run as those of an ensemble."""
+    """Return the slow peaks of a run in the form of an ensemble."""
     run = AdaptiveStep()(Motion(system, 4.0, STEP))
     times, heights = slow_peaks(np.asarray(run.data["tip"].values), run.time, cutoff)
     period = float(np.diff(times).mean())
@@ -249,7 +249,7 @@ def peaks_of(system: GapSystem, cutoff: float, spread: float) -> SlowPeaks:
 
 
 def test_fewest_sufficient_steps_are_counted(five_terms: tuple[GapSystem, float]) -> None:
-    """Reference: by hand. Slow peaks scatter by some percent from the second on."""
+    """Reference: by hand. From the second one on, slow peaks scatter by several percent."""
     system, cutoff = five_terms
     # Beside a dashpot of no strength every step is made on its own.
     single = replace(system, dashpots=np.zeros((1, system.num_modes)))

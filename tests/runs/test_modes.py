@@ -33,7 +33,7 @@ BOX = BoxSection(height=0.30, width=0.20, flange=0.006, web=0.006)
 
 @pytest.fixture(scope="module")
 def arm(spatial_boom: Boom, steel: Material) -> Boom:
-    """Return a cantilever of 10 m in space: its second segment is bonded within its first half."""
+    """Return a cantilever of 10 m in space; the second segment is bonded to the first half."""
     root = Segment.of_section("root", 0.0, 10.0, steel, BOX, supports=(Support(0.0, "clamped"),))
     # As light as none, and rigid beside it.
     sleeve = BoxSection(height=0.25, width=0.15, flange=0.001, web=0.001)
@@ -67,7 +67,7 @@ def test_modes_are_those_of_an_exact_beam(arm: Boom) -> None:
 
 
 def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
-    """Reference: the same boom on its side, whose planes are exchanged."""
+    """Reference: the same boom on its side, with exchanged planes."""
     models = finite_element_segments(arm, 0.5, "euler-bernoulli", rotary_inertia=False)
     series = kantorovich_segments(arm, [12, 4], "complete", rotary_inertia=False)
     here, there = found(arm, models), found(arm, series)
@@ -83,9 +83,7 @@ def test_a_mode_is_found_again_whatever_its_place(arm: Boom) -> None:
 
 
 def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
-    """Reference: analytic, ω² = 2k/m of the heave and k L²/2I of the pitch of a bar on two
-    springs.
-    """
+    """Reference: analytic, a bar on two springs: ω² = 2k/m in translation, k L²/2I in rotation."""
     bar = Segment.of_section("bar", 0.0, 4.0, steel, BOX)
     segment = replace(bar, supports=(Support(0.0, stiffness=1e6), Support(4.0, stiffness=1e6)))
     boom = Boom((segment,), ())
@@ -98,7 +96,7 @@ def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
 
 
 def test_rigid_segment_has_modes_of_its_contacts() -> None:
-    """Reference: analytic. A ball of 1 kg on a spring of 1e6 N/m, with no frequency of its own."""
+    """Reference: analytic, a ball of 1 kg without elastic modes, on a contact of 1e6 N/m."""
     law = PowerContact(1e6, 1.0).lower()
     one = np.ones(1)
     ball = GapSystem(0.0 * one, -9.81 * one, one[None], [law], np.array([0]), [0.0], {})

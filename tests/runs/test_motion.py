@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""By which steps the motions of a model are computed, and what is left where one cannot be."""
+"""Time steps of the motions of a model, and results if a motion fails."""
 
 import pytest
 
@@ -45,7 +45,9 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
     motions: int,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Reference: the case. Without play, and standing where a drive begins and ends."""
+    """Reference: the case. Motions include those without play and at the constant extremes of a
+    drive.
+    """
     run = short(name, model, **values, **{"time.step": 4.0e-5})
     steps: list[float] = []
     move = FixedStep.__call__
@@ -62,7 +64,7 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
 def test_bonded_rest_is_known_without_a_motion(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Reference: the same where it moves."""
+    """Reference: the same static state after a motion."""
     run = short("coarse.toml", "kantorovich-4", **{"time.duration": 0.03})
     whole = answers(run)
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Segments that start with a velocity and a turn, and what is observed of them."""
+"""Initial velocities and rotation rates of segments, and observations."""
 
 from pathlib import Path
 
@@ -57,9 +57,7 @@ def turned(folder: Path, model: str) -> Results:
     ["kantorovich-5", "beam-fe", "timoshenko", pytest.param("shell", marks=pytest.mark.slow)],
 )  # fmt: skip
 def test_a_free_segment_turns_as_a_rigid_body(tmp_path: Path, model: str) -> None:
-    """Reference: analytic, (0.01 + 0.02 (x − 9)) t until the head's play of 7 mm is taken at 0.233
-    s.
-    """
+    """Reference: analytic, (0.01 + 0.02 (x − 9)) t until contact at the head, 7 mm at 0.233 s."""
     if model == "shell":
         pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     data = turned(tmp_path, model).trajectories.isel(model=0)
@@ -121,7 +119,7 @@ def test_velocity_is_the_slope_of_the_deflection(tmp_path: Path) -> None:
 
 
 def test_data_have_names_and_units(tmp_path: Path) -> None:
-    """Every variable and coordinate has a long name; stations have a name each."""
+    """Every variable and coordinate has a long name, and every station has a name."""
     data = turned(tmp_path, "kantorovich-4").trajectories
     assert data.attrs["Conventions"] == "CF-1.8"
     assert [
@@ -135,7 +133,7 @@ def test_data_have_names_and_units(tmp_path: Path) -> None:
 
 
 def test_a_segment_s_name_may_have_blanks_and_points(tmp_path: Path) -> None:
-    """Its velocities are under a key of that name."""
+    """The key of its velocity is its name."""
     text = UNLOADED.replace('"inner"', '"fly 2.1"')
     start = '[start]\nvelocity = { "fly 2.1" = { z = 0.1 }, outer = 0.2 }\n\n'
     case = read_case(tmp_path, text.replace("[[model]]", start + "[[model]]", 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A run's folder: what lies in it is in the report, and columns say whose they are."""
+"""Folder of a run: its files, its report, and unique names of columns."""
 
 import csv
 import json
@@ -46,7 +46,7 @@ def header(folder: Path) -> list[str]:
 
 
 def test_columns_of_stations_are_told_apart(run: Run, tmp_path: Path) -> None:
-    """Two stations in each of two directions, and a rest at the place of one of them."""
+    """The boom has two stations in each of two directions, and a stop at the position of one."""
     plain = run.results.trajectories
     places = [("9", "z"), ("10", "z"), ("9", "y"), ("10", "y"), ("9", "z")]
     names = place_names([(float(x), direction) for x, direction in places])
@@ -67,7 +67,7 @@ def test_columns_of_a_flat_boom_have_their_x(folder: Path) -> None:
 
 
 def test_the_table_is_pandas_s(run: Run, tmp_path: Path) -> None:
-    """Reference: other code, byte by byte; a model without friction leaves its column empty."""
+    """Reference: other code, pandas, to the byte. A model without friction has an empty column."""
     plain = run.results.trajectories
     data = xr.concat(
         [plain, plain.assign(friction_force=np.nan * plain["friction_force"])], "model"
@@ -89,7 +89,7 @@ def test_the_table_is_pandas_s(run: Run, tmp_path: Path) -> None:
 def test_model_without_design_results_keeps_its_motion(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Reference: its trajectory of before; the files and the report are written all the same."""
+    """Reference: the trajectory. Files and report are still written."""
 
     def singular(*_: object) -> ModelDesignResults:
         raise np.linalg.LinAlgError("Singular matrix")
@@ -113,7 +113,7 @@ def test_model_without_design_results_keeps_its_motion(
 
 
 def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
-    """Reference: those of a tip at rest that nobody has found small, by the summary's number."""
+    """Reference: the caution on the static tip deflection in the summary."""
     content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     (short,) = content.pop("cautions")
     assert content.pop("pads") == []

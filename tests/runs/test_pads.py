@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Slide pads as a case gives them: their stiffness, their plays, how hard they are pressed."""
+"""Slide pads of a case: stiffness, plays, forces and pressures."""
 
 from pathlib import Path
 
@@ -26,7 +26,7 @@ PAD = "pad = { length = 0.2, width = 0.05, thickness = 0.02, allowable_pressure 
 
 
 def case_with(folder: Path, joint: str, play: float = 0.014) -> Case:
-    """Return the coarse case with Timoshenko's beam alone, on the joint's own contacts."""
+    """Return the coarse case with only Timoshenko elements, with contacts of the joint."""
     text = COARSE[: COARSE.index("[[model]]")] + elements("beam", element_length=0.5)
     text = text.replace(COARSE[COARSE.index("statements") :].splitlines()[0] + "\n", "")
     text = text.replace("play = 0.014", f"play = {play}").replace(LAW, joint)
@@ -63,7 +63,7 @@ def test_check_tells_both_sides(tmp_path: Path) -> None:
 
 
 def test_the_play_above_is_where_the_tail_presses(tmp_path: Path) -> None:
-    """Reference: mirror. A load turned over, and the play with it, turn the motion over."""
+    """Reference: symmetry. Load and play mirrored in z give the mirrored motion."""
     tips = []
     for part, sign in ((0.004, 1.0), (0.010, -1.0)):
         case = case_with(tmp_path, f"stiffness = 1e9\nexponent = 1.0\nplay_above = {part}\n")
@@ -77,7 +77,7 @@ def test_the_play_above_is_where_the_tail_presses(tmp_path: Path) -> None:
 
 
 def test_shims_hold_the_boom_as_springs_do(tmp_path: Path) -> None:
-    """Reference: analytic. Pressed from both sides, a station is a spring of 2 k."""
+    """Reference: analytic. With contact on both sides, a station is a spring of 2 k."""
     case = case_with(tmp_path, "stiffness = 1e7\nexponent = 1.0\ninterference = 0.02\n", play=0.0)
     model, boom = case.models[0], build_boom(case)
     system = build(case, boom, model).system
@@ -113,7 +113,7 @@ def test_pressure_stands_beside_the_pad_strength(tmp_path: Path) -> None:
 
 
 def test_summary_names_the_governing_pad(tmp_path: Path) -> None:
-    """Reference: the table of all pads; a pad that may bear next to nothing stands out."""
+    """Reference: the table of all pads. A pad with a very small allowable pressure governs."""
     found = results(tmp_path, PAD.replace("2e7", "1e3"))
     table = summary_table(found)
     told = {row[0]: row[1] for row in table.rows}
@@ -133,7 +133,9 @@ def test_summary_names_the_governing_pad(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("shim", [0.0, 2e-5, 1.0e-3])
 def test_governing_pad_at_rest_is_named(tmp_path: Path, shim: float) -> None:
-    """Reference: another computation, the rows of each pair of pads; 3 and 2 parts of a force."""
+    """Reference: other code path, the rows of each pair of pads, which carry 3/5 and 2/5 of a
+    force.
+    """
     below = [pad_on("below", 0.03, 0.02), pad_on("below", 0.02, 0.02, offset=0.04, shim=shim)]
     above = pad_on("above", 0.05, 0.02)
     case = case_with(tmp_path, several(above, *below))
@@ -166,7 +168,9 @@ def several(*pads: str) -> str:
 
 
 def test_two_halves_of_a_pad_are_the_pad(tmp_path: Path) -> None:
-    """Reference: another computation, one pad of their size: the same forces at each station."""
+    """Reference: other code path, one pad of the total size, with the same forces at each
+    station.
+    """
     halves = [
         pad_on(side, 0.025, 0.02, offset=offset)
         for side in ("above", "below")
@@ -183,7 +187,7 @@ def test_two_halves_of_a_pad_are_the_pad(tmp_path: Path) -> None:
 
 
 def test_pads_share_as_they_are_stiff(tmp_path: Path) -> None:
-    """Reference: by hand, E A/t of 1.9e9 · 0.01/0.02 and a third of that; a shim of 2 mm."""
+    """Reference: by hand, E A/t = 1.9e9 · 0.01/0.02 and a third of it, and a shim of 2 mm."""
     below = pad_on("below", 0.05, 0.02), pad_on("below", 0.025, 0.03, offset=0.06, shim=0.002)
     case = case_with(tmp_path, several(pad_on("above", 0.05, 0.02), *below))
     system = build(case, build_boom(case), case.models[0]).system
@@ -196,7 +200,9 @@ def test_pads_share_as_they_are_stiff(tmp_path: Path) -> None:
 
 
 def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
-    """Reference: by hand, the head's largest force over both areas; above the tail's."""
+    """Reference: by hand, the largest force at the head over both areas; it exceeds that at the
+    tail.
+    """
     pads = [
         pad_on("above", 0.05, 0.02),
         pad_on("below", 0.03, 0.02, allowable_pressure=2e7),
@@ -221,7 +227,7 @@ def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
 
 
 def test_shimmed_pads_tell_the_force_of_their_side(tmp_path: Path) -> None:
-    """Reference: by hand. Pads of k that shims press from both sides by s carry k (s ± y)."""
+    """Reference: by hand. Pads of stiffness k with shims s on both sides carry k (s ± y)."""
     sides = [pad_on(side, 0.05, 0.02, shim=0.1) for side in ("above", "below")]
     found = results(tmp_path, several(*sides))
     peaks = found.trajectories["contact_force_peak"].values[0]
@@ -239,7 +245,7 @@ def test_shimmed_pads_tell_the_force_of_their_side(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("state", "lifted"), [("equilibrium", 0.001), ("rest", 0.0)])
 def test_shims_lift_an_unloaded_boom(tmp_path: Path, state: str, lifted: float) -> None:
-    """Reference: by hand. Of 2 mm of play below a shim of 3 mm leaves -1 mm, and nothing bends."""
+    """Reference: by hand. A play of 2 mm below and a shim of 3 mm give −1 mm, without bending."""
     pads = several(pad_on("above", 0.05, 0.02), pad_on("below", 0.05, 0.02, shim=0.003))
     case = case_with(tmp_path, pads, play=0.004)
     segments = tuple(s.model_copy(update={"load": 0.0}) for s in case.segments)

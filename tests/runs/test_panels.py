@@ -43,7 +43,7 @@ def test_coefficients_of_long_plates(ratio: float, exact: float) -> None:
 
 @pytest.mark.parametrize("ratio", [1.0, 0.5, 0.0, -0.5, -1.0, -2.0])
 def test_a_stress_alone_has_its_own_factor(ratio: float) -> None:
-    """Reference: analytic: without shear the interaction leaves k σ_E/σ."""
+    """Reference: analytic. Without shear the interaction formula is k σ_E/σ."""
     edges = -0.3 * UNIT, -0.3 * UNIT * ratio
     expected = normal_coefficient(ratio) / 0.3
     assert panel_factor(STEEL, SLENDERNESS, edges, 0.0) == pytest.approx(expected, rel=1.0e-12)
@@ -51,8 +51,8 @@ def test_a_stress_alone_has_its_own_factor(ratio: float) -> None:
 
 
 def test_shear_interacts() -> None:
-    """Reference: analytic, 1/α = 1/(2 α_x) + √(1/(4 α_x²) + 1/α_τ²), in bending a circle; shear
-    5.34.
+    """Reference: analytic, 1/α = 1/(2 α_x) + √(1/(4 α_x²) + 1/α_τ²), for bending a circle, and 5.34
+    for shear.
     """
     pressed, sheared = 0.5, 0.4
     factor = panel_factor(STEEL, SLENDERNESS, (-4.0 * pressed * UNIT,) * 2, 5.34 * sheared * UNIT)
@@ -67,7 +67,9 @@ def test_shear_interacts() -> None:
 
 
 def test_the_weakest_wall_of_a_segment() -> None:
-    """Reference: analytic. A moment presses the bottom flange, a torque shears all walls alike."""
+    """Reference: analytic. A moment compresses the bottom flange; a torque shears all walls
+    equally.
+    """
     box = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
     segment = Segment.of_section("outer", 0.0, 2.0, STEEL, box)
 
@@ -117,7 +119,9 @@ section = { height = 0.4, width = 0.3, flange = 0.003, web = 0.008 }
 
 
 def test_bulging_walls_give_a_caution() -> None:
-    """Reference: by hand, right walls that move by a part of the lateral play; beams close none."""
+    """Reference: by hand, right walls that move by a part of the lateral play. Beams have no
+    bulging.
+    """
     case = shipped("spatial")
     boom, model = build_boom(case), next(m for m in case.models if m.name == "timoshenko")
     system = build(case, boom, model).system.gather_loads()
@@ -147,7 +151,7 @@ def test_bulging_walls_give_a_caution() -> None:
 
 
 def test_check_names_plays_closed_by_walls() -> None:
-    """Reference: other code, the arm's shell at rest with edges of 0.2 m."""
+    """Reference: other code, the static shell of the arm with edges of 0.2 m."""
     checked = reading.load_checked(str(CASES / "inspection-arm.toml"))
     boom = boom_with_play(checked.case, checked.boom)
     (rest, *_) = BeamStates.of(checked.case, boom).rests

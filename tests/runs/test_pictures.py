@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pictures show the displacement they say, at the instants they say, or say why there is none."""
+"""Pictures: displacements, instants, scales, and messages without pictures."""
 
 from collections.abc import Iterator
 from dataclasses import replace
@@ -34,7 +34,7 @@ def shell() -> Scene:
 
 @pytest.fixture(autouse=True, scope="module")
 def _coarse() -> Iterator[None]:
-    """Render each pixel once: edges are less smooth, at a quarter of the cost."""
+    """Render each pixel once, with rougher edges at a quarter of the cost."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(sheet, "OVERSAMPLING", 1)
         yield
@@ -55,8 +55,8 @@ def test_characteristic_instants_are_those_of_the_motion(shell: Scene) -> None:
 
 
 def test_an_instant_is_shown_once(shell: Scene) -> None:
-    """Reference: by hand. Pressed from the start there is no first contact, and a largest force
-    within 2 % of the run of the first peak is not seen twice.
+    """Reference: by hand. With initial contact there is no first contact. A largest force within 2
+    % of the run from the first peak has no second picture.
     """
     motion = shell.motion.copy(deep=True)
     motion["contact_force_peak"][:] = 1.0e3
@@ -72,7 +72,7 @@ def test_an_instant_is_shown_once(shell: Scene) -> None:
 
 
 def test_motion_without_contact_or_peak_still_has_an_instant(shell: Scene) -> None:
-    """Half a period has no peak inside, and a model without stations NaN for its forces."""
+    """Half a period has no peak, and forces of a model without stations are NaN."""
     motion = shell.motion.where(shell.motion["time"] < 0.0).assign(tip=shell.motion["tip"])
     assert characteristic_instants(motion.isel(time=slice(0, 100))) == {
         "largest-deflection": pytest.approx(TIME[99])
@@ -110,7 +110,7 @@ def test_refuses_a_time_outside_the_run(shell: Scene, tmp_path: Path) -> None:
 @pytest.mark.usefixtures("_opengl")
 @pytest.mark.parametrize("place", [(4.0, 0.0, 1.0), (-6.0, 2.0, -0.5)])
 def test_letters_stand_where_the_camera_sees_their_place(place: tuple[float, ...]) -> None:
-    """Reference: other code. The middle of a small plate that VTK has drawn."""
+    """Reference: other code, the centre of a small plate in VTK's picture."""
     camera = Camera(np.array([0.0, 0.0, 0.5]), 20.0, (400, 160), elevation=10.0)
     corners = np.array([[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]])
     two = np.array([[0, 1, 2], [0, 2, 3]], dtype=np.int32)
@@ -132,12 +132,12 @@ def pictures(_opengl: None, shell: Scene, tmp_path_factory: pytest.TempPathFacto
 
 
 def red(picture: Array) -> Array:
-    """Where a picture has the colour of forces."""
+    """Return the mask of pixels with the colour of forces."""
     return (picture[..., 0] > 120.0) & (picture[..., 1:].max(axis=2) < 70.0)
 
 
 def warmth(picture: Array) -> Array:
-    """How much more red than blue a picture is: less than 0 in the outer segment."""
+    """Return red less blue of a picture, negative in the outer segment."""
     return np.asarray(picture[..., 0] - picture[..., 2])
 
 
@@ -169,7 +169,7 @@ def test_boom_is_drawn_and_moves(pictures: list[Path]) -> None:
 
 @pytest.mark.slow
 def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> None:
-    """Three colours at the first peak, and red on both sides: up at 10 m, down at 9 m."""
+    """At the first peak there are three colours, and red arrows up at 10 m and down at 9 m."""
     picture = picture_of(pictures, "overlap-first-peak.png")[190:800]
     is_force = red(picture)
     assert (warmth(picture) < -60.0).mean() > 0.08
@@ -180,7 +180,7 @@ def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> Non
 
 
 def test_the_scale_of_deflections_ends_with_the_largest() -> None:
-    """Reference: the displacements; a boom that hangs down is coloured by how far it does."""
+    """Reference: the displacements. The colour also shows downward deflections."""
     pytest.importorskip("pyvista")
     hanging = moving_scene(state=-1.0)
     deflection = 1e3 * hanging.displacement(0.5)[:, 2]
@@ -189,7 +189,7 @@ def test_the_scale_of_deflections_ends_with_the_largest() -> None:
 
 @pytest.mark.parametrize("steep", [0.0, 1.0, 1.2345, 4.0])
 def test_the_scale_of_stresses_ends_with_the_largest(steep: float) -> None:
-    """Reference: analytic, the stresses; the end of the bar is not above the largest."""
+    """Reference: analytic, the stresses. The scale does not end above the largest stress."""
     stress = moving_scene(state=steep).stress
     of_stress = Sheet(STRESS_PIXELS, 0)
     StressScale.of(stress, [0.5]).add_bar(of_stress)
@@ -203,7 +203,7 @@ def test_the_scale_of_stresses_ends_with_the_largest(steep: float) -> None:
 @pytest.mark.usefixtures("_opengl")
 @pytest.mark.parametrize("steep", [1.0, 4.0])
 def test_arrows_and_their_numbers_stay_above_the_axis(steep: float) -> None:
-    """Reference: analytic. Forces of 1 and 0.9 of the largest make arrows of 110 and 104 pixels."""
+    """Reference: analytic. Forces of 1 and 0.9 of the maximum have arrows of 110 and 104 pixels."""
     shell, instants = moving_scene(state=steep), [Instant(0.5)]
     (overlap,) = shell.overlaps
     with rc_context(theme.PAGE_RC):
@@ -220,7 +220,7 @@ def test_arrows_and_their_numbers_stay_above_the_axis(steep: float) -> None:
 
 @pytest.mark.slow
 def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
-    """Reference: the fixture. The inner segment is pressed from 9 to 9.4 m, and nowhere else."""
+    """Reference: the fixture, with stress in the inner segment from 9 to 9.4 m only."""
     overlap = picture_of(pictures, "stress-first-peak.png")[390:800]
     dark = warmth(overlap) < -30.0
     assert dark.mean() > 0.02
@@ -233,7 +233,9 @@ def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
-    """Both segments are seen in their colours: two walls of the outer one do not hide the inner."""
+    """Both segments are visible in their colours, without two outer walls that hide the inner
+    segment.
+    """
     (overlap,) = shell.overlaps
     with rc_context(theme.PAGE_RC):
         mesh = draw_mesh(shell, overlap)

@@ -33,7 +33,7 @@ def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> DesignResults
 
 @pytest.fixture(scope="module")
 def answers() -> DesignResults:
-    """Of a series and elements with play, and of elements without."""
+    """Return the design results of a series and elements with play, and of bonded elements."""
     return run_of(["kantorovich-5", "beam-fe", "beam-fe-bonded"])
 
 
@@ -44,7 +44,9 @@ def numbers(found: DesignResults, model: str) -> dict[tuple[str, str], PlayDiffe
 
 
 def test_play_adds_its_lever_at_rest(answers: DesignResults) -> None:
-    """Reference: by hand, 14 mrad of play and 5 µrad of contacts: 133 mm and 47 µm in any model."""
+    """Reference: by hand. 14 mrad of play and 5 µrad of contacts are 133 mm and 47 µm in any
+    model.
+    """
     assert [play.model for play in answers.play] == ["kantorovich-5", "beam-fe"]
     at_rest = numbers(answers, "beam-fe")["deflection at rest", "tip"]
     assert at_rest.increase == pytest.approx(0.133 + 10.0 * 4.956e-6 - 2.2e-6, abs=1e-7)
@@ -54,7 +56,7 @@ def test_play_adds_its_lever_at_rest(answers: DesignResults) -> None:
 
 
 def test_motions_are_held_against_those_without_play(answers: DesignResults) -> None:
-    """Reference: another model, the case's own bonded one of the same elements."""
+    """Reference: other model, the bonded model of the case with the same elements."""
     own, bonded = (answers.models[name] for name in ("beam-fe", "beam-fe-bonded"))
     assert bonded.motion_bonded is None
     for peak, other in zip(own.motion_bonded.peaks, bonded.motion.peaks, strict=True):
@@ -70,7 +72,7 @@ def test_motions_are_held_against_those_without_play(answers: DesignResults) -> 
 
 @pytest.mark.slow
 def test_play_adds_equal_deflections_to_shells_and_beams() -> None:
-    """Reference: by hand, the same lever; in motion elements, within a fifth."""
+    """Reference: by hand, the same lever at rest; in motion elements within a fifth."""
     mpi = pytest.importorskip("mpi4py.MPI")
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     found = run_of(["timoshenko", "shell"], mpi.COMM_SELF)
@@ -83,7 +85,7 @@ def test_play_adds_equal_deflections_to_shells_and_beams() -> None:
 
 
 def test_models_agree_within_the_stated_difference(answers: DesignResults) -> None:
-    """Reference: other numbers of the same run, the tips of both models at rest."""
+    """Reference: other results of the same run, the static tips of both models."""
     agreement = [known.line for known in answers.quality_notes if known.what == "agreement"]
     series, beam = (answers.models[name].static[0].tip for name in ("kantorovich-5", "beam-fe"))
     off = f"{100.0 * (series / beam - 1.0):+.2g}".replace("-", "−")
@@ -93,7 +95,7 @@ def test_models_agree_within_the_stated_difference(answers: DesignResults) -> No
 
 
 def test_chaos_note_names_chaotic_models_only() -> None:
-    """Reference: the ensembles, of which one parts at 3.2 s and the other not at all."""
+    """Reference: ensembles, one with the horizon 3.2 s and one without divergence."""
 
     def ensemble(time: float | None) -> dict[str, object]:
         return {"horizons": {"0.2": time}, "energy_residual": 1e-6, "slow_peaks": None}
@@ -121,8 +123,8 @@ LAW = PowerContact(1e6, 1.0).with_clearance(0.01)
 
 @pytest.fixture
 def pair() -> GapSystem:
-    """1 kg on a spring of 100 N/m, 1 kg that hangs in it by a play of 10 mm each way, with 5 N on
-    it, and a rest on the ground far below.
+    """Return 1 kg on a spring of 100 N/m, and 1 kg in it under 5 N with plays of 10 mm on both
+    sides. A stop on the ground is far below.
     """
     return modal_system(
         [100.0, 0.0],
@@ -137,7 +139,7 @@ def pair() -> GapSystem:
 
 
 def test_the_bonded_boom_lacks_the_play_alone(pair: GapSystem) -> None:
-    """Reference: by hand, −5/100 m; 10 mm and 5 µm lower with play; together √(100/2) rad/s."""
+    """Reference: by hand, −5/100 m, with play 10 mm and 5 µm lower, and √(100/2) rad/s together."""
     rest = equilibrium(pair, pair.load)
     bonded, basis = bonded_system(pair, [rest])
     hung = equilibrium(bonded, bonded.load)
@@ -149,7 +151,9 @@ def test_the_bonded_boom_lacks_the_play_alone(pair: GapSystem) -> None:
 
 
 def test_bonded_system_keeps_the_softening_by_axial_forces(pair: GapSystem) -> None:
-    """Reference: analytic. Of 100 N/m they take 30 N/m, and both swing at √(70/2) rad/s."""
+    """Reference: analytic. Axial forces reduce 100 N/m by 30 N/m, so that both have √(70/2)
+    rad/s.
+    """
     pressed = replace(pair, geometric_stiffness=np.diag([30.0, 0.0]))
     bonded, _ = bonded_system(pressed, [equilibrium(pressed, pressed.load)])
     np.testing.assert_allclose(bonded.omega2, [35.0], rtol=1e-12)
@@ -157,7 +161,7 @@ def test_bonded_system_keeps_the_softening_by_axial_forces(pair: GapSystem) -> N
 
 
 def test_the_ground_is_still_met(pair: GapSystem) -> None:
-    """Reference: by hand. −100 N press it 0.5 m and (100 − 50)/(1e5 + 100) m down."""
+    """Reference: by hand. −100 N move it down by 0.5 m and (100 − 50)/(1e5 + 100) m."""
     bonded, basis = bonded_system(pair, [equilibrium(pair, pair.load)])
     assert (list(bonded.stations), list(bonded.grounded)) == ([2.0], [0])
     deep = basis @ equilibrium(bonded, np.array([0.0, -100.0]) @ basis)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a command says, on streams of every kind, and how ranks end together."""
+"""Output of commands on streams of every kind, and the end of all ranks."""
 
 import io
 import os
@@ -22,7 +22,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def in_a_shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run a command as a shell does; ``check`` alone is that of the coarse case."""
+    """Run a command line in a shell; ``check`` refers to the coarse case."""
     line = line.replace("check", f"check {CASES / 'coarse.toml'}")
     return subprocess.run(
         ["bash", "-o", "pipefail", "-c", f"{sys.executable} -m protractile {line}"],
@@ -47,7 +47,7 @@ def test_a_full_disk_is_one_line() -> None:
     ["check >&-", "check 2>&- >/dev/null", "check | head -n 1", "check | true", "schema | true"],
 )
 def test_closed_output_pipe_ends_without_an_error(line: str) -> None:
-    """The schema is a long text whose reader leaves in the middle."""
+    """The reader of the long schema closes the pipe early."""
     answer = in_a_shell(line)
     assert (answer.returncode, answer.stderr) == (0, "")
 
@@ -81,7 +81,7 @@ def test_the_middle_goes_and_both_ends_stay() -> None:
 
 
 def test_progress_shows_stage_and_remaining_time(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: by hand. Of 40 % in 12 s, 18 s are left; nothing is printed again within 5 s."""
+    """Reference: by hand. After 40 % in 12 s, 18 s remain; nothing is printed again within 5 s."""
     every = 5.0
     monkeypatch.setattr(progress, "EVERY", every)
     said: list[str] = []
@@ -110,7 +110,7 @@ def test_progress_shows_stage_and_remaining_time(monkeypatch: pytest.MonkeyPatch
 
 
 def test_aborts_when_its_line_has_been_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """The reader comes late: whoever asks for the end at once asks before the line is read."""
+    """The reader is late, so that an immediate abort would precede the reading of the line."""
     reader, writer = os.pipe()
     read: list[bytes] = []
     at_abort: list[list[bytes]] = []

@@ -150,7 +150,7 @@ def test_yield_plate_and_deflection_of_a_cantilever(tmp_path: Path) -> None:
 
 
 def test_a_combination_in_motion(tmp_path: Path) -> None:
-    """Reference: analytic. A sudden load deflects twice as far; 97 % is in the first mode."""
+    """Reference: analytic. A sudden load has twice the deflection, 97 % of it in the first mode."""
     found, _ = proofs_of(tmp_path, ARM)
     text = ARM.replace("factors", "motion = true\nfactors", 1).replace("= 1.0 }", "= 0.2 }", 1)
     moved, _ = proofs_of(tmp_path, text)
@@ -183,7 +183,9 @@ def damage_by_hand(x: float, category: float) -> float:
     ("name", "x", "category"), [("collar", 2.0, 50.0), ("diaphragm", 4.0, 71.0)]
 )
 def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float) -> None:
-    """Reference: by hand; the standard rounds its limits to three digits, slope 5 twice that."""
+    """Reference: by hand. The limits of the standard are rounded to three digits, twice with slope
+    5.
+    """
     found, _ = proofs_of(tmp_path, ARM)
     one = found["fatigue", f"{name}, arm"]
     assert one.demand == pytest.approx(damage_by_hand(x, category), rel=5e-3)
@@ -192,8 +194,8 @@ def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float)
 
 
 def test_cycles_of_a_motion(tmp_path: Path) -> None:
-    """Reference: other code path, the fatigue life of a run; of some fifty cycles the run counts
-    one half.
+    """Reference: other code path, the fatigue life of a run, which has half a cycle more out of
+    fifty.
     """
     text = ARM.replace("{ partial", "{ detail_category = 80.0, partial").replace(
         "= 1.0 }", "= 4.0 }", 1
@@ -301,7 +303,9 @@ def test_the_first_screen_of_the_report(tmp_path: Path) -> None:
 
 
 def test_shipped_cases_are_proved() -> None:
-    """Reference: non-regression; slender webs of the crane buckle first, the others hold."""
+    """Reference: non-regression. The slender webs of the crane fail in buckling; other proofs
+    hold.
+    """
     failed, kinds = {}, {}
     for name in ("lift", "inspection-arm", "crane-proof"):
         case = shipped(name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The crane, the arm and the lift that come along rest where a calculation by hand puts them."""
+"""Static states of the shipped crane, arm and lift, compared with calculations by hand."""
 
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
@@ -22,7 +22,9 @@ GRAVITY = 9.80665
 
 @dataclass
 class Pushed:
-    """A segment with what pushes it up: N at x, N/m along it, N·m at x towards a larger slope."""
+    """A segment with upward forces in N at x and in N/m, and moments in N·m towards a larger
+    slope.
+    """
 
     segment: Segment
     along: float
@@ -30,7 +32,7 @@ class Pushed:
     moments: list[tuple[float, float]] = field(default_factory=list)
 
     def turn(self, x: float) -> float:
-        """Of all about x in N·m."""
+        """Return the moment of all forces about x in N·m."""
         middle = 0.5 * (self.segment.start + self.segment.end)
         pushed = sum(f * (at - x) for at, f in self.forces) + sum(m for _, m in self.moments)
         return pushed + self.along * self.segment.length * (middle - x)
@@ -40,7 +42,7 @@ class Pushed:
         return self.along * self.segment.length + sum(f for _, f in self.forces)
 
     def beyond(self, x: float) -> tuple[float, float]:
-        """Moment and shear force that the part beyond x gives to the cut there."""
+        """Return the moment and shear force of the part beyond x on the cross-section at x."""
         rest = self.segment.end - x
         far = [(at, f) for at, f in self.forces if at > x]
         moment = sum(f * (at - x) for at, f in far) + sum(m for at, m in self.moments if at > x)
@@ -54,12 +56,12 @@ def midpoints(joint: Joint) -> tuple[float, float]:
 
 
 def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[float]]:
-    """Lever rule from the tip to the base; forces of the cylinders.
+    """Apply the lever rule from the tip to the base, and return segments and cylinder forces.
 
     Args:
-        boom: level, of segments that are held at two places each, or clamped.
+        boom: level boom; each segment has two supports or stations, or a clamp.
         weight: weight in m/s², downwards.
-        tip: a force at the tip in N, upwards.
+        tip: upward force at the tip in N.
     """
     pushed = [Pushed(segment, -weight * segment.mass_per_length) for segment in boom.segments]
     for one in pushed:
@@ -82,7 +84,7 @@ def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[f
 
 
 def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
-    """Deflection of the tip in m under the weights: the work of a unit force there."""
+    """Return the tip deflection in m under the weights by the unit-load method."""
     (real, presses), (unit, ones) = by_hand(boom, GRAVITY, 0.0), by_hand(boom, 0.0, 1.0)
     points, weights = np.polynomial.legendre.leggauss(3)
     found = 0.0
@@ -108,14 +110,16 @@ def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
 
 
 def level(name: str) -> Case:
-    """Return the horizontal case under its weights alone, without axial forces but of cylinders."""
+    """Return the level case under its weights, without axial forces other than those of
+    cylinders.
+    """
     case = shipped(name)
     gravity = case.gravity.model_copy(update={"angle": 0.0})
     return case.model_copy(update={"gravity": gravity, "axial": (), "loads": ()})
 
 
 def rest_of(case: Case, boom: Boom) -> tuple[StaticState, list[float]]:
-    """At rest on rigid walls, and the stiffness of each joint's contacts along z."""
+    """Return the static state with rigid walls, and the contact stiffness of each joint along z."""
     model = next(model for model in case.models if not model.bonded)
     found = model.model_boom(boom)
     stiffness = [joint.contact.terms[0].stiffness for joint in found.boom.joints]
@@ -127,7 +131,9 @@ LUFFED = [path.stem for path in sorted(CASES.glob("*.toml")) if "depth =" in pat
 
 
 def second_order(boom: Boom, rest: StaticState) -> float:
-    """∫ P w′ dx of all segments in N·m: what axial forces do about the foot as the boom bends."""
+    """Return ∫ P w′ dx of all segments in N·m, the moment of axial forces about the foot by
+    bending.
+    """
     modes = BoomModes(boom, Elements(boom).segments)
     found = 0.0
     for number, segment in enumerate(boom.segments):
@@ -177,7 +183,9 @@ def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None
 
 @pytest.mark.parametrize("name", ["crane", "inspection-arm", "lift"])
 def test_a_boom_rests_where_a_hand_puts_it(name: str) -> None:
-    """Reference: analytic. Lever rule, unit-load method with the play's turns, 0.1 %."""
+    """Reference: analytic, lever rule and unit-load method with the rotations by play, within 0.1
+    %.
+    """
     case = level(name)
     boom = build_boom(case)
     rest, stiffness = rest_of(case, boom)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The report is one file that needs nothing else, shows what the run says, and escapes it."""
+"""The report: a self-contained file with escaped content of the run."""
 
 import base64
 import re
@@ -49,7 +49,7 @@ def figures(tmp_path: Path) -> list[Figure]:
 
 
 class Page(HTMLParser):
-    """Tags with their attributes, and the text outside the style sheet."""
+    """Parser of tags with attributes, and of the text outside the style sheet."""
 
     def __init__(self, text: str) -> None:
         super().__init__()
@@ -151,7 +151,7 @@ def test_is_well_formed(results: Results, figures: list[Figure]) -> None:
 
 
 def test_links_have_targets(page: Page) -> None:
-    """Reference: the ids of the page itself; no id twice, no link into nothing."""
+    """Reference: the ids of the page, which are unique. Every link has a target."""
     ids = [str(attributes["id"]) for _, attributes in page.tags if "id" in attributes]
     assert len(set(ids)) == len(ids)
     links = [str(link["href"]).removeprefix("#") for link in page.all("a")]
@@ -160,7 +160,7 @@ def test_links_have_targets(page: Page) -> None:
 
 
 def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]) -> None:
-    """Reference: S2 is about the tip, S10 about steps, S9 about contact laws."""
+    """Reference: S2 concerns the tip, S10 steps, S9 contact laws."""
     text = report(results, figures)
     rows = {key: text[text.index(f'<tr id="{key}">') :].split("</tr>")[0] for key in STATEMENTS}
     found = {key: re.findall(r'href="#([^"]+)">([^<]+)<', row) for key, row in rows.items()}
@@ -177,7 +177,7 @@ def test_a_verdict_leads_to_its_evidence(results: Results, figures: list[Figure]
 
 
 def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Figure]) -> None:
-    """Reference: the summary; the run ends before the first peak of the series."""
+    """Reference: the summary. The run ends before the first peak of the series."""
     peaks = {name: model.first_peak["tip"].height for name, model in results.summary.models.items()}
     assert (peaks["kantorovich-4"], peaks["beam-fe-bonded"]) == (
         None,
@@ -262,7 +262,7 @@ def told(results: Results) -> list[str]:
 
 
 def test_large_displacement_gives_a_caution(results: Results) -> None:
-    """A tenth of the boom's 19 m: 1.9 m."""
+    """The limit is a tenth of the length of 19 m."""
     assert results.summary.cautions == []
     wild = results.trajectories.copy(deep=True)
     wild["tip"][0, -1] = 2.0
@@ -322,7 +322,7 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     ("name", "cautioned"), [("crane-telescopes", True), ("crane", False), ("drawn-out", False)]
 )
 def test_axial_forces_beyond_the_wall_limit_give_a_caution(name: str, cautioned: bool) -> None:
-    """Reference: by hand; of these booms one alone is both pressed along and drawn out."""
+    """Reference: by hand. Only one of these booms has axial forces and telescopes."""
     shell = model_summary().model_copy(update={"stress": object()})
     boom = build_boom(shipped(name))
     told = list(stress_cautions(summary_of({"beam": model_summary(), "shell": shell}), boom))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""How far the tip swings while a boom is drawn out, and how fast it may be drawn out therefore."""
+"""Residual vibration in telescoping, and admissible speeds."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -59,7 +59,7 @@ def swing_of(case: Case) -> ResidualVibration | None:
 
 
 def lifted(travel: float, time: float) -> GapSystem:
-    """Return a mass on a spring of 1 N/m, and a spring of 3 N/m that a drive moves."""
+    """Return a mass on a spring of 1 N/m, with a spring of 3 N/m that a drive moves."""
     one = np.ones(1)
     table = RowTable.interpolate(lambda s: np.array([[1.0 - 0.5 * s]]), [0.0, 1.0])
     spring = PowerContact(3.0, exponent=1.0)
@@ -68,14 +68,18 @@ def lifted(travel: float, time: float) -> GapSystem:
 
 
 def test_fixed_boom_vibrates_with_its_initial_amplitude() -> None:
-    """Reference (analytic): 1 N on springs of 1 + 3 N/m, from 0, swings by 1/4 m about 1/4 m."""
+    """Reference: analytic. Under 1 N on springs of 1 + 3 N/m, the mass vibrates by 1/4 m about 1/4
+    m.
+    """
     system = replace(lifted(0.0, 1.0), travels=())
     swing, _ = farthest_from_rest(system, simulate(system, 4.0))
     assert swing == pytest.approx(0.25, rel=1e-4)
 
 
 def test_a_slow_drive_swings_about_the_rest_of_each_place() -> None:
-    """Reference (analytic): from 1/4 m to 1 / (1 + 3/4) m within 1 % in 60 s; at once all of it."""
+    """Reference: analytic, from 1/4 m to 1 / (1 + 3/4) m, within 1 % in 60 s. A sudden motion
+    vibrates by the whole difference.
+    """
     way = 1.0 / 1.75 - 0.25
     slow, fast = (
         farthest_from_rest(system, simulate(system, duration, position=[0.25]))[0]
@@ -86,7 +90,7 @@ def test_a_slow_drive_swings_about_the_rest_of_each_place() -> None:
 
 
 def of_follower(load: History) -> float:
-    """Return the vibration in m of the tip that a load of 2 N extends, always in equilibrium."""
+    """Return the vibration in m of a tip that is always in equilibrium under a load of 2 N."""
     loads = [Excitation(np.full(1, 2.0), load)]
     system = replace(lifted(1.0, 10.0), excitations=loads)
     time = np.linspace(0.0, 10.0, 10001)
@@ -101,21 +105,21 @@ WAVE = PiecewiseLinear(np.arange(0.0, 10.0, 0.1).tolist(), [0.0, 1.0, 1.0, 0.0] 
 
 @pytest.mark.parametrize("load", [Sine(5.0), Ramp(0.2), WAVE])
 def test_quasi_static_motion_has_no_residual_vibration(load: History) -> None:
-    """Reference (analytic): F/(1 + 3 r²) of springs of 1 and 3 N/m, a row r; no swing at all, where
-    the load moves it by 0.5 m at least.
+    """Reference: analytic, F/(1 + 3 r²) with springs of 1 and 3 N/m and a row r. There is no
+    vibration, although the load moves the tip by at least 0.5 m.
     """
     assert of_follower(load) < 0.01 * 0.5
 
 
 def test_fast_alternating_load_has_no_residual_vibration() -> None:
-    """Reference: by hand, 5.5 Hz turn 110 times in 10 s; each takes four rests."""
+    """Reference: by hand. 5.5 Hz reverse 110 times in 10 s, with four equilibria each."""
     with pytest.raises(NumericsError, match=r"^loads and drives reverse 110 times, more than 100$"):
         of_follower(Sine(5.5))
 
 
 @pytest.mark.slow
 def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
-    """Reference: the same boom built where the drive begins, and where it ends."""
+    """Reference: the boom built at the initial and at the final extension."""
     drawn = swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.4 }"))
     assert drawn.speed == pytest.approx(10.0)
     for extension, level in (("5.0", drawn.initial), ("9.0", drawn.final)):
@@ -129,7 +133,7 @@ def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
 
 
 def test_boom_at_rest_has_no_residual_vibration(tmp_path: Path) -> None:
-    """Reference: the boom that starts at rest under loads that stay; drawn out fast it swings."""
+    """Reference: the boom at rest under constant loads. Fast telescoping causes vibration."""
     drawn = case(tmp_path, "drive = { travel = 4.0, time = 0.4 }")
     start = drawn.start.model_copy(update={"state": "equilibrium"})
     swing = swing_of(drawn.model_copy(update={"start": start, "loads": ()}))
@@ -146,7 +150,7 @@ def test_unfinished_drive_has_no_residual_vibration(tmp_path: Path) -> None:
     ("level", "fastest"), [(4.0, 2.5), (6.0, 3.0), (1.0, None), (2.99, 2.0), (1.99, 1.0)]
 )
 def test_the_fastest_is_where_lines_cross(level: float, fastest: float | None) -> None:
-    """Reference: by hand; what exceeds the level by less than a hundredth does not."""
+    """Reference: by hand. Less than 1 % above the level does not count."""
     one = VibrationCurve(
         np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {"end": np.full(3, level)}
     )
@@ -154,7 +158,9 @@ def test_the_fastest_is_where_lines_cross(level: float, fastest: float | None) -
 
 
 def swept() -> xr.Dataset:
-    """Invented numbers of three points, the last of which was drawn slowest, the second failed."""
+    """Return invented numbers of three points; the second failed, and the last has the lowest
+    speed.
+    """
     known = {
         "residual_vibration": [0.05, np.nan, 0.02],
         "drive_speed": [2.0, np.nan, 1.0],

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a designer asks first, as the report says it."""
+"""Tables of design results in the report."""
 
 from dataclasses import replace
 from math import log, pi
@@ -42,7 +42,9 @@ def results() -> Results:
 
 
 def answering(results: Results, **changes: Any) -> Results:
-    """Results whose answers say something else of the run, or by ``own`` of the model with play."""
+    """Return results with changed design results of the run, or with ``own`` of the model with
+    play.
+    """
     answers = results.summary.design
     if own := changes.pop("own", None):
         changed = replace(answers.models[PLAYED], **own)
@@ -52,12 +54,12 @@ def answering(results: Results, **changes: Any) -> Results:
 
 
 def cells(table: Table | None) -> dict[str, dict[str, str]]:
-    """Each row by its first cell."""
+    """Return each row by its first cell."""
     return {row[0]: dict(zip(table.headings, row, strict=True)) for row in table.rows}
 
 
 def test_summary_table_equals_the_design_results(results: Results) -> None:
-    """Reference: summary.json, in mm, Hz, s, kN; a swing dies as exp(−2π ζ f t)."""
+    """Reference: summary.json, in mm, Hz, s and kN. A vibration decays as exp(−2π ζ f t)."""
     own = results.summary.design.models[PLAYED]
     found = cells(summary_table(results))
     said = {
@@ -78,7 +80,7 @@ def test_summary_table_equals_the_design_results(results: Results) -> None:
 
 
 def test_period_is_measured_from_the_motion(results: Results) -> None:
-    """Reference (analytic): a tip that moves as 1 − cos; a run without a second peak tells none."""
+    """Reference: analytic, a tip motion 1 − cos. A run without a second peak has no period."""
     assert "Period of the motion (measured), s" not in cells(summary_table(results))
     tip = results.trajectories["tip"]
     moving = tip * 0.0 + 0.1 * (1.0 - np.cos(2.0 * np.pi / 0.15 * tip["time"]))
@@ -87,7 +89,7 @@ def test_period_is_measured_from_the_motion(results: Results) -> None:
 
 
 def test_play_is_said_in_a_sentence(results: Results) -> None:
-    """Reference: by hand, of numbers that are given."""
+    """Reference: by hand, from given numbers."""
     numbers = [
         PlayDifference("deflection at rest", "tip", "m", 0.15, 0.10),
         PlayDifference("first frequency", "bending in z", "Hz", 1.5, 2.0),
@@ -107,7 +109,7 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
 
 
 def test_tables_of_rest_name_their_loads(results: Results) -> None:
-    """Reference: by hand, a hinge whose moment is round-off beside a clamp of 5 kN m."""
+    """Reference: by hand. The moment of a hinge is round-off, compared with 5 kN m of a clamp."""
     bears = [
         Reaction("outer", 0.0, 1e3, 5e3, None),
         Reaction("outer", 3.0, 2e3, 1.6e-7, None),
@@ -123,7 +125,9 @@ def test_tables_of_rest_name_their_loads(results: Results) -> None:
 
 
 def with_stress(results: Results, stress: float) -> Results:
-    """Return results with a stress in Pa at the outer fibre, 10 % more in plates; f_y = 355 MPa."""
+    """Return results with a stress in Pa in the outer fibre, 10 % more in plates, and f_y = 355
+    MPa.
+    """
     moved = results.summary.design.models[PLAYED].motion
     fibre = replace(moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
     patch = 1.1 * stress
@@ -151,7 +155,7 @@ def test_stresses_near_the_yield_strength_are_marked(results: Results) -> None:
 
 
 def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> None:
-    """Reference: by hand, as above; without a yield strength nothing is told."""
+    """Reference: by hand, as above. Without a yield strength there is no verdict."""
     assert utilisation_verdict(results) == ""
     assert utilisation_verdict(with_stress(results, 340e6)) == (
         "Utilisation 105 % at plate, outer segment, x = 10 m: exceeds yield; 95.8 % at outer "
@@ -161,7 +165,7 @@ def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> 
 
 
 def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
-    """Reference: by hand, a pad without an allowable pressure, and one that nothing presses."""
+    """Reference: by hand, a pad without an allowable pressure, and an unloaded pad."""
     of = {"model": PLAYED, "outer": "outer", "inner": "inner", "x": 10.0, "side": "below"}
     pad = PadLoad(**of, force=2.7e3, pressure=27e6, utilisation=None)
     steel = change(results.case, **{"material.yield_strength": 355e6})
@@ -197,7 +201,7 @@ def test_exhausted_fatigue_life_exceeds_the_limit(results: Results) -> None:
 
 
 def test_the_tip_travels_from_where_it_is_at_first(results: Results) -> None:
-    """Reference: by hand, of a tip that is moved by 20 mm; one that starts at zero tells once."""
+    """Reference: by hand, a tip that starts at 20 mm. A tip that starts at 0 has one number."""
     assert "Tip travel from t = 0, mm" not in cells(summary_table(results))
     tip = results.trajectories["tip"]
     moved = replace(results, trajectories=results.trajectories.assign(tip=tip - 0.02))
@@ -208,7 +212,7 @@ def test_the_tip_travels_from_where_it_is_at_first(results: Results) -> None:
 
 
 def test_one_line_says_how_near_models_are(results: Results) -> None:
-    """Reference: by hand, a second model whose tip rests a tenth lower."""
+    """Reference: by hand, a second model with a static tip lower by a tenth."""
     assert deviation_note(results) == ""
     answers = results.summary.design
     own = answers.models[PLAYED]
@@ -232,7 +236,7 @@ def test_one_line_says_how_near_models_are(results: Results) -> None:
 
 
 def test_every_answer_has_its_table(results: Results) -> None:
-    """Reference: what a beam with play leaves."""
+    """Reference: the results of a beam with play."""
     titles = [table.name for table in result_tables(results)]
     expected = ["play", "tilts", "pressed", "reactions", "modes", "peaks", "stress"]
     assert titles == [*expected, *(["life"] if HAS_RAINFLOW else [])]

@@ -206,13 +206,13 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
     ],
 )  # fmt: skip
 def test_unusual_numbers_give_cautions(tmp_path: Path, old: str, new: str, line: str) -> None:
-    """Each on its slip alone."""
+    """Each number causes only its own caution."""
     case = read_case(tmp_path, edited(old, new))
     assert proportion_cautions(case, build_boom(case)) == [f"caution: {line}"]
 
 
 def test_a_run_shorter_than_a_swing_is_told(tmp_path: Path) -> None:
-    """Reference: the frequency that stands above it."""
+    """Reference: the frequency in the line above."""
     shown = printed_check(read_case(tmp_path, edited("duration = 3.0", "duration = 0.2")))
     line = (
         "caution: time.duration: the run of 0.2 s is shorter than one period in the beam estimate, "
@@ -291,7 +291,7 @@ duration = 1.0
 
 
 def slips_of(folder: Path, old: str, new: str) -> list[str]:
-    """Of the case with something else in place of what it says."""
+    """Return the cautions of the case with a replacement."""
     assert CASE.count(old) == 1 or old == ""
     case = read_case(folder, CASE.replace(old, new) if old else CASE)
     return proportion_cautions(case, build_boom(case))
@@ -345,7 +345,9 @@ def test_each_slip_is_told(tmp_path: Path, old: str, new: str, slip: str) -> Non
 
 
 def test_folds_and_heads_are_walls_too(tmp_path: Path) -> None:
-    """Reference: by hand, a chamfer of 50 mm is √2 · 50 mm wide; so at a taper's head alone."""
+    """Reference: by hand. A chamfer of 50 mm is √2 · 50 mm wide, also at the head of a taper
+    only.
+    """
     box = "section = { height = 0.36, width = 0.26, flange = 0.006, web = 0.005 }"
     assert CASE.count(box) == 1
     fold = (

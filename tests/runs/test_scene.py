@@ -61,7 +61,7 @@ def test_displacement_is_the_sum_of_the_modes(shell: Scene) -> None:
 
 
 def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
-    """Reference (analytic): the inner segment is 1 m farther in at 0.5 s, the outer one stays."""
+    """Reference: analytic. At 0.5 s the inner segment has moved inwards by 1 m."""
     assert not shell.along(0.5).any()
     assert not shell.telescopes(shell.overlaps[0])
     out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
@@ -73,7 +73,7 @@ def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
 
 
 def test_supports_and_forces_are_marked(shell: Scene) -> None:
-    """Reference: the case. Two supports that stand, and arrows along both segments."""
+    """Reference: the case, with two fixed supports, and arrows along both segments."""
     held = [symbol for symbol in shell.symbols if symbol.grounded]
     assert [(symbol.kind, symbol.segment, symbol.places) for symbol in held] == [
         ("supports", 0, (0.0,)),
@@ -85,7 +85,7 @@ def test_supports_and_forces_are_marked(shell: Scene) -> None:
 
 
 def test_the_change_of_a_sections_shape_leaves_out_its_motion_as_a_whole(shell: Scene) -> None:
-    """Reference: analytic. A section that widens by c y while it moves and turns by φ."""
+    """Reference: analytic, a section that widens by c y, moves and rotates by φ."""
     _, y, z = shell.points.T
     moved = np.stack([0.0 * y, 0.03 - 0.02 * z + 0.01 * y, -0.05 + 0.02 * y], axis=1)
     places, change = change_of_shape(shell, moved, 1, 10.0)
@@ -101,8 +101,8 @@ def test_the_change_of_a_sections_shape_leaves_out_its_motion_as_a_whole(shell: 
 def test_contact_in_the_run_is_contact_in_the_picture(
     shell: Scene, scale: float, section: float
 ) -> None:
-    """Reference: analytic. In contact the mid-surfaces of two walls are one wall thickness
-    apart; on the opposite side the distance is larger by twice the clearance.
+    """Reference: analytic. In contact the distance of the mid-surfaces is a wall thickness. On the
+    opposite side it is larger by twice the clearance.
     """
     (overlap,) = shell.overlaps
     assert overlap == (0, 1, [0, 1], [9.0, 10.0], CLEARANCE)
@@ -117,7 +117,7 @@ def test_contact_in_the_run_is_contact_in_the_picture(
 
 @pytest.fixture(scope="module")
 def in_space(shell: Scene) -> list[Scene]:
-    """Two joints along z and y, and a stop, which is no contact of segments; side and above."""
+    """Return the views from the side and from above of two joints along z and y, and a stop."""
     boom = build_boom(shipped("inspection-arm"))
     boom = replace(
         boom, stops=(Stop(1, boom.joints[0].stations[0], 0.04, PowerContact(1e9, 1.0).upper()),)
@@ -149,7 +149,7 @@ def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
 def test_of_several_joints_the_pressed_one_is_named(
     in_space: list[Scene], station: int, place: str
 ) -> None:
-    """Reference: the fixture. One station with a force, up or down, the others with none."""
+    """Reference: the fixture, with a force up or down at one station only."""
     side, above = in_space
     peak = xr.zeros_like(side.motion["contact_force_peak"])
     peak[200, station] = (-1.0) ** (station // 2) * 3.0e4
@@ -162,8 +162,8 @@ def test_the_only_joint_is_not_named(shell: Scene) -> None:
 
 
 def test_from_above_y_points_up(shell: Scene) -> None:
-    """Reference: analytic. A boom in space, turned so that its width is its height; what moves up
-    comes towards the eye.
+    """Reference: analytic, a boom in space rotated about x. Upward displacements point to the
+    viewer.
     """
     motion = moving_trajectories().sel(model="shell").isel(station=[0, 1, 0, 1])
     motion = motion.assign(tip_lateral=-2.0 * motion["tip"])
@@ -184,8 +184,8 @@ def test_scale_is_round_and_fits(largest: float, scale: float) -> None:
 
 
 def test_the_motion_of_an_overlap_as_a_whole_is_left_out(shell: Scene) -> None:
-    """Reference: analytic. Of a parabola w = c x² over 1 m a chord's turn is taken, at the chord's
-    middle w″/12 · (1/2)² of it is left at most; the inner segment keeps how it lies beside it.
+    """Reference: analytic, a parabola w = c x² over 1 m. Without its rigid motion, at most w″/12 ·
+    (1/2)² remains in the middle. The relative displacement of the inner segment is preserved.
     """
     whole, left = shell.displacement(0.5), shell.relative_displacements(0.5, 0, (9.0, 10.0))
     x, _, z = shell.points.T
@@ -204,8 +204,8 @@ def test_the_motion_of_an_overlap_as_a_whole_is_left_out(shell: Scene) -> None:
 
 
 def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
-    """Reference: analytic. What is the same all over a wall stays so up to its folds; a field that
-    is linear along x is met between the triangles around a point.
+    """Reference: analytic. A uniform stress of a wall stays uniform up to its folds. A linear field
+    along x is the mean of the triangles around a point.
     """
     stress = shell.stress
     walls = stress.wall.astype(float) + 10.0 * shell.segment
@@ -223,7 +223,7 @@ def still(boom: Boom, output: BeamOutput) -> tuple[Scene, np.ndarray]:
 
 
 def bent(boom: Boom) -> BeamOutput:
-    """Both segments along w = t x²/100, with the moment of that curvature in each."""
+    """Return both segments with the deflection w = t x²/100, and the moment of this curvature."""
     time = np.array([0.0, 0.5, 1.0])
     segments = []
     for segment in boom.segments:
@@ -236,8 +236,8 @@ def bent(boom: Boom) -> BeamOutput:
 
 
 def test_sections_stay_plane_and_follow_their_axis(paper_boom: Boom) -> None:
-    """Reference (analytic): at the end of the boom w = 3.61 m and w′ = 0.38, of which the points of
-    a section at z have z w′ along x.
+    """Reference: analytic. At the end of the boom w = 3.61 m and w′ = 0.38, and points at z move by
+    −z w′ along x.
     """
     scene, _ = still(paper_boom, bent(paper_boom))
     ends = scene.points[:, 0] == paper_boom.tip
@@ -249,7 +249,7 @@ def test_sections_stay_plane_and_follow_their_axis(paper_boom: Boom) -> None:
 
 
 def test_bending_stress_follows_the_curvature(paper_boom: Boom) -> None:
-    """Reference (analytic): σ = E κ z at the flanges of the outer box, κ = 0.02 1/m."""
+    """Reference: analytic, σ = E κ z at the flanges of the outer box, κ = 0.02 1/m."""
     scene, stress = still(paper_boom, bent(paper_boom))
     highest = scene.half_height(0)
     assert stress[0].max() == 0.0
@@ -273,7 +273,9 @@ def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
 
 
 def test_play_stays_visible_between_beams(paper_boom: Boom) -> None:
-    """Reference: the inner section is drawn lower than the outer one by more than both plays."""
+    """Reference: the displayed inner section is less high than the outer one by more than both
+    plays.
+    """
     scene, _ = still(paper_boom, bent(paper_boom))
     drawn = scene.magnify(np.zeros_like(scene.points), 10.0)
     outer, inner = (drawn[scene.owner == number, 2].max() for number in (0, 1))
@@ -281,7 +283,7 @@ def test_play_stays_visible_between_beams(paper_boom: Boom) -> None:
 
 
 def test_values_at_jumps_are_read_beyond_the_jump() -> None:
-    """Reference: by hand; a place that stands twice stays once."""
+    """Reference: by hand. Double positions become single."""
     rows = np.array([[0.0], [1.0], [5.0], [0.0]])
     line = Line(np.array([0.0, 1.0, 1.0, 2.0]), {"moment": rows}, {})
     data = xr.Dataset(coords={"time": np.array([0.0, 1.0])})
@@ -302,7 +304,9 @@ def legend(sheet: Figure) -> list[str]:
 
 
 def test_a_lift_stands_at_its_angle() -> None:
-    """Reference (analytic): a tip 15.7 m from the foot at 45 degrees is 11.10 m off and high."""
+    """Reference: analytic. A tip at 15.7 m and 45 degrees is 11.10 m away from and above the
+    foot.
+    """
     whole = drawn("lift").axes[0]
     places = np.concatenate([line.get_xydata() for line in whole.lines])
     for reference in ((11.1016, 11.1016), (1.2728, -0.2828)):
@@ -311,7 +315,7 @@ def test_a_lift_stands_at_its_angle() -> None:
 
 
 def test_unequal_walls_are_labelled() -> None:
-    """Reference: the case files; the lift's last box has walls of one thickness."""
+    """Reference: the case files. The last box of the lift has equal walls."""
 
     def sizes(name: str) -> list[str]:
         texts = [text.get_text() for axes in drawn(name).axes for text in axes.texts]
@@ -332,7 +336,7 @@ def test_drawing_of_a_lift_labels_every_part() -> None:
 
 
 def test_boom_in_space_shows_lateral_loads() -> None:
-    """Reference: the case file; its gust is at most 1 times what its tables say."""
+    """Reference: the case file. The largest factor of its gust is 1."""
     found = legend(drawn("inspection-arm"))
     assert "sideways 4 mm" in found
     assert any("N/m sideways at most, root" in text for text in found)
@@ -340,7 +344,7 @@ def test_boom_in_space_shows_lateral_loads() -> None:
 
 @pytest.mark.parametrize("name", ["paper", "crane", "three-segments"])
 def test_sections_are_as_large_as_the_case_says(name: str) -> None:
-    """Reference: the boom's plates; patches of one panel have one scale."""
+    """Reference: the plates of the boom. All sections of a panel have the same scale."""
     boom = build_boom(shipped(name))
     panel = next(axes for axes in drawn(name).axes if axes.get_title("left").startswith("sections"))
     assert panel.get_aspect() == 1.0
@@ -354,8 +358,8 @@ def test_sections_are_as_large_as_the_case_says(name: str) -> None:
 
 
 def test_a_force_down_points_down() -> None:
-    """Reference: an arrow's head is at the place that it marks; on a boom that stands upright what
-    acts across it comes from the left, and a payload hangs all the same.
+    """Reference: the head of an arrow is at the loaded point. On an upright boom, forces across it
+    come from the left, and a payload still hangs down.
     """
     case = shipped("crane")
     acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
@@ -388,13 +392,13 @@ def shown() -> View:
 
 
 def places(page: dict[str, Any]) -> np.ndarray:
-    """(num_frames, num_points, 3) as the page's script sums them."""
+    """Return displayed points (num_frames, num_points, 3), summed as in the script of the page."""
     shapes = page["shapes"].astype(float)
     return page["points"] + np.tensordot(np.array(page["parts"]), shapes, axes=1)
 
 
 def test_a_page_shows_the_drawn_places_and_stresses(shown: View) -> None:
-    """Reference: the scene's own places; 16 bits of each shape, 8 of the stress."""
+    """Reference: the points of the scene, with 16 bits for each shape and 8 for stress."""
     page, scene = pack_view(shown, 0.0), shown.scene
     expected = [scene.magnify(moved, page["magnified"]) for moved in scene.displacements(FRAMES)]
     largest = float(np.abs(np.subtract(expected, expected[0])).max())
@@ -406,8 +410,8 @@ def test_a_page_shows_the_drawn_places_and_stresses(shown: View) -> None:
 
 
 def test_drives_move_segments_in_the_viewer(shown: View) -> None:
-    """Reference (analytic): the inner segment moves back along x by 2 m a second, the outer one
-    not; both bend as they do without a drive.
+    """Reference: analytic. The inner segment moves inwards by 2 m per second. Both segments bend as
+    without a drive.
     """
     out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
     boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
@@ -426,8 +430,8 @@ def test_drives_move_segments_in_the_viewer(shown: View) -> None:
 
 
 def test_symbols_follow_the_boom_and_its_supports_stay(shown: View) -> None:
-    """Reference (analytic): the heads of the arrows are at the lower edge of the segment that they
-    load, in its plane of symmetry; hinges stand at 0 and 2 m.
+    """Reference: analytic. Heads of arrows are at the lower edge of the loaded segment, in its
+    plane of symmetry. Hinges are at 0 and 2 m.
     """
     scene = shown.scene
     scale = pack_view(shown, 0.0)["magnified"]
@@ -446,7 +450,7 @@ def test_symbols_follow_the_boom_and_its_supports_stay(shown: View) -> None:
 
 
 def test_few_shapes_leave_little() -> None:
-    """Reference: the motion itself, of 3 shapes and a noise below what may be left."""
+    """Reference: the motion, with 3 shapes and a noise below the permitted error."""
     rng = np.random.default_rng(1)
     moved = rng.standard_normal((40, 3)) @ rng.standard_normal((3, 300))
     noise = 0.1 * TRUNCATION * np.abs(moved).max() * rng.uniform(-1.0, 1.0, moved.shape)
@@ -456,7 +460,7 @@ def test_few_shapes_leave_little() -> None:
 
 
 def test_a_slope_raises_points_and_shapes_alike(shown: View) -> None:
-    """Reference (analytic): at 90 degrees x points up, and z backwards."""
+    """Reference: analytic. At 90 degrees x points upwards and z backwards."""
     flat, risen = (places(pack_view(shown, angle)) for angle in (0.0, 90.0))
     expected = np.stack([-flat[..., 2], flat[..., 1], flat[..., 0]], axis=-1)
     np.testing.assert_allclose(risen, expected, atol=1e-3)

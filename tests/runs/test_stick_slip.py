@@ -74,12 +74,12 @@ def drawn_by(folder: Path, rope: str, **others: str) -> Case:
     ],
 )  # fmt: skip
 def test_slips_in_a_drive(tmp_path: Path, rope: str, message: str) -> None:
-    """Reference: the line that a user reads."""
+    """Reference: exact message."""
     assert refusal(tmp_path, changed_text({"least_overlap = 1.0 }": rope})) == message
 
 
 def test_nothing_sticks_where_nothing_rubs(tmp_path: Path) -> None:
-    """Reference: the line that a user reads."""
+    """Reference: exact message."""
     changes = {"least_overlap = 1.0 }": ROPE, "friction = 0.2 ": "# "}
     assert refusal(tmp_path, changed_text(changes)) == (
         "joint[1].drive.static_friction: nothing rubs in the joint; give it friction, or leave "
