@@ -85,7 +85,7 @@ def check_contacts_at_rest(boom: Boom) -> None:
         body = next(_segments_in_motion(bodies, free))
         raise BoomError(
             body.key,
-            f"the loads of t = 0 lift {body.segment.name!r} off its one-way supports, and nothing "
+            f"the loads at t = 0 lift {body.segment.name!r} off its one-way supports, and nothing "
             "else holds it: give it two supports, or a stop that holds both ways",
         )
 

@@ -152,13 +152,13 @@ class StartTable(CaseTable):
     """The state at t = 0."""
 
     state: Literal["rest", "equilibrium"] = "rest"
-    """straight and unloaded, or at rest under the loads of t = 0"""
+    """straight and unloaded, or at rest under the loads at t = 0"""
     velocity: dict[str, Velocity] = Field(default_factory=dict)
     """segment = velocity along z in m/s, or a table with further components"""
 
     @property
     def at_rest(self) -> bool:
-        """True if the boom starts at rest under the loads of t = 0."""
+        """True if the boom starts at rest under the loads at t = 0."""
         return self.state == "equilibrium"
 
 

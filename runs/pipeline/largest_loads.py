@@ -252,7 +252,7 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         ]
     if any(used):
         columns.append(Column("utilisation", used, ".3g", "%"))
-    more = ["Drives stay where they are at t = 0."] if boom.telescopes else []
+    more = ["Extensions are those at t = 0."] if boom.telescopes else []
     if any(joint.padded for joint in boom.joints):
         more.append("The plate stresses at the pads are not included; a run with a shell has them.")
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
@@ -296,11 +296,11 @@ def overload_cautions(
         for one in extremes
         if one.name == "tip" and one.time > 0.0
         for caution in tip_cautions(
-            f"under the loads of t = {one.time:.4g} s", one.largest, boom, advise
+            f"under the loads at t = {one.time:.4g} s", one.largest, boom, advise
         )
     ]
     return far + [
-        f"caution: at rest under the loads of t = {one.time:.4g} s the utilisation is {used}"
+        f"caution: at rest under the loads at t = {one.time:.4g} s the utilisation is {used}"
         for one in extremes
         if (used := one.utilisation) is not None and (used.value or 0.0) > 1.0
     ]

@@ -42,7 +42,7 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     caution = "caution: walls" if part > GOVERNING_SHARE else "Walls"
     yield (
         f"{caution} bend under pads, which moves the tip by {milli(share)} of {milli(tip)} mm, "
-        f"{100.0 * part:.2g} %, under the loads of t = {time:.4g} s (estimate from plates)."
+        f"{100.0 * part:.2g} %, under the loads at t = {time:.4g} s (estimate from plates)."
     )
     if part < LARGE_SHARE:
         return
@@ -82,8 +82,8 @@ def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
     if not names or not any(joint.padded for joint in boom.joints):
         return ""
     return (
-        f"Walls under pads are rigid in {join_words(names)}. The estimates of `check`, shells and "
-        "beams that a shell calibrates include their compliance."
+        f"Walls under pads are rigid in {join_words(names)}. Shells, calibrated beams and the "
+        "estimates of `check` include their compliance."
     )
 
 

@@ -106,7 +106,7 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
     if case.gravity is not None and not case.start.at_rest and any(moves):
         yield (
             "start.state: the boom starts straight and falls under its weight while other loads "
-            "act; give 'equilibrium' to start at rest under the loads of t = 0"
+            "act; give 'equilibrium' to start at rest under the loads at t = 0"
         )
     angle = 0.0 if case.gravity is None else case.gravity.angle
     if LEVEL_ANGLE < abs(angle) <= 0.5 * np.pi:

@@ -42,7 +42,7 @@ class ResidualVibration(Record):
     title = "Residual vibration during telescoping"
     notes = (
         "Largest distance of the tip from its static position at the current extension and under "
-        "the current loads; beside it the same distance for the boom without telescoping.",
+        "the current loads. Last columns: the same distance for the boom without telescoping.",
     )
 
     #: largest distance of the tip from equilibrium in m

@@ -62,7 +62,7 @@ def test_a_boom_is_held(paper_boom: Boom, case: Mapping[str, Any]) -> None:
 
 
 LIFTED = (
-    "the loads of t = 0 lift 'outer' off its one-way supports, and nothing else holds it: give it "
+    "the loads at t = 0 lift 'outer' off its one-way supports, and nothing else holds it: give it "
     "two supports, or a stop that holds both ways"
 )
 LOOSE = (
@@ -93,7 +93,7 @@ def test_a_collar_presses_a_stop_by_its_weight(steel: Material) -> None:
     check_contacts_at_rest(
         Boom((replace(arm, collars=(Collar((0.0, 1.0), 0.03),)),), (), (weight,), (rest,))
     )
-    with pytest.raises(BoomError, match="the loads of t = 0 lift 'arm'"):
+    with pytest.raises(BoomError, match="the loads at t = 0 lift 'arm'"):
         check_contacts_at_rest(Boom((arm,), (), (weight,), (rest,)))
 
 

@@ -108,12 +108,12 @@ def test_overloads_are_cautions(tmp_path: Path) -> None:
     far = StaticExtreme("tip", "tip", "m", -0.1, -1.4, 0.25)
     boom = build_boom(read_case(tmp_path, text))
     assert overload_cautions([far, *found[1:]], boom) == [
-        "caution: under the loads of t = 0.25 s the tip rests at -1.4 m, "
+        "caution: under the loads at t = 0.25 s the tip rests at -1.4 m, "
         f"{140.0 / boom.length:.2g} % of the boom's length and more than 5 %: small-displacement "
         "theory is not valid; check units and loads",
-        "caution: at rest under the loads of t = 0 s the utilisation is 339 % at pad, fly segment, "
+        "caution: at rest under the loads at t = 0 s the utilisation is 339 % at pad, fly segment, "
         "x = 6 m: exceeds the allowable pressure",
-        "caution: at rest under the loads of t = 0 s the utilisation is 439 % at pad, fly segment, "
+        "caution: at rest under the loads at t = 0 s the utilisation is 439 % at pad, fly segment, "
         "x = 8 m: exceeds the allowable pressure",
     ]
 

@@ -182,7 +182,7 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
          "depths are positive"),
         ('state = "equilibrium"', 'state = "rest"',
          "start.state: the boom starts straight and falls under its weight while other loads act; "
-         "give 'equilibrium' to start at rest under the loads of t = 0"),
+         "give 'equilibrium' to start at rest under the loads at t = 0"),
         ("play = 0.003", "play = 0.03",
          "joint[1].play: the play of 'fly' is 0.03 m, usual is from 0.0001 up to 0.018 m; if it is "
          "in cm, give 0.0003 m"),
