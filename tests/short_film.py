@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A film of three frames in every process: the number of frames costs time alone."""
+"""A film of only three frames, to save time in every process."""
 
 from pathlib import Path
 from typing import Any

@@ -65,7 +65,7 @@ def test_a_normal_force_has_both_sides_of_a_jump() -> None:
 
 
 def test_shear_force_uses_the_extended_axial_forces() -> None:
-    """Reference: by hand, 1 kN on a column under 20 % of Euler's force, drawn from 2 to 5 m."""
+    """Reference: by hand, 1 kN on a column under 20 % of Euler's force, extended from 2 to 5 m."""
     force = 0.2 * np.pi**2 * STIFFNESS / (4.0 * LENGTH**2)
     boom = replace(column(force), loads=(Load(0, "z", -1.0e3, LENGTH, Step()),))
     models = finite_element_segments(boom, 0.25, "euler-bernoulli", False)
@@ -87,7 +87,7 @@ FORCE = ACROSS * 10.0 * 4.0 / (0.6 * 3.0)
 
 
 def test_a_cylinder_pulls_the_boom_off_its_pin(answers: DesignResults) -> None:
-    """Reference: by hand. Its push along the boom, 4/5 of it, goes through the part between."""
+    """Reference: by hand. 4/5 of its force act along the boom, between the pin and the lug."""
     (rest,) = answers.models["beam"].static
     assert rest.cylinders["cylinder_force"] == pytest.approx(FORCE, rel=1e-3)
     (arm,) = rest.diagrams
@@ -100,7 +100,7 @@ def test_a_cylinder_pulls_the_boom_off_its_pin(answers: DesignResults) -> None:
 
 
 def test_pin_carries_axial_forces(answers: DesignResults) -> None:
-    """Reference: by hand, both parts and together, at rest and as the beam stays there."""
+    """Reference: by hand, both components and the resultant, at rest and in a motion from rest."""
     along, across = 10.0 * ALONG - 0.8 * FORCE, 10.0 * ACROSS - 0.6 * FORCE
     pin, lug = answers.reactions
     assert pin.along == pytest.approx(along, rel=1e-3)
@@ -117,14 +117,14 @@ def test_pin_carries_axial_forces(answers: DesignResults) -> None:
 
 
 def test_pin_carries_a_mass_at_the_pin(tmp_path: Path) -> None:
-    """Reference: by hand, as above with 200 kg at the pin, which turn nothing."""
+    """Reference: by hand, as above with 200 kg at the pin, which have no moment."""
     text = CASE.replace("[[cylinder]]", "masses = [{ x = 1.0, mass = 200.0 }]\n[[cylinder]]")
     pin, _ = answers_of(read_case(tmp_path, text)).reactions
     assert pin.along == pytest.approx(10.0 * ALONG + 1000.0 - 0.8 * FORCE, rel=1e-3)
 
 
 def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
-    """Reference: by hand, of the arm without what is before its pin."""
+    """Reference: by hand, the arm without the part before its pin."""
     text = CASE.replace("span = [0.0, 10.0]", "span = [1.0, 10.0]")
     force = ACROSS * 9.0 * 4.5 / (0.6 * 3.0)
     moved = answers_of(read_case(tmp_path, text)).models["beam"].motion
@@ -133,7 +133,7 @@ def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
 
 
 def test_the_fibre_feels_the_normal_force(answers: DesignResults) -> None:
-    """Reference: by hand, M z/J + N/A before the lug, where M is q 6²/2."""
+    """Reference: by hand, M z/J + N/A before the lug, with M = q 6²/2."""
     moved = answers.models["beam"].motion
     (fibre,) = moved.fibres
     bent = 0.5 * ACROSS * 6.0**2 * 0.204 / BOX.second_moment_of_area

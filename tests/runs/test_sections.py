@@ -104,7 +104,7 @@ def test_a_box_written_as_a_polygon_has_the_numbers_of_the_box(name: str) -> Non
 
 
 def test_unequal_webs_are_refused() -> None:
-    """They would bend sideways under their weight, which a boom in its plane does not know."""
+    """They would bend laterally under their weight, which a flat boom does not model."""
     message = (
         "case.toml: segment[1].section: does not mirror itself in y, and would bend sideways under "
         "its weight"
@@ -161,6 +161,6 @@ def test_a_segment_tapers_to_its_head() -> None:
     ],
 )  # fmt: skip
 def test_no_other_head_is_one(head: str, own: str, message: str) -> None:
-    """Reference: the message."""
+    """Reference: exact message."""
     with refused(f"case.toml: {message}"):
         load(_tapering(head, own))

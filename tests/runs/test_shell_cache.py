@@ -87,8 +87,8 @@ def varied(case: Case, play: float, times: float, ramp: float) -> Case:
 
 
 def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) -> None:
-    """Reference: other code, the same boom reduced with its own play and loads, by contact
-    compliances.
+    """Reference: other code path, the same boom reduced with its own play and loads. Contact
+    compliances are compared.
     """
     cache = Cache(tmp_path / "cache")
     reduce(varied(case, 0.014, 1.0, 0.5), cache)
@@ -110,7 +110,7 @@ def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) ->
 
 
 def test_of_two_at_a_time_one_reduces(case: Case, tmp_path: Path) -> None:
-    """Reference: by construction. Another process has the lock, and keeps the shell meanwhile."""
+    """Reference: by construction. Another process has the lock, and stores the shell meanwhile."""
     cache = Cache(tmp_path / "cache")
     shell = reduce(case, None)
     other = os.fork()
@@ -158,7 +158,7 @@ def test_a_damaged_entry_is_made_again(
 def test_entry_of_another_type_is_made_again(
     case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """Though its checksum is right."""
+    """The entry has a correct checksum."""
     cache = Cache(tmp_path / "cache")
     reduce(case, cache)
     (entry,) = entries(cache)

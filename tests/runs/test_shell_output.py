@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a shell leaves besides its trajectory."""
+"""Output of a shell besides its trajectory."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ pytestmark = pytest.mark.slow
 
 
 def output(boom: Boom) -> ShellOutput:
-    """Of a shell that rests for one second."""
+    """Return the output of a shell at rest for one second."""
     shell = reduce_boom(touching(boom, LAW, LATERAL_LAW), ShellOptions(0.5), MPI.COMM_SELF)
     time = np.array([0.0, 1.0])
     data = xr.Dataset(coords={"time": time})

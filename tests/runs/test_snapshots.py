@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A snapshot's caption says when it is, what is coloured, and whose it is."""
+"""Captions of snapshots: instant, colours, and model."""
 
 import os
 from collections.abc import Callable
@@ -24,8 +24,8 @@ TIME = np.arange(1001) / 1000
 
 
 def results(*shells: str) -> Results:
-    """Shells whose tips swing once a second by 100 mm, to the sides half as far and more slowly,
-    and touch at 0.25 s with 2 kN.
+    """Return shells with a vibration of the tip by 100 mm once per second, half as much and slower
+    laterally, and a contact of 2 kN at 0.25 s.
     """
     case = case_file.select(shipped("coarse"), "", ["shell"], None)
     models = tuple(case.models[0].model_copy(update={"name": name}) for name in shells)
@@ -114,7 +114,7 @@ def test_failing_picture_process_is_reported(
     error: type[Exception],
     message: str,
 ) -> None:
-    """Reference: processes that die, or do not end."""
+    """Reference: processes that are killed, or do not end."""
     monkeypatch.setattr(opengl, "render_test_picture", work)
     monkeypatch.setattr(opengl, "PROBE", probe)
     monkeypatch.setattr(opengl, "PROBE_SECONDS", seconds)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The shell that many booms share is that of each, whatever its loads."""
+"""Shared shells of booms with different loads."""
 
 from pathlib import Path
 
@@ -47,7 +47,7 @@ stiffness = 1e9
 
 
 def at_rest(folder: Path, text: str) -> tuple[Boom, GapSystem, Array]:
-    """Return a boom, its shell and where that rests."""
+    """Return a boom, its shell and the equilibrium of the shell."""
     case = read_case(folder, CASE + text)
     boom = build_boom(case)
     system = build(case, boom, case.models[0], BuildContext(MPI.COMM_SELF)).system.gather_loads()
@@ -55,7 +55,7 @@ def at_rest(folder: Path, text: str) -> tuple[Boom, GapSystem, Array]:
 
 
 def test_boom_held_by_its_weight_becomes_a_shell(tmp_path: Path) -> None:
-    """Reference: analytic. The stop bears M g · 3/5 of a beam of 6 m over a lever of 5 m."""
+    """Reference: analytic. The stop at 5 m carries M g · 3/5 of a beam of 6 m."""
     boom, system, position = at_rest(tmp_path, RESTING)
     (gap,) = system.rows @ position
     weight = 9.80665 * boom.segments[0].mass_per_length * 6.0

@@ -43,7 +43,7 @@ def told(case: Case) -> list[str]:
 
 
 def test_masses_forces_and_tips_are_those_of_hand() -> None:
-    """Reference: by hand, the lever rule; other code, 9.916 mm of elements; play adds 7 + 14 · 9
+    """Reference: by hand, the lever rule; other code, 9.916 mm by elements. Play adds 7 + 14 · 9
     mm.
     """
     lines = told(shipped("coarse"))
@@ -66,7 +66,7 @@ def test_masses_forces_and_tips_are_those_of_hand() -> None:
 
 
 def test_unequal_plays_are_not_pressed_in() -> None:
-    """Reference: by hand, √(F/k) of 2.2 and 2.8 kN on 1e13 N/m², whatever the play above."""
+    """Reference: by hand, √(F/k) for 2.2 and 2.8 kN on 1e13 N/m², for any play above."""
     case = shipped("coarse")
     (joint,) = case.joints
     joint = replace(joint, play_above=0.001)
@@ -81,7 +81,7 @@ def test_unequal_plays_are_not_pressed_in() -> None:
 
 
 def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
-    """Reference: by hand. The tip of 9.916 mm presses a stop of 10 N/m, 5 mm above, by 4.916 mm."""
+    """Reference: by hand. A tip at 9.916 mm compresses a stop of 10 N/m at 5 mm by 4.916 mm."""
     case = shipped("coarse")
     bonded = tuple(model for model in case.models if model.bonded)
     stop = StopTable("inner", Distance(head=0.0), play=0.01, stiffness=10.0)
@@ -112,7 +112,7 @@ diaphragms = [{ x = "head", thickness = 0.05 }]
 
 
 def test_stiffeners_weigh_across_as_along(tmp_path: Path) -> None:
-    """Reference: by hand, plates times density; under 45° as much across as along."""
+    """Reference: by hand, plates times density. At 45°, both components are equal."""
     case = read_case(tmp_path, STIFFENED)
     plain = 2.0 * (0.2 * 0.006 + 0.3 * 0.005) * 6.0 * 8000.0
     collar, lid = 1.0 * 0.02 * 8000.0, 0.2 * 0.3 * 0.05 * 8000.0
@@ -126,7 +126,7 @@ def test_stiffeners_weigh_across_as_along(tmp_path: Path) -> None:
 
 
 def test_series_weigh_and_swing_with_stiffeners_as_elements_do(tmp_path: Path) -> None:
-    """Reference: other code, elements, which have nodes where stiffeners are."""
+    """Reference: other code, elements with nodes at stiffeners."""
     elements = (
         ', { name = "fe", kind = "finite-element", theory = "euler-bernoulli", '
         "rotary_inertia = false }]"
@@ -144,7 +144,7 @@ def test_series_weigh_and_swing_with_stiffeners_as_elements_do(tmp_path: Path) -
 
 
 def test_a_boom_without_rest_says_so() -> None:
-    """The square of its load is no number of any machine."""
+    """The square of the load overflows."""
     case = shipped("coarse")
     segments = tuple(s.model_copy(update={"load": 1.0e300}) for s in case.segments)
     lines = told(case.model_copy(update={"segments": segments}))
@@ -159,7 +159,7 @@ def test_walls_under_pads_lower_the_tip_as_in_the_shell() -> None:
 
 
 def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
-    """Reference: the same loads from t = 0 on, without the ramp."""
+    """Reference: the same loads from t = 0 on, without a ramp."""
     case = shipped("lift")
     share, remedies = pad_wall_sentences(case)
     assert share == (
@@ -215,14 +215,14 @@ def pad_wall_sentences(case: Case) -> list[str]:
 
 @pytest.fixture(scope="module")
 def answers() -> DesignResults:
-    """Of the paper's boom by elements, with play."""
+    """Return the design results of the paper's boom by elements with play."""
     case = change(shipped("coarse"), **{"time.duration": 0.05})
     models = tuple(model for model in case.models if model.name == "timoshenko")
     return answers_of(case.model_copy(update={"models": models}))
 
 
 def test_a_joint_tilts_by_its_play(answers: DesignResults) -> None:
-    """Reference: by hand, 14 mrad lift the tip by 133 mm; contacts give way by 2.2 and 2.8 µm."""
+    """Reference: by hand. 14 mrad lift the tip by 133 mm; contacts compress by 2.2 and 2.8 µm."""
     (rest,) = answers.models["timoshenko"].static
     (tilt,) = rest.tilts
     assert tilt.rotation == pytest.approx(0.014 + 4.956e-6, abs=1e-8)
@@ -251,7 +251,7 @@ def test_support_reactions_follow_the_lever_rule(answers: DesignResults) -> None
 
 
 def ball(*histories: History) -> GapSystem:
-    """1 kg under its weight on a floor of 1e6 N/m, and 20 N upwards by each history."""
+    """Return 1 kg under its weight on a floor of 1e6 N/m, and 20 N upwards with each history."""
     floor, one = PowerContact(1e6, 1.0).lower(), np.ones(1)
     lifted = [Excitation(20.0 * one, history) for history in histories]
     system = GapSystem(0.0 * one, -9.81 * one, one[None], [floor], np.array([0]), [0.0], {})
@@ -259,20 +259,24 @@ def ball(*histories: History) -> GapSystem:
 
 
 def test_loads_are_taken_where_they_are_largest() -> None:
-    """Reference: by hand. A ramp has risen at its end, a sine of 1 Hz peaks at 0.25 and 0.75 s."""
+    """Reference: by hand. A ramp has its maximum at its end, a sine of 1 Hz extremes at 0.25 and
+    0.75 s.
+    """
     assert instants(ball(), 2.0) == [0.0]
     assert instants(ball(Ramp(0.3)), 2.0) == [0.0, 0.3]
     assert instants(ball(Sine(1.0)), 1.0) == pytest.approx([0.0, 0.25, 0.75], abs=1e-3)
 
 
 def test_no_swing_of_a_load_is_missed() -> None:
-    """Reference: by hand, of 1000 Hz; at every millisecond it is nothing."""
+    """Reference: by hand, a sine of 1000 Hz, which is 0 at every millisecond."""
     _, *peaks = instants(ball(Sine(1000.0)), 2.0)
     assert Sine(1000.0)(np.array(peaks)) == pytest.approx([1.0, -1.0], rel=1e-3)
 
 
 def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
-    """Reference: by hand. Out from 1 s on, while the second of two peaks comes; in at 3 s."""
+    """Reference: by hand. The boom is extended from 1 s on, during the second of two peaks, and
+    retracted at 3 s.
+    """
     ways = PiecewiseLinear([0.0, 1.0, 2.0, 3.0], [0.0, 4.0, 4.0, -1.0])
     still = RowTable.interpolate(lambda s: np.ones((1, 1)), [-1.0, 4.0])
     drawn = [Travel(ways, still, (("rows", 0),), "")]
@@ -283,7 +287,7 @@ def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
 
 
 def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
-    """Reference: by hand. At 19 m 2 kN, 550.7 N at 14 m, 83.16 N/m; 14 mrad of play."""
+    """Reference: by hand, 2 kN at 19 m, 550.7 N at 14 m, 83.16 N/m, and 14 mrad of play."""
     case = shipped("drawn-out")
     table = ((0.0, 0.0), (5.5, 0.0), (6.0, 1.0))
     late = LoadTable.model_validate(
@@ -309,7 +313,9 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
 
 
 def test_an_instant_without_rest_is_left_out() -> None:
-    """Reference: by hand. The ball rests 9.81 µm deep, flies under 20 N, and 29.81 N press it."""
+    """Reference: by hand. The ball rests at 9.81 µm, has no equilibrium under 20 N upwards, and
+    rests under 29.81 N.
+    """
     found = positions(ball(Sine(1.0)), instants(ball(Sine(1.0)), 1.0))
     assert list(found) == pytest.approx([0.0, 0.75], abs=1e-3)
     np.testing.assert_allclose(np.ravel(list(found.values())), [-9.81e-6, -29.81e-6], rtol=1e-5)

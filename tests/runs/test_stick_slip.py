@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Drives of a given stiffness: what a case says of them, slips in it, and what a run tells."""
+"""Elastic drives of a case: keys, errors in them, and results of a run."""
 
 from pathlib import Path
 
@@ -88,7 +88,7 @@ def test_nothing_sticks_where_nothing_rubs(tmp_path: Path) -> None:
 
 
 def test_drive_moves_all_outboard_masses() -> None:
-    """Reference: analytic, the masses beyond each joint of the crane; mm, t and s in SI units."""
+    """Reference: analytic, the masses beyond each joint of the crane; units mm, t and s."""
     crane = shipped("crane-telescopes")
     case = change(crane, **{"joint.drive.stiffness": 4e6, "joint[2].drive.static_friction": 0.15})
     boom = build_boom(case)
@@ -106,7 +106,7 @@ def test_drive_moves_all_outboard_masses() -> None:
 
 
 def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
-    """Reference: analytic, m g sin θ of 550.7 kg, which the drive holds before it moves."""
+    """Reference: analytic, m g sin θ of 550.7 kg, which the drive carries before it moves."""
     along = {
         "[[joint]]": "[gravity]\nangle = 30.0\n\n[[joint]]",
         "duration = 7.0": "duration = 0.2",
@@ -122,8 +122,9 @@ def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
 
 
 def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
-    """Reference: by hand. The lever rule presses pads of 1 m of overlap by 27 and 21.6 kN; 550.7 kg
-    on 200 kN/m swing at 3.03 Hz, damped by 500/2√(k m), and the critical speed from the formula.
+    """Reference: by hand. With an overlap of 1 m, the lever rule gives pad forces of 27 and 21.6
+    kN. 550.7 kg on 200 kN/m have 3.03 Hz and the damping ratio 500/2√(k m). The critical speed
+    follows from the formula.
     """
     shown = printed_check(drawn_by(tmp_path, ROPE), 300)
     assert (
@@ -145,7 +146,7 @@ def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
     ],
 )  # fmt: skip
 def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
-    """Reference: the line that a user reads, and the speeds above."""
+    """Reference: exact message, with the speeds of the previous test."""
     slow = {"time = 5.0": "time = 40.0", "duration = 7.0": "duration = 41.0"}
     assert (
         f"caution: the drive of 'inner' sticks and slips during its whole travel: it moves at "
@@ -155,8 +156,8 @@ def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
 
 @pytest.mark.slow
 def test_a_run_tells_how_it_sticks_and_slips(tmp_path: Path) -> None:
-    """Reference: analytic. While it slips the force of the drive is friction and m Δṡ/Δt, and what
-    it has come is what was drawn less the lag; beside a stiff drive nothing else changes.
+    """Reference: analytic. During slip the drive force is friction plus m Δṡ/Δt. The extension is
+    the command less the lag. Other results are those of a stiff drive.
     """
     short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.3"}
     case = drawn_by(tmp_path, ROPE.replace("2e5", "2e6"), **short)
@@ -203,8 +204,8 @@ def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
 
 
 def test_a_stiff_rope_pulls_as_a_stiff_drive(tmp_path: Path) -> None:
-    """Reference: analytic. On 1e10 N/m its force is that of the stiff drive against the friction of
-    each moment, and what speeds 550.7 kg up on the S-curve, 0.1 % of the largest apart.
+    """Reference: analytic. With 1e10 N/m, the force is friction plus the inertia force of 550.7 kg
+    on the S-curve, within 0.1 % of the maximum.
     """
     short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.2"}
     rope = "least_overlap = 1.0, stiffness = 1e10, dashpot = 2e6 }"
@@ -227,7 +228,9 @@ def _check_motion(data: xr.Dataset) -> None:
 
 
 def _checked_slips(data: xr.Dataset) -> int:
-    """In how many outputs it slips: there 550.7 kg speed up by what friction leaves of the pull."""
+    """Return the number of outputs with slip, and check that drive force less friction accelerates
+    550.7 kg.
+    """
     time, speed = data["time"].values, data["extension_speed"].values
     friction = 0.2 * np.abs(data["contact_force"].values).sum(axis=1)
     slips = np.minimum(speed[1:], speed[:-1]) > 0.0
@@ -256,7 +259,7 @@ def _check_shown(results: Results, folder: Path) -> None:
 
 
 def test_a_lag_is_told_in_the_units_of_the_case(tmp_path: Path) -> None:
-    """Reference: by hand, 0.1 m of the 1 m that is left of the overlap."""
+    """Reference: by hand, 0.1 m of the remaining overlap of 1 m."""
     boom, data = build_boom(drawn_by(tmp_path, ROPE)), xr.Dataset({"drive_lag": ("time", [-0.1])})
     (line,) = lag_cautions(boom, data, System("mm-t-s"))
     assert line.startswith(
@@ -265,7 +268,9 @@ def test_a_lag_is_told_in_the_units_of_the_case(tmp_path: Path) -> None:
 
 
 def test_a_report_warns_where_it_lags_far_behind(tmp_path: Path) -> None:
-    """Reference: by hand, 9.72 kN pull a rope of 1e5 N/m by 97 mm, up to half as much again."""
+    """Reference: by hand. 9.72 kN stretch a rope of 1e5 N/m by 97 mm, at most by half as much
+    again.
+    """
     slow = {"time = 5.0": "time = 8.0", "duration = 7.0": "duration = 8.0"}
     case = drawn_by(tmp_path, ROPE.replace("2e5", "1e5"), **slow)
     results = run_case(change(case, **{"time.output_step": 0.01}), models=["kantorovich-5"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a case says of collars and diaphragms."""
+"""Collars and diaphragms of a case."""
 
 import re
 from dataclasses import replace
@@ -53,7 +53,7 @@ def test_check_prints_them(stiffened: str, capsys: pytest.CaptureFixture[str]) -
 
 @pytest.mark.parametrize(("outer", "x", "inner"), [(0, 9.0, "inner"), (1, 15.5, "third")])
 def test_diaphragm_inside_an_overlap_is_refused(outer: int, x: float, inner: str) -> None:
-    """Also not at the inner one's tail, which a plate would touch."""
+    """It is also refused at the tail of the inner segment."""
     boom = three_segments()
     segments = list(boom.segments)
     segments[outer] = replace(segments[outer], diaphragms=(Diaphragm(x, 0.008),))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A summary is written as it was read, and says what it cannot be read for."""
+"""Reading and writing of summaries, and messages on invalid ones."""
 
 import json
 from pathlib import Path
@@ -22,13 +22,13 @@ def content() -> dict[str, Any]:
 
 
 def test_keys_and_values_are_unchanged() -> None:
-    """Reference: what was written before, to the last digit and in its order."""
+    """Reference: the stored file, to the last digit and in its order."""
     text = json.dumps(content(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     assert str(Summary.load(EARLIER)) == text
 
 
 def test_a_summary_comes_back_from_a_cache(tmp_path: Path) -> None:
-    """What was never set is not null afterwards."""
+    """Fields that were not set do not become null."""
     summary = Summary.load(EARLIER)
     Cache(tmp_path).store("a", summary)
     assert str(Cache(tmp_path).load("a", Summary)) == str(summary)

@@ -54,7 +54,7 @@ def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
     ],
 )
 def test_values_have_short_decimals(planned: Planned, given: str, values: list[float]) -> None:
-    """Reference: the same decimals as Python reads them, so that sweeps share their points."""
+    """Reference: the same decimals in Python, so that sweeps share their points."""
     (variation,) = planned(f"joint.play={given}").variations
     assert list(variation.values) == values
     assert [point.case.joints[0].play for point in planned(f"joint.play={given}").points] == values
@@ -79,7 +79,7 @@ def test_keys_go_where_they_say(planned: Planned) -> None:
 
 
 def test_the_play_is_varied_alone(planned: Planned) -> None:
-    """Reference: the boxes that the case infers with its own play of 14 mm."""
+    """Reference: the inferred boxes for the play of 14 mm."""
     own = [segment.section for segment in build_boom(case_file.load("case.toml")).segments]
     for point in planned("joint.play=0,0.007,0.014", models=["timoshenko"]).points:
         assert [segment.section for segment in build_boom(point.case).segments] == own
@@ -87,7 +87,7 @@ def test_the_play_is_varied_alone(planned: Planned) -> None:
 
 
 def test_sections_are_inferred_with_the_play_of_the_case(planned: Planned) -> None:
-    """Reference: the boxes of a case file with the other ratio and the play of 14 mm."""
+    """Reference: the boxes of a case file with another ratio and the play of 14 mm."""
     text = Path("case.toml").read_text(encoding="utf-8")
     Path("flat.toml").write_text(
         text.replace("height_to_width = 1.5", "height_to_width = 1.4"), encoding="utf-8"
@@ -169,7 +169,9 @@ def test_a_folder_of_something_else_is_refused(planned: Planned) -> None:
 
 
 def test_a_decay_settles_when_the_formula_says() -> None:
-    """Reference: analytic, τ ln 20 for exp(−t/τ); the mean of the last fifth is e⁻¹⁶ off."""
+    """Reference: analytic, τ ln 20 for exp(−t/τ). The mean of the last fifth has an error of
+    e⁻¹⁶.
+    """
     time = np.linspace(0.0, 20.0, 20001)
     settled = settling_time(time, 0.3 - 0.1 * np.exp(-time))
     assert settled == pytest.approx(math.log(20.0), abs=2e-3)
@@ -276,7 +278,7 @@ def test_other_sources_are_other_points(
 
 
 def test_failing_model_leaves_a_gap(planned: Planned, ran: list[Case]) -> None:
-    """So short a step would take days; the model that has its own does not mind."""
+    """A run with such a short step would take days; a model with its own step is not affected."""
     sweeping = planned("model[1].step=1e-12,1e-5")
     outcomes = run(sweeping)
     assert run(sweeping) == outcomes
@@ -303,7 +305,7 @@ def test_other_errors_end_the_sweep(planned: Planned, monkeypatch: pytest.Monkey
 
 
 def test_quantities_equal_the_results_of_the_models(planned: Planned) -> None:
-    """Reference: other numbers of the same run; the mass of the paper's boom by hand."""
+    """Reference: other results of the same run, and the mass of the paper's boom by hand."""
     sweeping = planned("joint.play=0.008,0.014")
     (first, _) = run(sweeping)
     single = run_case(sweeping.points[0].case, FAST)
@@ -325,7 +327,7 @@ CHARTED = [one.name for one in QUANTITIES if one.charted and one.name not in UNK
 def written(
     sweeping: Plan, quantities: Sequence[str] = tuple(one.name for one in QUANTITIES)
 ) -> list[str]:
-    """Draw invented numbers, with a gap; the names of what has been drawn."""
+    """Draw invented numbers with a gap, and return the names of the charts."""
     outcomes = [
         Outcome(
             {
@@ -368,12 +370,12 @@ def charts(sweeping: Plan, *quantities: Sequence[str]) -> None:
 def test_charts_fit_the_number_of_keys(
     planned: Planned, texts: list[str], names: list[str]
 ) -> None:
-    """What no model has anywhere, the settling time here, has no chart, and noise has none."""
+    """Quantities without values, here the settling time, and constant quantities have no chart."""
     assert written(planned(*texts)) == names
 
 
 def test_maps_are_labelled_where_they_were_computed(planned: Planned, sheets: list[Sheet]) -> None:
-    """Where many values are, or values here and there, others are labelled."""
+    """With many or irregular values, round values have labels."""
     charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"), CHARTED[:1])
     axes = sheets[0].axes[0]
     assert axes.get_xlabel() == ""
@@ -383,7 +385,7 @@ def test_maps_are_labelled_where_they_were_computed(planned: Planned, sheets: li
 
 
 def test_cells_of_a_map_show_their_values(planned: Planned, sheets: list[Sheet]) -> None:
-    """Reference: the invented numbers, in kN; the fourth of one model is missing."""
+    """Reference: the invented numbers in kN; the fourth value of one model is missing."""
     charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40"), ["contact_force"])
     (sheet,) = sheets
     assert sheet.axes[-1].get_ylabel() == "contact force (kN)"
@@ -394,7 +396,7 @@ def test_cells_of_a_map_show_their_values(planned: Planned, sheets: list[Sheet])
 
 
 def test_constant_quantity_has_no_panel(planned: Planned, sheets: list[Sheet]) -> None:
-    """The mass of a boom whose play is varied; offsets stand at no axis."""
+    """The mass does not depend on the play. Axes have no offsets."""
     sweeping = planned("joint.play=0:0.009:4")
     outcomes = [
         Outcome({name: {"mass": 1382.3, "stress": 5e7 + 1e3 * i} for name in FAST}, {})
@@ -428,7 +430,9 @@ def test_keys_are_shown_in_units_of_their_size() -> None:
 
 
 def test_lines_are_in_shown_units_with_gaps(planned: Planned, sheets: list[Sheet]) -> None:
-    """Reference: the invented numbers, 1.0, 1.1, ... m and N, the third missing in one model."""
+    """Reference: the invented numbers 1.0, 1.1, ... in m and N; the third is missing in one
+    model.
+    """
     charts(planned("joint.play=0:0.009:4"))
     (sheet,) = sheets
     panels = {axes.get_title(loc="left"): axes for axes in sheet.axes}

@@ -83,7 +83,7 @@ def static_tip(case: Case, time: float) -> float:
 
 
 def test_luffed_arm(tmp_path: Path) -> None:
-    """Reference: the arm built at the angle; its weight along bends it by 1.3 % more."""
+    """Reference: the arm built at the angle. Its axial weight increases bending by 1.3 %."""
     luffed = slewing_arm(tmp_path, LUFF.replace("10.0", "50.0"))
     there = slewing_arm(tmp_path, arm=ARM.replace("angle = 0.0", "angle = 50.0"))
     assert static_tip(luffed, 3.0) == pytest.approx(static_tip(there, 0.0), rel=1e-3)
@@ -106,7 +106,7 @@ def test_inertia_loads_of_an_extending_segment_on_a_turning_boom() -> None:
 
 
 def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
-    """Reference: the energy balance, and the quasi-static sway beside that of the motion."""
+    """Reference: the energy balance, and the quasi-static lateral deflection."""
     case = slewing_arm(tmp_path, SLEW, LUFF, "[damping]\nmodal = 0.02")
     results = run_case(change(case, **{"time.duration": 1.0, "time.step": 2e-4}))
     (summary,) = results.summary.models.values()
@@ -125,8 +125,8 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
 def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, most: float) -> None:
-    """Reference: the vibration without the shaper: a thousandth of it without play, a quarter with
-    4 mm.
+    """Reference: the vibration without the shaper. A thousandth remains without play, a quarter
+    with a play of 4 mm.
     """
     slew = "[damping]\nmodal = 0.02\n[slew]\ntravel = 12.0\ntime = 1.5\n"
     plain = slewing_arm(tmp_path, slew)
@@ -155,7 +155,7 @@ def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, mo
 
 
 def test_moment_and_work_of_slewing(tmp_path: Path) -> None:
-    """Reference: by hand, J ψ̈ and ½ J ψ̇² of a rigid boom, and 0 after a stop."""
+    """Reference: by hand, J ψ̈ and ½ J ψ̇² of a rigid boom, and 0 after the end."""
     case = slewing_arm(tmp_path, SLEW)
     boom, time = build_boom(case), np.linspace(0.0, 6.0, 6001)
     (moment, power) = drive_moments(case, boom, xr.Dataset(coords={"time": time}))["slew"]
@@ -266,7 +266,7 @@ def test_slewing_crane_with_load() -> None:
 
 
 def test_luffing_and_hoisting_crane() -> None:
-    """Reference: by hand. The tip rises on a circle, the load from 35 m below its first place."""
+    """Reference: by hand. The tip moves on a circle; the load begins 35 m below it."""
     case = shipped("hoist")
     luff = LuffTable(travel=10.0, time=5.0)
     case = case.model_copy(update={"luff": luff})

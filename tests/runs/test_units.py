@@ -1,7 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The same boom in SI and in mm, t and s: nothing compares a dimensional number with one of its
-own.
-"""
+"""The same boom in SI units and in mm, t and s, to exclude dimensional constants in the program."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -34,7 +32,7 @@ QUADRATIC = PowerContact(stiffness=1.0e13, exponent=2.0).with_clearance(7.0e-3)
 
 
 def law_in_mm(law: Gap) -> Gap:
-    """k in N/mmⁿ, Δ in mm, d in s/mm."""
+    """Return the law with k in N/mmⁿ, Δ in mm and d in s/mm."""
     power = law.law
     return replace(
         power,
@@ -141,7 +139,9 @@ def agree(si: Trajectory, mm: Trajectory) -> None:
 def test_beams_do_not_know_the_units(
     model: Callable[[Boom, PowerContact], GapSystem], law: PowerContact
 ) -> None:
-    """Reference: this model in SI, to 1e-9 of the range, with friction and through presses."""
+    """Reference: the same model in SI units within 1e-9 of the range, with friction and
+    contacts.
+    """
     boom = flat_boom(friction=0.2)
     runs = [
         FixedStep(1.0e-4)(Motion(model(*data), 1.0))
@@ -151,7 +151,7 @@ def test_beams_do_not_know_the_units(
 
 
 def test_steps_by_tolerance_do_not_know_the_units() -> None:
-    """Reference: this model in SI, without play and without friction, until chaos takes over."""
+    """Reference: the same model in SI units, without play or without friction, until chaos."""
     boom = flat_boom()
     law = LINEAR.law.with_clearance(0.0)
     runs = [
@@ -163,7 +163,9 @@ def test_steps_by_tolerance_do_not_know_the_units() -> None:
 
 @pytest.mark.parametrize("line", ["near webs", "pads", "surface"])
 def test_shells_do_not_know_the_units(line: str) -> None:
-    """Reference: this model in SI, to 1e-9 of the range, on a coarse mesh with friction."""
+    """Reference: the same model in SI units within 1e-9 of the range, on a coarse mesh with
+    friction.
+    """
     boom = flat_boom(friction=0.2)
     if line == "pads":
         boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms that nothing loads, that are thrown, or that are let go, from case to report."""
+"""Booms without loads, with initial velocities, or released, from case to report."""
 
 from pathlib import Path
 
@@ -47,7 +47,9 @@ pytestmark = pytest.mark.usefixtures("here")
 def test_a_boom_without_loads_is_run_and_reported(
     kind: str, request: pytest.FixtureRequest
 ) -> None:
-    """Reference: analytic. Without loads it rests straight, and moves only if it starts so."""
+    """Reference: analytic. Without loads the boom is straight, and moves only with an initial
+    velocity.
+    """
     added, moves = ADDED[kind]
     if kind not in {"nothing", "thrown"}:
         request.getfixturevalue("unprinted")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What is no regular file of a sensible size is refused, and nothing waits for it."""
+"""Refusal of special and oversized files, without waiting."""
 
 import os
 from collections.abc import Callable
@@ -39,7 +39,7 @@ def complaint(file: str) -> str:
 def test_special_and_oversized_files_are_refused(
     file: str, make: Callable[[str], object], why: str
 ) -> None:
-    """A pipe would wait for its writer, a device has no end."""
+    """Reading a pipe would wait for its writer, and a device has no end."""
     make(file)
     assert complaint(file) == f"{file}: file: cannot be read ({why}); give a case file that can"
 

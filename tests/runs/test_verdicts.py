@@ -54,7 +54,7 @@ def test_judges_every_statement_once_and_in_json(case: Case) -> None:
 
 
 def test_s1_holds_for_the_series_themselves(case: Case) -> None:
-    """Reference: analytic. An inner segment that nothing touches moves as a rigid body."""
+    """Reference: analytic. Without contact the inner segment moves as a rigid body."""
     short = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.2})})
     found = judge(run_case(short, ["kantorovich-4", "kantorovich-5"]))[0]
     assert found.verdict == "reproduced"
@@ -76,7 +76,7 @@ def test_s1_looks_up_to_the_first_contact(start: float, expected: str, part: flo
     ("share", "expected"), [(1.0, "reproduced"), (0.5, "undecided"), (0.0, "contradicted")]
 )
 def test_s2_asks_for_the_mean_of_the_members(share: float, expected: str) -> None:
-    """Reference: analytic. Some members are 0.3 of the range apart, the others 0.1."""
+    """Reference: analytic. Some members differ by 0.3 of the range, the others by 0.1."""
     five = np.tile(curves()["kantorovich-5"]["tip"], (32, 1))
     four = five.copy()
     four[:, 4950] = 0.0  # far apart, and too early to count
@@ -137,7 +137,9 @@ def test_s3_needs_peaks(still: slice, when: str) -> None:
 
 
 def test_few_members_decide_nothing() -> None:
-    """Reference: analytic. Of three members all may show it where half of the runs do."""
+    """Reference: analytic. If half of the runs have a property, all of three members may have
+    it.
+    """
     assert verdict("S3", tips=stratifying(0.5, count=3))[:2] == ("undecided", 1.0)
 
 
@@ -153,7 +155,7 @@ def test_few_members_decide_nothing() -> None:
 def test_s3_needs_diverging_peaks_after_six_seconds(
     early: float, drift: float, conforming: float, expected: str
 ) -> None:
-    """Reference: analytic. Of the period of 1.1 s the last of four models is 3 delays late."""
+    """Reference: analytic. The period is 1.1 s; the last of four models has 3 times the delay."""
     *found, why = verdict("S3", tips=stratifying(drift, early))
     assert found == [expected, conforming]
     assert "part by 20 % of the range from 3.2 s on" in why
@@ -211,7 +213,7 @@ def test_s6_asks_for_one_absolute_level(head_scale: float, expected: str) -> Non
 
 
 def test_s6_asks_for_greater_relative_differences() -> None:
-    """A head that moves as far as the tip, and differs less, differs relatively less."""
+    """If the head moves as far as the tip and differs less, its relative difference is smaller."""
     motion = curves()
     for both in motion.values():
         both["head"] = both["head"] + 0.9 * motion["kantorovich-5"]["tip"]
@@ -226,7 +228,9 @@ def rubbing() -> Case:
 
 
 def conforming(late: float) -> dict[str, dict[str, np.ndarray]]:
-    """Models that differ as their heights do, and after six seconds by ``late`` of it more."""
+    """Return models with differences by their heights, and ``late`` times as much more after six
+    seconds.
+    """
     motion = curves()
     for name, both in motion.items():
         if name != "beam-fe-bonded":
@@ -378,7 +382,7 @@ def test_motion_that_is_not_finite_is_named(case: Case) -> None:
 
 
 def judged(case: str, **judgements: Judgement) -> list[Verdict]:
-    """Verdicts that leave open what is not given."""
+    """Return verdicts; those that are not given are undecided."""
     return [
         Verdict(key, statement, None, None, "", judgements.get(key, "undecided"), case)
         for key, statement in STATEMENTS.items()
@@ -408,7 +412,7 @@ def test_verdict_comes_from_the_first_decisive_run(
 
 
 def test_names_the_case_of_each_verdict_where_there_are_several() -> None:
-    """Each statement is a paragraph that needs no column of its own."""
+    """Each statement has a paragraph instead of a column."""
     paragraphs = printed(print_verdicts, RUNS, width=80).split("\n\n")[1:]
     heads = [paragraph.splitlines()[0] for paragraph in paragraphs]
     assert heads[0] == "S1 reproduced in paper"

@@ -46,7 +46,9 @@ def run(folder: Path, name: str, **changes: str) -> Results:
 
 @pytest.mark.slow
 def test_a_run_has_factors_of_shell_and_panels(tmp_path: Path) -> None:
-    """Reference: other code, panel formulas, which the restraint at folds exceeds."""
+    """Reference: other code, panel formulas. Restraint at folds increases the factors of the
+    shell.
+    """
     results = run(tmp_path, "coarse.toml", statements="[]", duration="0.01")
     summary = Summary.model_validate_json(str(results.summary))
     shell, beam = (summary.design.models[name] for name in ("shell", "timoshenko"))
@@ -104,7 +106,7 @@ def test_a_case_without_the_table_has_none(tmp_path: Path) -> None:
 
 
 def test_each_mode_has_its_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: by hand. A dent in the bottom is seen upside down; a mode has no instant."""
+    """Reference: by hand. A mode of the bottom is displayed upside down, and has no instant."""
     try:
         opengl.require_opengl()
     except RenderingUnavailable as reason:

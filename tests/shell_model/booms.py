@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms for the shell's tests: the paper's in its plane and in space, and one of three segments."""
+"""Booms for tests of shells: the paper's boom, flat and in space, and a boom of three segments."""
 
 from dataclasses import replace
 
@@ -28,7 +28,7 @@ def box_segment(
 
 
 def two_segments(outer: Section, inner: Section) -> tuple[Segment, Segment]:
-    """Under the paper's loads, in its places."""
+    """Return two segments with the loads and positions of the paper."""
     return (
         box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
         box_segment("inner", 9.0, 19.0, inner, 55.07),
@@ -36,7 +36,7 @@ def two_segments(outer: Section, inner: Section) -> tuple[Segment, Segment]:
 
 
 def flat_boom(friction: float = 0.0) -> Boom:
-    """Return the paper's two segments in their plane, with normal forces where friction acts."""
+    """Return the paper's flat boom, with normal forces if there is friction."""
     outer = infer_outer_section(83.16 / STEEL.density, 3.7986e-4, 1.5)
     inner = infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.above)
     pressed = (4500.0, 5000.0) if friction > 0.0 else ()
@@ -49,7 +49,7 @@ def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
 
     Args:
         friction: μ, under the contact forces.
-        sideways: lateral load over that along z.
+        sideways: ratio of the lateral load to the load along z.
     """
     flat = flat_boom()
     segments = tuple(
@@ -61,7 +61,7 @@ def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
 
 
 def three_segments(bonded: bool = False) -> Boom:
-    """Return the boom with a third box in the second, with the overlap of the first joint."""
+    """Return the boom with a third box in the second one, with the overlap of the first joint."""
     two = flat_boom()
     inner = two.segments[1].section
     inmost = BoxSection(inner.height - 0.025, inner.width - 0.025, inner.flange, inner.web)

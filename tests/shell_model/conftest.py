@@ -32,7 +32,7 @@ def box_shell(
     masses: tuple[PointMass, ...] = (),
     section: Section = BOX,
 ) -> SegmentShell:
-    """Return a box on [0, length], of the outer segment's plates unless others are given."""
+    """Return a box on [0, length], by default with the plates of the outer segment."""
     segment = replace(box_segment("box", 0.0, length, section, supports=supports), masses=masses)
     breaks = {"start": 0.0, "end": length}
     breaks |= {f"place-{one.x:g}": one.x for one in (*supports, *masses)}
@@ -48,8 +48,8 @@ def _box_shell() -> Callable[..., SegmentShell]:
 def compliance(shell: SegmentShell, row: Row) -> float:
     """Return the displacement of a unit force along itself, in m/N.
 
-    It is at 0.01 Hz in place of zero, since segments are free along x: 2e-6 of the compliance
-    of a boom whose lowest frequency is 7 Hz.
+    It is computed at 0.01 Hz instead of 0, since segments are free along x. This changes the
+    compliance of a boom with the lowest frequency 7 Hz by 2e-6.
     """
     force = shell.row(row)
     solve = ShiftedSolver(shell, 0.01)

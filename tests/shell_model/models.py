@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms reduced as shells, each once, and beside their beams."""
+"""Shells of booms, each reduced once, and their comparison with beams."""
 
 from collections.abc import Sequence
 from functools import cache
@@ -48,13 +48,15 @@ def reduced(
 
 
 def pressed_rest(system: GapSystem, at: Sequence[bool] | slice = slice(None)) -> Array:
-    """Rest position with springs of 1e12 N/m in place of contact, at some rows or at all."""
+    """Return the equilibrium with springs of 1e12 N/m in place of contact, at some rows or at
+    all.
+    """
     rows = system.rows[at]
     return np.asarray(np.linalg.solve(np.diag(system.omega2) + 1.0e12 * rows.T @ rows, system.load))
 
 
 def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
-    """Against bonded Timoshenko elements, in all that these observe."""
+    """Check all outputs of an equilibrium against bonded Timoshenko elements."""
     rest, beams = pressed_rest(system), bonded_beams(boom)
     expected = static_response(beams, beams.load)
     assert set(beams.observers) <= set(system.observers)
@@ -64,12 +66,14 @@ def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
 
 
 def bonded_beams(boom: Boom, length: float = 0.25) -> GapSystem:
-    """Timoshenko elements of a length in m, without play."""
+    """Return bonded Timoshenko elements of a length in m."""
     return gap_system(boom.bonded, finite_element_segments(boom, length, "timoshenko", True))
 
 
 def frequencies_off(shell: SegmentShell, direction: Direction = "z", count: int = 1) -> Array:
-    """(count,) how far the first elastic ones are from those of the Timoshenko beam."""
+    """Return the relative errors (count,) of the first elastic frequencies against Timoshenko
+    elements.
+    """
     tip = shell.row(shell.outline(10.0).wall_deflection(direction))
     inputs = np.column_stack([shell.unit_loads[direction], tip])
     found = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())

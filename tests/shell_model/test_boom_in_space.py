@@ -29,7 +29,7 @@ def _compliance(system: GapSystem, rows: Array, sigma: float) -> Array:
 
 
 def _walls(system: GapSystem, direction: str) -> Array:
-    """(4, num_modes) the mean row of the two pads of each wall, station by station."""
+    """Return the mean rows (4, num_modes) of the two pads of each wall, station by station."""
     along = np.array(system.station_directions)[system.station_of_row] == direction
     return np.asarray(system.rows[along].reshape(4, 2, -1).mean(axis=1))
 
@@ -40,8 +40,8 @@ def _differ(found: Array, expected: Array) -> float:
 
 @pytest.mark.slow
 def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
-    """Reference: this shell in its plane: compliances and motion to 1e-9 until the first contact,
-    then 1 % in 0.3 s.
+    """Reference: the flat shell. Compliances, and the motion until the first contact, agree within
+    1e-9; then within 1 % in 0.3 s.
     """
     flat, space = (reduced(one, 0.5, moments=2).system for one in (flat_boom(), boom_in_space()))
     for sigma in SHIFTS:
@@ -59,7 +59,7 @@ def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
 
 
 def octagonal_boom() -> Boom:
-    """Return a boom of octagons, pushed sideways by 0.3 of what pushes it along z."""
+    """Return a boom of octagons with a lateral load of 0.3 times the load along z."""
     boom = sections.boom_of(*sections.SHAPES["octagon"])
     segments = tuple(
         replace(s, lateral=replace(s.lateral, load=0.3 * s.load)) for s in boom.segments
@@ -75,7 +75,7 @@ def octagonal_boom() -> Boom:
     ids=["boxes", "octagons"],
 )
 def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off: float) -> None:
-    """Reference: symmetry: frequencies, compliances and loads with directions exchanged, to
+    """Reference: symmetry. Frequencies, compliances and loads with exchanged directions agree to
     round-off.
     """
     joint = upright.joints[0]
@@ -101,7 +101,7 @@ def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off
 
 @pytest.mark.slow
 def test_segments_rolling_together_keep_their_gaps() -> None:
-    """Reference: analytic. Turned by φ, flange pads read φ y, web pads −φ z."""
+    """Reference: analytic. Under a rotation φ, flange pads move by φ y and web pads by −φ z."""
     system = reduced(boom_in_space(friction=0.2), 0.5).system
     rigid = np.flatnonzero(system.omega2 == 0.0)
     names = ("tip", "tail", "tip_lateral", "tail_lateral", "tip_twist")
@@ -122,7 +122,9 @@ def test_segments_rolling_together_keep_their_gaps() -> None:
 
 @pytest.mark.slow
 def test_each_pad_rubs_where_it_presses() -> None:
-    """Reference: (11). Every pad's own contact row presses it; it slides across its normal."""
+    """Reference: external source, (11). The contact row of each pad gives its normal force; it
+    slides across its normal.
+    """
     system = reduced(boom_in_space(friction=0.2), 0.5).system
     assert len(system.frictions) == len(system.laws) == 16
     for row, (friction, station) in enumerate(
@@ -143,8 +145,8 @@ def test_each_pad_rubs_where_it_presses() -> None:
 
 @pytest.mark.slow
 def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
-    """Reference: analytic. Pressed sideways the boom loses energy at each station, gains
-    none, and rubs with less than μ times the largest blow.
+    """Reference: analytic. With lateral contact the boom loses energy at each station, gains none,
+    and friction is below μ times the largest contact force.
     """
     motion = AdaptiveStep()(
         Motion(reduced(boom_in_space(friction=0.2, sideways=0.5), 0.5).system, 0.3)
@@ -179,7 +181,9 @@ def test_lateral_motion_follows_beams() -> None:
 
 @pytest.mark.slow
 def test_the_bonded_boom_vibrates_as_beams_in_both_planes() -> None:
-    """Reference: other code, bonded Timoshenko elements: three frequencies a plane within 0.7 %."""
+    """Reference: other code, bonded Timoshenko elements: three frequencies per plane within 0.7
+    %.
+    """
     boom = boom_in_space()
     boom = replace(boom, joints=(replace(boom.joints[0], bonded=True),))
     expected = bonded_beams(boom, 0.5).frequencies[:6]

@@ -22,7 +22,9 @@ from tests.touching import touching
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine) -> None:
-    """Reference: analytic, (4): lifted without strain every station carries F(y) once."""
+    """Reference: analytic. Under a rigid translation every station has the force F(y) of (4)
+    once.
+    """
     system = reduced(flat_boom(), 0.25, line, moments=2).system
     rigid = np.flatnonzero(system.omega2 == 0.0)
     tip, tail = (system.observers[name].row for name in ("tip", "tail"))
@@ -39,7 +41,7 @@ def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine
 
 @pytest.mark.slow
 def test_the_load_lifts_the_boom_by_its_weight() -> None:
-    """Reference: analytic. The free segment's centre moves with q/m̄ = 1 m/s²."""
+    """Reference: analytic. The centre of the free segment accelerates with q/m̄ = 1 m/s²."""
     system = reduced(flat_boom(), 0.25, moments=2).system
     rigid = system.omega2 == 0.0
     tip, tail = (system.observers[name].row[rigid] for name in ("tip", "tail"))
@@ -59,7 +61,9 @@ def test_first_contact_follows_the_beam() -> None:
 
 @pytest.mark.slow
 def test_fields_agree_with_observers() -> None:
-    """The mean of u_z over the tip's vertices follows the tip's observer within distortion."""
+    """The mean u_z of the vertices at the tip equals the output of the tip except for
+    distortion.
+    """
     shell = reduced(flat_boom(), 0.25, moments=2)
     state = AdaptiveStep()(Motion(shell.system, 0.1)).states[-1]
     displacement = np.tensordot(state, shell.fields["modes"].values, axes=1)
@@ -81,7 +85,7 @@ def test_a_shell_needs_a_section() -> None:
 
 
 def test_a_side_without_stiffness_never_touches() -> None:
-    """One station, pressing up alone: one row, one-sided, above."""
+    """A station with contact above only has a single one-sided row."""
     law = replace(LAW.law, stiffness_below=0.0).with_clearance(LAW.above)
     system = reduced(flat_boom(), 0.5, law=law).system
     assert system.station_of_row.tolist() == [0, 1]
@@ -89,7 +93,7 @@ def test_a_side_without_stiffness_never_touches() -> None:
 
 
 def test_a_segment_without_load_is_reduced_like_any_other() -> None:
-    """Its empty input must not hide the error of its contact points, nor spoil it."""
+    """Its zero input must not affect the error of its contact points."""
     boom = flat_boom()
     bare = replace(boom, segments=(boom.segments[0], replace(boom.segments[1], load=0.0)))
     options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))

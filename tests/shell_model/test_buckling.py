@@ -39,7 +39,9 @@ def extrapolated(coarse: float, fine: float) -> float:
 
 @pytest.mark.parametrize("plate", PLATES, ids=lambda plate: plate.name)
 def test_plates_buckle_at_known_factors(plate: LoadedPlate) -> None:
-    """Reference: analytic, from above with order 2; the limit of two meshes is within 0.6 %."""
+    """Reference: analytic. Factors converge from above with order 2; the limit of two meshes is
+    within 0.6 %.
+    """
     first, coarse, fine = (float(plate.shell(n)[0]) for n in (4, 8, 16))
     assert first > coarse > fine > plate.factor
     assert fine < 1.035 * plate.factor
@@ -48,7 +50,7 @@ def test_plates_buckle_at_known_factors(plate: LoadedPlate) -> None:
 
 
 def test_modes_rise() -> None:
-    """Reference: analytic, k = (m b/a + a/(m b))² of a plate 2 × 1 in m half-waves."""
+    """Reference: analytic, k = (m b/a + a/(m b))² for a plate 2 × 1 with m half-waves."""
     pressed = replace(PLATES[0], aspect=2.0)
     exact = np.sort([(m / 2.0 + 2.0 / m) ** 2 for m in (1, 2, 3, 4)])
     limits = [
@@ -63,8 +65,8 @@ def test_tension_has_no_factor() -> None:
 
 
 def test_finite_strips_know_walls_and_columns() -> None:
-    """Reference: analytic, k = 4 of a square tube, 5.33 in bending; a long tube is Euler's
-    column.
+    """Reference: analytic, k = 4 for a square tube, 5.33 in bending, and Euler's column for a long
+    tube.
     """
     strips, width = Strips.of(TUBE, STEEL), 0.4
     stress = UNIT * (0.004 / width) ** 2
@@ -93,14 +95,16 @@ def test_boxes_buckle_as_finite_strips(box: LoadedBox) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("pressed", PRESSED, ids=lambda pressed: f"{pressed.length:g} m")
 def test_webs_buckle_under_patch_loads(pressed: PressedBox) -> None:
-    """Reference: external, k_F = 6 + 2 (h/a)² of EN 1993-1-5, 6.4, a fit: 15 %."""
+    """Reference: external, the fitted formula k_F = 6 + 2 (h/a)² of EN 1993-1-5, 6.4, within 15
+    %.
+    """
     found = extrapolated(pressed.shell(8), pressed.shell(16))
     assert found == pytest.approx(pressed.fitted, rel=0.15)
 
 
 @pytest.mark.slow
 def test_a_column_buckles_as_a_whole_and_in_its_walls() -> None:
-    """Reference: other code, finite strips, in one half-wave and in many; 1 %."""
+    """Reference: other code, finite strips with one half-wave and with many, within 1 %."""
     whole = Strips.of(COLUMN.section, STEEL).factor(COLUMN.length, 1, COLUMN.stress)
     shell, modes = COLUMN.shell(4, 2)
     assert modes.factors == pytest.approx([whole, whole], rel=0.01)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells on hinges, cylinders and springs against rotation, against this project's beams."""
+"""Shells on hinges, cylinders and rotational springs, compared with beams."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -60,7 +60,7 @@ def at_rest(system: GapSystem) -> dict[str, float]:
 
 @pytest.mark.slow
 def test_walls_carry_the_axial_force_of_the_cylinder() -> None:
-    """Reference: by hand, its force times the slope of its line, from its lug to the hinge."""
+    """Reference: by hand, the axial component of its force, from the lug to the hinge."""
     boom = luffed()
     made = reduce_boom(boom, ShellOptions(0.2, krylov=KrylovOptions(moments=2)), MPI.COMM_SELF)
     position = equilibrium(made.system, made.system.gather_loads().load)
@@ -76,8 +76,8 @@ def test_walls_carry_the_axial_force_of_the_cylinder() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("stiffness", [2.0e7, 1.0e11], ids=["elastic", "stiff"])
 def test_a_luffed_shell_rests_as_its_beam(stiffness: float) -> None:
-    """Reference: other code, Timoshenko elements: the force to round-off, the tip 0.2 and 0.4 %
-    lower.
+    """Reference: other code, Timoshenko elements. The force agrees to round-off; the tip is lower
+    by 0.2 and 0.4 %.
     """
     boom = luffed(replace(CYLINDER, stiffness=stiffness))
     found, expected = at_rest(shell(boom)), at_rest(beam(boom))
@@ -90,7 +90,9 @@ def test_a_luffed_shell_rests_as_its_beam(stiffness: float) -> None:
 def test_axial_forces_turn_a_shell_about_its_lowered_pin(
     luffed: Callable[[], tuple[Boom, float]],
 ) -> None:
-    """Reference: analytic, moments about the pin; without that of axial forces 4 to 21 % more."""
+    """Reference: analytic, moments about the pin. Without axial forces, the force would be 4 to 21
+    % larger.
+    """
     boom, expected = luffed()
     assert at_rest(shell(boom))["cylinder_force"] == pytest.approx(expected, rel=1e-3)
 
@@ -145,7 +147,7 @@ def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
 
 @pytest.mark.slow
 def test_a_shell_rests_on_a_hinge_and_a_stop() -> None:
-    """Reference: analytic, the lever rule; nothing else holds the shell, and its weight presses."""
+    """Reference: analytic, the lever rule. The weight presses the shell on the stop."""
     stop = Stop(0, 6.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1e7))
     segment = replace(luffed().segments[0], supports=(Support(0.0),))
     boom = replace(luffed(), segments=(segment,), stops=(stop,), cylinders=())

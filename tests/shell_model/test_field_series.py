@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A time series opens elsewhere, and holds the displacements and stresses of its times."""
+"""Field series: readable files, with displacements and stresses at their times."""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -15,7 +15,7 @@ from shell_model.stress.stresses import ShellStress
 
 @pytest.fixture
 def fields() -> xr.Dataset:
-    """Two plates of one triangle each, of two segments; the second has a coordinate of its own."""
+    """Return two plates of a triangle each, of two segments with separate coordinates."""
     stress = np.zeros((1, 1, 6), dtype=np.float32)
     stress[0, 0] = [3.0e6, 0.0, 0.0, 1.0e6, 0.0, 0.0]
     modes = np.zeros((2, 6, 3), dtype=np.float32)
@@ -44,7 +44,7 @@ def fields() -> xr.Dataset:
 
 
 def test_a_series_reads_back_as_it_was(fields: xr.Dataset, tmp_path: Path) -> None:
-    """Reference: analytic. A pull σ with a bending b has |σ ± b| at the faces."""
+    """Reference: analytic. A tension σ with bending b gives |σ ± b| at the faces."""
     written = write_field_series(fields, tmp_path, [0.0, 0.19, 0.3])
     assert sorted(tmp_path.iterdir()) == sorted(written)
     entries = ElementTree.parse(tmp_path / "shell.pvd").getroot().findall("Collection/DataSet")
@@ -72,7 +72,7 @@ def test_a_time_outside_the_run_is_refused(fields: xr.Dataset, tmp_path: Path) -
 
 
 def test_stress_series_equals_the_stress_of_each_instant(fields: xr.Dataset) -> None:
-    """Reference: the instants, one by one; means of triangles are those of their components."""
+    """Reference: single instants. Means over triangles are means of stress components."""
     shell = ShellStress.from_fields(fields)
     second = np.array([1])
     ((part, stress),) = shell.over_time(second, slice(1, None, 2))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What a killed process has begun to compile does not keep the next one from it."""
+"""Compilation after a process was killed while it compiled the same form."""
 
 import os
 import signal

@@ -24,7 +24,7 @@ DASHPOT = 2.0e3
 
 
 def _dragged(boom: Boom) -> Boom:
-    """With a dashpot at each station."""
+    """Return the boom with a dashpot at each station."""
     return replace(boom, joints=(replace(boom.joints[0], dashpot=DASHPOT),))
 
 
@@ -46,7 +46,7 @@ def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> 
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_dashpot_resists_the_mean_of_its_stations_contact_rows(line: ContactLine) -> None:
-    """Reference: analytic. √c of what friction reads there, for no coordinate more."""
+    """Reference: analytic, √c times the friction row, without additional coordinates."""
     system = reduced(_dragged(flat_boom(friction=0.2)), 0.5, line).system
     assert system.num_modes == reduced(flat_boom(), 0.5, line).system.num_modes
     expected = np.sqrt(DASHPOT) * system.friction_rows
@@ -56,7 +56,7 @@ def test_a_dashpot_resists_the_mean_of_its_stations_contact_rows(line: ContactLi
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "surface"])
 def test_dashpots_dissipate_equally_in_shells_and_beams(line: ContactLine) -> None:
-    """Reference: other code, Timoshenko elements, 0.2 and 1.4 % apart over 0.4 s."""
+    """Reference: other code, Timoshenko elements, with differences of 0.2 and 1.4 % over 0.4 s."""
     boom = _dragged(flat_boom())
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     beam, shell = (
@@ -87,7 +87,9 @@ def test_friction_takes_energy_and_gives_none_back() -> None:
 
 @pytest.mark.slow
 def test_loads_act_where_and_when_they_say() -> None:
-    """Reference: analytic, force over mass of a free segment; a uniform load is the step load."""
+    """Reference: analytic, force over mass of a free segment. A uniform load equals the constant
+    load.
+    """
     boom = flat_boom()
     ramp = Ramp(0.1)
     loads = (Load(1, "z", 55.07, None, Step()), Load(1, "z", 100.0, 14.0, ramp))
@@ -114,7 +116,7 @@ def test_readings_add_up_over_the_segments_of_either() -> None:
 
 
 def test_stop_reads_the_deflection_of_its_flange() -> None:
-    """Reference: analytic. One-sided at 8 m: the row is the deflection there, read from below."""
+    """Reference: analytic. The one-sided row at 8 m is the deflection of the lower flange."""
     stop = Stop(0, 8.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1.0e8))
     system = reduced(replace(flat_boom(), stops=(stop,)), 0.5).system
     assert list(system.stations) == [9.0, 10.0, 8.0]
@@ -129,7 +131,7 @@ def test_stop_reads_the_deflection_of_its_flange() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("boom", [flat_boom(), three_segments()], ids=["two", "three"])
 def test_static_state_with_axial_forces_follows_beams(boom: Boom) -> None:
-    """Reference: other code, bonded Timoshenko elements within 0.25 %; shear is 3 %."""
+    """Reference: other code, bonded Timoshenko elements within 0.25 %. Shear contributes 3 %."""
     assert_rests_as_beams(reduced(boom, 0.25).system, boom, 5.0e-3)
 
 

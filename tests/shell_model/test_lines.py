@@ -31,7 +31,7 @@ from tests.touching import touching
 
 @cache
 def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
-    """Along each segment of a shell, with its modal coordinates at rest."""
+    """Return the lines along each segment of a shell, and the equilibrium."""
     lateral = [LATERAL_LAW] if boom.spatial else []
     shell = reduce_boom(touching(boom, LAW, lateral), options, MPI.COMM_SELF)
     position = equilibrium(shell.system, shell.system.load)
@@ -55,8 +55,8 @@ def test_section_forces_of_a_shell_follow_statics(tolerance: float | None) -> No
 
 @pytest.mark.slow
 def test_a_pressed_shell_bears_its_loads_across() -> None:
-    """Reference: by hand. −500 N/m and −44,049 N on a column under half of Euler's force; walls
-    carry up to 2.2 times as much across themselves.
+    """Reference: by hand, −500 N/m and −44,049 N on a column under half of Euler's force. Shear
+    forces normal to the deflected axis are up to 2.2 times as large.
     """
     clamp = Support(0.0, "clamped")
     box = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
@@ -98,13 +98,15 @@ def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
 
 
 def test_cuts_pass_no_triangle() -> None:
-    """Reference: by hand. Triangles from 0 to 2 and from 1 to 3 leave 0, 3 and 4 m."""
+    """Reference: by hand. Triangles from 0 to 2 m and from 1 to 3 m permit lines at 0, 3 and 4
+    m.
+    """
     spans = np.array([[0.0, 2.0], [1.0, 3.0], [3.0, 4.0]])
     assert band_boundaries(spans, []).tolist() == [0.0, 3.0, 4.0]
 
 
 def test_cuts_are_where_something_acts() -> None:
-    """Reference: by hand. A loaded place stays a cut; lines beside it that leave short bands do
+    """Reference: by hand. Loaded positions remain boundaries; near lines that cause short bands do
     not.
     """
     edges = np.linspace(0.0, 10.0, 1001)

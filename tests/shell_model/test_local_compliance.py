@@ -28,9 +28,7 @@ SIZES = (0.8, 0.4, 0.2)
 
 @pytest.mark.slow
 def test_no_rigid_motion_fills_it() -> None:
-    """Reference: analytic. Rigid modes open no squeezed station: other shifts leave the local
-    compliance.
-    """
+    """Reference: analytic. Rigid motions do not contribute, so that the shift has no effect."""
     shell = reduced(flat_boom(), 0.4, moments=2)
     system = shell.system
     rigid = system.rows[:, system.omega2 == 0.0]
@@ -130,7 +128,7 @@ def _short_boom(pad: PadSize | None) -> Boom:
 
 
 def _squeezed(boom: Boom, tolerance: float | None) -> float:
-    """By how much the first station closes under equal forces from above and below, in m/N."""
+    """Return the local compliance of the first station in m/N under opposite unit forces."""
     options = ShellOptions(0.1, contact_tolerance=tolerance)
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
     contacts = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motions fall into families that a shell keeps apart: four of a box, two of one mirror."""
+"""Symmetry classes of motions: four for a box, two for a section with one mirror."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -57,7 +57,7 @@ def _everything(shell: SegmentShell) -> tuple[SymmetryReduction, list[Job]]:
 def test_rigid_motions_belong_to_their_families(
     box_shell: Shells, section: Section, own: Mapping[SymmetryClass, list[int]]
 ) -> None:
-    """Reference: analytic. Slides along x, y, z, then turns about them."""
+    """Reference: analytic, translations along x, y and z, then rotations about them."""
     shell = box_shell(0.5, section=section)
     motions = shell.rigid_motions()
     symmetry, jobs = _everything(shell)
@@ -72,7 +72,7 @@ def test_rigid_motions_belong_to_their_families(
 
 @pytest.mark.parametrize("kind", ["held", "laden", "unequal"])
 def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind: str) -> None:
-    """Reference: other code, the whole shell: its forces are the quarter's in this family alone."""
+    """Reference: other code path, the whole shell under the forces of this class."""
     shells = {
         "held": lambda: box_shell(0.5, supports=HELD),
         "laden": lambda: _laden(BOX),
@@ -97,7 +97,7 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind
 
 @pytest.mark.parametrize("section", [BOX, UNEQUAL], ids=["box", "unequal"])
 def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Section) -> None:
-    """Reference: analytic. The families make up every force."""
+    """Reference: analytic. The sum over the classes is the whole force."""
     shell = box_shell(0.5, supports=HELD, section=section)
     symmetry = SymmetryReduction(shell)
     force = np.random.default_rng(1).standard_normal((shell.num_dofs, 2)) * shell.free[:, None]
@@ -112,7 +112,7 @@ def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Sectio
 
 
 def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) -> None:
-    """A load along z bends along z; a push at one flange breathes as well."""
+    """A load along z excites bending along z; a force on one flange also excites breathing."""
     shell = box_shell(0.5, supports=HELD)
     push = shell.row(flange_deflection(shell.outline(10.0), 1.0, 0.1))
     for force, expected in (
@@ -125,7 +125,9 @@ def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) 
 
 
 def test_symmetry_planes_fix_the_antisymmetric_components() -> None:
-    """Reference: analytic. Bending along z: u_z is its own image in both, the slope too."""
+    """Reference: analytic. In bending along z, u_z and the slope are symmetric about both
+    planes.
+    """
     assert SymmetryClass(1, -1).fixed_components(1) == [(0, 1), (1, 0), (1, 2)]
     assert SymmetryClass(1, -1).fixed_components(2) == [(0, 0), (0, 1), (1, 2)]
     assert SymmetryClass(1, 0).fixed_components(1) == SymmetryClass(1, -1).fixed_components(1)
@@ -138,7 +140,7 @@ def _shifted(mesh: SegmentMesh) -> SegmentMesh:
 
 
 def _one_diagonal_turned(mesh: SegmentMesh) -> SegmentMesh:
-    """Two triangles of a rectangle cut the other way; every node stays where it was."""
+    """Return the mesh with the other diagonal in one rectangle, and unchanged nodes."""
     triangles = mesh.triangles.copy()
     for other in range(1, len(triangles)):
         shared = np.intersect1d(triangles[0], triangles[other])

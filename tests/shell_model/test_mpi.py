@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Several ranks give what one gives."""
+"""Equal results on one rank and on several."""
 
 import json
 import subprocess
@@ -54,7 +54,7 @@ def everything(comm: MPI.Comm) -> dict[str, Any]:
 
 
 def frequencies(comm: MPI.Comm) -> list[float]:
-    """In Hz, of a held box; :func:`box_shell` is on all ranks of the world."""
+    """Return the frequencies of a supported box in Hz; :func:`box_shell` is on all ranks."""
     assert comm.size == MPI.COMM_WORLD.size
     return [float(f) for f in natural_frequencies(box_shell(0.25, supports=HELD), 12)]
 
@@ -68,7 +68,9 @@ def spatial(comm: MPI.Comm) -> dict[str, Any]:
 
 
 def rubbing(comm: MPI.Comm) -> dict[str, Any]:
-    """All that decides how the paper's friction case moves, on a coarse mesh."""
+    """Return all numbers that determine the motion of the paper's friction case on a coarse
+    mesh.
+    """
     law = replace(LAW.law, stiffness=1.0e8, exponent=1.0).with_clearance(LAW.above)
     options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))
     system = reduce_boom(touching(flat_boom(friction=0.2), law), options, comm).system
@@ -84,7 +86,7 @@ def rubbing(comm: MPI.Comm) -> dict[str, Any]:
 
 
 def stresses(comm: MPI.Comm) -> list[Any]:
-    """Of the outer segment at rest under its load, on rank 0."""
+    """Return the static stresses of the outer segment under its load on rank 0."""
     shell = reduce_boom(touching(flat_boom(), LAW), ShellOptions(0.5), comm)
     if shell.fields is None:
         return []
@@ -103,7 +105,7 @@ def moved(comm: MPI.Comm) -> dict[str, Any]:
 
 
 def buckled(comm: MPI.Comm) -> list[float]:
-    """Return buckling factors of a box whose supports, at 0 and 2 m, bend it."""
+    """Return buckling factors of a box in bending, with supports at 0 and 2 m."""
     shell = box_shell(0.25, supports=HELD)
     along = comm.bcast(None if shell.mesh is None else shell.mesh.along)
     forces = np.outer(along - 10.0, [1.0e5, 0.0, 2.0e4])
@@ -114,7 +116,7 @@ def buckled(comm: MPI.Comm) -> list[float]:
 
 
 def failure(comm: MPI.Comm) -> list[str] | None:
-    """Return the message of each rank where the second one fails."""
+    """Return the message of each rank after a failure of the second one."""
 
     def work() -> None:
         if comm.rank == 1:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What the element must do exactly, plates with known solutions, sections that twist."""
+"""Exact properties of the shell element, plates with known solutions, and torsion."""
 
 from collections.abc import Callable
 
@@ -76,13 +76,15 @@ def test_a_thick_plate_vibrates_after_mindlin() -> None:
 
 @pytest.mark.slow
 def test_an_open_section_twists_after_saint_venant() -> None:
-    """Reference: analytic, Σ b t³/3; the corner's and the edges' own share is 0.3 %."""
+    """Reference: analytic, Σ b t³/3. Corner and edges contribute 0.3 %."""
     assert ANGLE.torsion_constant(4, 80) == pytest.approx(ANGLE.thin_walled_constant, rel=3.0e-3)
 
 
 @pytest.mark.slow
 def test_a_closed_section_twists_after_bredt() -> None:
-    """Reference: analytic, 4 A² t/Σ b + Σ b t³/3. The stiff tie of curved shells is off by 1 %."""
+    """Reference: analytic, 4 A² t/Σ b + Σ b t³/3. The large drilling penalty of curved shells has
+    an error of 1 %.
+    """
     exact = CLOSED.thin_walled_constant
     assert CLOSED.torsion_constant(4, 80) == pytest.approx(exact, rel=5.0e-4)
     assert exact > 1.0e3 * sum(CLOSED.widths) * CLOSED.thickness**3 / 3.0
@@ -90,7 +92,7 @@ def test_a_closed_section_twists_after_bredt() -> None:
 
 @pytest.mark.slow
 def test_the_drilling_tie_does_not_matter_to_boxes() -> None:
-    """Reference: non-regression, the default tie: within 0.1 % from 1e-4 to 1, on two meshes."""
+    """Reference: non-regression. Penalties from 1e-4 to 1 agree with the default within 0.1 %."""
     outer, inner = (segment.section for segment in flat_boom().segments)
     box = PlainBox(outer, 10.0)
     ties = (1.0e-4, 1.0e-2, 1.0)
@@ -145,8 +147,8 @@ def strains_at_centroids(patch: Patch, solution: Array) -> tuple[Array, Array, A
 
 @pytest.mark.parametrize("state", constant_strains(), ids=lambda state: state.name)
 def test_constant_strains_are_exact(state: ConstantStrain) -> None:
-    """Reference: analytic. Fields between edges that are held so, and the strains of every facet,
-    which the test takes from the nodes itself.
+    """Reference: analytic, the displacements for prescribed edges. The test computes the strains of
+    every facet from the nodes.
     """
     patch = Patch.of()
     assert patch.error(state) < 1.0e-11
@@ -159,8 +161,8 @@ def test_constant_strains_are_exact(state: ConstantStrain) -> None:
 
 
 def test_rigid_motions_have_no_strain() -> None:
-    """Reference: analytic, no force on any node, against the forces when every other node alone
-    moves. A folded shell, oblique in space.
+    """Reference: analytic, no forces on the nodes of a folded, oblique shell. Forces due to a
+    motion of every second node are the scale.
     """
     points, triangles = FOLDED.mesh(3, 5)
     turn = np.asarray(Rotation.from_rotvec([-0.8, 0.5, 1.9]).as_matrix())
@@ -176,7 +178,7 @@ def test_rigid_motions_have_no_strain() -> None:
 
 
 def test_a_loose_shell_is_refused() -> None:
-    """Held at one node it still turns."""
+    """The shell with one fixed node can still rotate."""
     points, triangles = FOLDED.mesh(2, 2)
     shell = StaticShell(points, triangles, FOLDED.thickness, STEEL)
     load = shell.point_load(points[-1], np.array([0.0, 0.0, 1.0]))
@@ -187,7 +189,9 @@ def test_a_loose_shell_is_refused() -> None:
 
 @pytest.mark.parametrize("turn", [[0.7, -1.1, 0.4], [2.0, 0.3, -1.0]])
 def test_a_turned_box_vibrates_alike(turn: list[float]) -> None:
-    """Reference: analytic, the same frequencies wherever the box points; round-off is 1e-11."""
+    """Reference: analytic, equal frequencies for any orientation of the box, with round-off of
+    1e-11.
+    """
     box = PlainBox(BOX, 10.0)
     straight = box.free_frequencies(0.5, 10)
     rotation = np.asarray(Rotation.from_rotvec(turn).as_matrix())
@@ -211,8 +215,8 @@ def test_the_shell_gives_way_as_the_plate() -> None:
 
 @pytest.mark.parametrize(("edges", "allowed"), [(2, 5.0e-3), (4, 5.0e-4)])
 def test_a_twisted_beam_gives_way_as_published(edges: int, allowed: float) -> None:
-    """Reference: external, 5.4245e-3 and 1.7532e-3, MacNeal and Harder 1985; a tenth of the error
-    at twice the edges.
+    """Reference: external, 5.4245e-3 and 1.7532e-3 (MacNeal and Harder 1985). Twice the number of
+    edges has a tenth of the error.
     """
     assert np.array(twisted_beam(edges)) == pytest.approx(
         np.array(PUBLISHED.twisted_beam), rel=allowed

@@ -51,7 +51,7 @@ def _read(row: Row, field: Array) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SECTIONS)
 def test_rows_read_rigid_motions(box_shell: Shells, name: str) -> None:
-    """Reference: analytic. Shifts are read as they are, a turn φ as a twist of φ."""
+    """Reference: analytic. Translations give their own size, a rotation φ gives the twist φ."""
     section = SECTIONS[name]
     shell = box_shell(0.5, section=section)
     outline = shell.outline(10.0)
@@ -74,7 +74,7 @@ def test_rows_read_rigid_motions(box_shell: Shells, name: str) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("section", [*SECTIONS.values(), UNEQUAL], ids=[*SECTIONS, "unequal box"])
 def test_contacts_read_the_true_faces(box_shell: Shells, section: Section) -> None:
-    """Reference: analytic. A displacement u_z = z, u_y = y is read as the place of each face."""
+    """Reference: analytic. Displacements u_z = z and u_y = y give the position of each face."""
     shell = box_shell(0.5, section=section)
     field = np.zeros(shell.num_dofs)
     field[shell.node_dofs[:, 1:]] = shell.nodes[:, 1:]
@@ -98,7 +98,7 @@ def test_contacts_read_the_true_faces(box_shell: Shells, section: Section) -> No
 def test_a_free_segment_vibrates_as_its_beam(
     box_shell: Shells, section: Section, direction: Direction
 ) -> None:
-    """Reference: other code, Timoshenko elements, 0.3 % apart; a tenth of J would be 5 %."""
+    """Reference: other code, Timoshenko elements, within 0.3 %. A tenth of J would change 5 %."""
     off = frequencies_off(box_shell(0.25, section=section), direction)
     assert off == pytest.approx(0, abs=6e-3)
 
@@ -145,7 +145,7 @@ def test_a_box_written_as_a_polygon_is_the_box() -> None:
 
 
 def _compliance(system: GapSystem) -> Array:
-    """Of rows, and of the tip and its twist where there is one, at σ = 1e4 rad²/s²."""
+    """Return the compliance of rows, tip and, if any, its twist at σ = 1e4 rad²/s²."""
     tips = [system.observers[name].row for name in ("tip", "tip_twist") if name in system.observers]
     rows = np.vstack([system.rows, *tips])
     return np.asarray(rows / (system.omega2 + 1.0e4) @ rows.T)
@@ -164,7 +164,7 @@ def test_a_hexagonal_boom_with_collars_follows_its_beam(monkeypatch: pytest.Monk
 
 @pytest.mark.slow
 def test_a_mirrored_boom_moves_the_other_way() -> None:
-    """Reference: symmetry. Upside down, under forces upside down: what pressed up presses down."""
+    """Reference: symmetry. The mirrored boom under mirrored forces has mirrored contact forces."""
     upright = sections.add_collars(sections.boom_of(U, INNER_U), 0.006)
     mirrored = replace(
         upright,

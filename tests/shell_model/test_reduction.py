@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The reduced segment answers as the full one does, and says how well."""
+"""Accuracy of the reduced segment, and its measured errors."""
 
 import math
 import os
@@ -37,7 +37,7 @@ def _inputs(shell: SegmentShell) -> np.ndarray:
 
 @pytest.mark.slow
 def test_compliance_equals_full_solves_far_from_the_shifts(box_shell: Shells) -> None:
-    """Reference: the full model. Statics, and frequencies the basis was not built at."""
+    """Reference: the full model, in statics and at frequencies other than the shifts."""
     shell = box_shell(0.25, supports=HELD)
     inputs = _inputs(shell)
     reduced = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())
@@ -62,7 +62,7 @@ def test_modes_below_the_stated_limit_are_the_full_models(box_shell: Shells) -> 
 def test_a_load_in_the_plane_of_bending_leaves_two_rigid_modes_exactly_zero(
     box_shell: Shells,
 ) -> None:
-    """Heave and pitch; the load moves nothing else freely, so the four others drop out."""
+    """The load excites only vertical translation and pitch of the six rigid motions."""
     shell = box_shell(0.25)
     reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())
     assert np.count_nonzero(reduced.omega2 == 0.0) == 2
@@ -90,7 +90,7 @@ def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:
 
 
 def test_dependent_inputs_add_no_coordinates(box_shell: Shells) -> None:
-    """The same space, in any order, with sums, copies and zeros among the inputs."""
+    """The space is the same for any order, and with sums, copies and zeros among the inputs."""
     shell = box_shell(0.5, supports=HELD)
     inputs = _inputs(shell)
     twice = np.column_stack([inputs, inputs[:, :1] + inputs[:, 1:2], 0.0 * inputs, inputs])
@@ -147,7 +147,7 @@ def test_a_basis_grows_until_it_meets_the_tolerance(box_shell: Shells) -> None:
 
 
 def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
-    """And what these leave is told: fewer err more."""
+    """The measured errors are larger with fewer coordinates."""
     shell = box_shell(0.5, supports=HELD)
     inputs = _inputs(shell)
     few, more = (
@@ -192,7 +192,9 @@ def test_the_order_of_rows_does_not_show() -> None:
 
 
 def test_cancelling_terms_are_zero() -> None:
-    """Reference: analytic. A force against its mirror's, but for the last bit of one term."""
+    """Reference: analytic, a force and its opposite mirror image, except for the last bit of one
+    term.
+    """
     left, right = _terms()
     mirrored = np.concatenate([right, -right])
     mirrored[0] *= 1.0 + 2.3e-16

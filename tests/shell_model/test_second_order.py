@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells under axial forces: what walls give way by, and booms reduced as in full."""
+"""Shells under axial forces: geometric stiffness, and reduced and full booms."""
 
 from dataclasses import replace
 from functools import cache
@@ -54,8 +54,8 @@ def sparse(matrix: PETSc.Mat) -> csr_array:
 
 
 def test_geometric_stiffness_of_a_rigid_rotation() -> None:
-    """Reference: analytic. K_G of a unit rotation is ∫P dx, with a collar and self-weight; of a
-    translation 0.
+    """Reference: analytic. K_G of a unit rotation is ∫P dx, with a collar and self-weight, and 0
+    for a translation.
     """
     fly = replace(telescope(0.0).segments[1], collars=(Collar((7.0, 8.0), 0.004),))
     (pressed,) = with_compression([fly], [], [Thrust(0, 9.0, 4e4)], gravity=9.0)
@@ -108,7 +108,9 @@ def test_basis_for_axial_forces_keeps_its_accuracy() -> None:
 
 
 def test_shell_held_by_contacts_tips_over_as_a_beam() -> None:
-    """Reference: analytic, ∫P dx over the inertia about the middle; 1 % for what the walls bend."""
+    """Reference: analytic, ∫P dx over the inertia about the centre. Bending of walls contributes 1
+    %.
+    """
     boom = telescope(THRUST)
     fly = boom.segments[1]
     x = np.linspace(4.5, 10.5, 2001)

@@ -27,7 +27,7 @@ Shells = Callable[..., SegmentShell]
 
 
 def test_rigid_motions_carry_the_mass_of_the_box(box_shell: Shells) -> None:
-    """Reference: analytic, ρ A L and ρ (J_y + J_z) L, without the corners' own share (t/h)²."""
+    """Reference: analytic, ρ A L and ρ (J_y + J_z) L, except for the effect (t/h)² of corners."""
     shell = box_shell(0.25)
     motions = shell.rigid_motions()
     masses = (motions.T @ times(shell.mass, motions)).diagonal()
@@ -70,8 +70,8 @@ def _overhang_compliance(box_shell: Shells, size: float) -> float:
 
 @pytest.mark.slow
 def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
-    """Reference: analytic, a² (l + a) / 3EJ + (a + a²/l) / G A_web, l = 2 m, a = 8 m; 0.1 % apart,
-    a third of the flanges' shear flow.
+    """Reference: analytic, a² (l + a) / 3EJ + (a + a²/l) / G A_web, l = 2 m, a = 8 m, within 0.1 %,
+    a third of the effect of shear in the flanges.
     """
     bending = 64.0 * 10.0 / (3.0 * STEEL.youngs_modulus * BOX.second_moment_of_area)
     shear = (8.0 + 32.0) / (STEEL.shear_modulus * BOX.shear_area)
@@ -83,8 +83,8 @@ def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
 
 
 def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
-    """Reference: analytic, lifted and pitched; shifted, yawed and rolled, where (y, z) moves by φ
-    (−z, y).
+    """Reference: analytic, vertical translation and pitch; lateral translation, yaw and roll. In
+    roll, (y, z) moves by φ (−z, y).
     """
     shell = box_shell(0.25)
     outline, corners = shell.outline(10.0), CornerLines(shell)
@@ -115,8 +115,8 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
 
 @pytest.mark.slow
 def test_a_length_of_a_corner_gives_way_alike_on_any_mesh(box_shell: Shells) -> None:
-    """Reference: analytic. Changes by halved meshes fall to a third over a length, and stay at a
-    point.
+    """Reference: analytic. With halved edges, changes decrease to a third for a force along a
+    length, and stay equal for a point force.
     """
     section = BoxSection(0.2, 0.2, 0.006, 0.006)
 
@@ -178,7 +178,9 @@ def test_every_support_holds_the_twist(box_shell: Shells) -> None:
 
 
 def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
-    """Reference: analytic: slide along x always but for a clamp, and both tilts about one pin."""
+    """Reference: analytic, translation along x except with a clamp, and both rotations about a
+    single pin.
+    """
     left = {
         (): 6, (Support(0.0),): 3, (Support(0.0, stiffness=10.0),): 3, HELD: 1,
         (Support(0.0, stiffness=10.0), Support(2.0)): 1, (Support(2.0, "clamped"),): 0,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Collars and diaphragms: three walls on an edge, with their mass and what they stiffen."""
+"""Collars and diaphragms: edges with three walls, masses, and stiffening."""
 
 from dataclasses import replace
 from functools import cache
@@ -95,7 +95,7 @@ def test_rigid_motions_carry_the_mass_of_the_stiffeners() -> None:
 
 
 def test_stiffeners_do_not_change_the_uniform_load() -> None:
-    """Reference: analytic. 1 N/m over 10 m without a moment, whatever stiffens the box."""
+    """Reference: analytic, 1 N/m over 10 m without a moment, for any stiffeners."""
     shell = shell_of(COLLARS, PLATES)
     motions = shell.rigid_motions()
     assert shell.unit_loads["z"] @ motions == pytest.approx([0, 0, 10.0, 0, 0, 0], abs=1.0e-9)
@@ -104,7 +104,7 @@ def test_stiffeners_do_not_change_the_uniform_load() -> None:
 
 @pytest.mark.parametrize("inertial", [True, False])
 def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
-    """Reference: analytic. The momentum of 0.1 m/s moves all of a free segment at 0.1 m/s."""
+    """Reference: analytic. All parts of a free segment have the initial velocity of 0.1 m/s."""
     boom = flat_boom()
     inner = replace(
         boom.segments[1], diaphragms=(Diaphragm(9.0, 0.016),), collars=(Collar((9.0, 9.5), 0.01),)
@@ -122,7 +122,7 @@ def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
 
 
 def test_an_outline_where_a_diaphragm_stands_has_the_walls_nodes_alone() -> None:
-    """Reference: the plain box on the same mesh. Supports hold as much of it, too."""
+    """Reference: the box without diaphragm on the same mesh. Supports fix the same nodes."""
     held = (Support(0.0), Support(2.0, "clamped"))
     shells = shell_of(supports=held), shell_of(COLLARS[:2], PLATES, held)
     for x in (0.0, 2.0, 5.0, 10.0):
@@ -134,7 +134,7 @@ def test_an_outline_where_a_diaphragm_stands_has_the_walls_nodes_alone() -> None
 
 
 def test_a_stiffened_shell_mirrors_itself() -> None:
-    """Reference: analytic. Nothing moves along y or turns about x; the box on its side has equal
+    """Reference: analytic. There is no lateral motion or twist. The box on its side has equal
     frequencies.
     """
     shell = shell_of(COLLARS, PLATES, HELD)
@@ -177,8 +177,8 @@ def test_overlapping_collars_on_different_walls_are_one_around_all() -> None:
 
 @pytest.mark.slow
 def test_a_collar_where_the_moment_is_largest_stiffens_as_a_stepped_beam() -> None:
-    """Reference: analytic. The overhang of Timoshenko's beam with the stiffness of thicker walls
-    over half a metre at its support; 8 % of the deflection, which beams leave out.
+    """Reference: analytic, the overhang of a Timoshenko beam with thicker walls over half a metre
+    at its support. They reduce the deflection by 8 %, which beams neglect.
     """
     collar = Collar((1.75, 2.25), 0.01)
     shells = shell_of(supports=HELD), shell_of((collar,), supports=HELD)
@@ -223,7 +223,7 @@ def test_strips_on_the_flanges_bend_as_by_hand() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("x", [0.0, 5.0])
 def test_a_diaphragm_stops_the_breathing_of_the_section(x: float) -> None:
-    """Reference: analytic. The plate between flanges pulled apart is a hundred times stiffer than
+    """Reference: analytic. A plate between flanges under tension is a hundred times as stiff as
     walls.
     """
     rows = []
@@ -236,7 +236,7 @@ def test_a_diaphragm_stops_the_breathing_of_the_section(x: float) -> None:
 
 
 def short_box(comm: MPI.Comm, size: float) -> SegmentShell:
-    """So short that ranks part in the midst of its diaphragms."""
+    """Return a box so short that the partition divides its diaphragms."""
     plates = tuple(Diaphragm(x, 0.008) for x in (0.0, 0.1, 0.2, 0.3))
     segment = replace(box_segment("box", 0.0, 0.3, BOX), diaphragms=plates)
     return assemble_segment(comm, segment, meshed(segment, size) if comm.rank == 0 else None)
@@ -244,7 +244,7 @@ def short_box(comm: MPI.Comm, size: float) -> SegmentShell:
 
 @pytest.mark.slow
 def test_pictures_know_walls_from_diaphragms() -> None:
-    """Reference: the plain boom. Flanges are found in a stiffened one."""
+    """Reference: the boom without stiffeners. Its flanges are also found with stiffeners."""
     boom = flat_boom()
     plates = (Diaphragm(0.0, 0.008), Diaphragm(2.0, 0.008), Diaphragm(8.0, 0.008))
     outer = replace(boom.segments[0], diaphragms=plates, collars=(Collar((9.7, 10.0), 0.01),))

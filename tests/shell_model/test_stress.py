@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Recovered stresses are those of plates with known strains, and of beams away from contacts."""
+"""Stresses of plates with known strains, and of beams away from contacts."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -76,7 +76,9 @@ def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
 
 @pytest.mark.slow
 def test_shear_has_the_sign_of_the_way_around() -> None:
-    """Reference: analytic, τ = G γ of u_y = γ x: with s on the top, against it on the bottom."""
+    """Reference: analytic, τ = G γ for u_y = γ x, positive along s on the top, negative on the
+    bottom.
+    """
     shear = 1.0e-4
     found, mesh = stresses(
         lambda p: shear * np.stack([0.0 * p[:, 0], p[:, 0], 0.0 * p[:, 0]], axis=1), still
@@ -114,7 +116,7 @@ def test_bending_stress_is_read_at_the_outer_face() -> None:
     [((3.0, 0.0, 0.0), 3.0), ((0.0, 0.0, 1.0), 3.0**0.5), ((2.0, 2.0, 0.0), 2.0)],
 )
 def test_von_mises_of_simple_states(membrane: tuple[float, ...], expected: float) -> None:
-    """Reference: analytic. A pull gives itself, a shear √3 of it, an equal biaxial pull itself."""
+    """Reference: analytic. Tension σ and equal biaxial tension give σ, and shear τ gives √3 τ."""
     stress = Stress(np.float32([membrane]), np.float32([[1.0, 0.0, 0.0]]))
     assert stress.von_mises("middle") == pytest.approx(expected)
     assert stress.largest() >= stress.von_mises("middle")
@@ -142,13 +144,15 @@ def at_rest(
 
 
 def clamped(section: Section, size: float) -> ShellStress:
-    """10 m of a section under 100 N/m."""
+    """Return a clamped segment of 10 m under 100 N/m."""
     segment = box_segment("box", 0.0, 10.0, section, 100.0, (Support(0.0, kind="clamped"),))
     return at_rest(Boom((segment,), ()), size)[1]
 
 
 def carried_at(shell: ShellStress, x: float) -> dict[str, WallForces]:
-    """Of each wall at a row of a clamped one, whose moment and shear are those of statics."""
+    """Return the wall forces at a row of the cantilever, and check their moment and shear by
+    statics.
+    """
     forces, row = wall_forces(shell, 0.0, 0, x), shell.row(0, x)
     arm = 10.0 - 0.5 * (shell.spans[row].min() + shell.spans[row].max())
     assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
@@ -242,7 +246,7 @@ def test_a_bonded_boom_keeps_each_segments_stresses() -> None:
 
 
 def stressed(boom: Boom) -> ShellStress:
-    """Where it has not moved."""
+    """Return the stresses of a boom that has not moved."""
     fields = reduce_boom(boom, ShellOptions(mesh_size=0.4), MPI.COMM_SELF).fields
     still = np.zeros((1, fields.sizes["mode"]))
     moving = fields.assign(state=(("time", "mode"), still), time=("time", np.zeros(1)))
@@ -250,13 +254,13 @@ def stressed(boom: Boom) -> ShellStress:
 
 
 def axial_force(shell: ShellStress, x: float) -> float:
-    """By all walls through a section, in N."""
+    """Return the axial force of all walls at a cross-section in N."""
     return sum(forces.axial for forces in wall_forces(shell, 0.0, 0, x).values())
 
 
 def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
-    """Reference: by hand, −P/A in every wall, with m̄ g (L − x) of weight; a collar takes its
-    share.
+    """Reference: by hand, −P/A in every wall with the weight m̄ g (L − x); a collar carries its
+    part.
     """
     force, gravity = 0.1 * CRITICAL, 9.80665
     boom = column((CLAMP,), force)
@@ -279,7 +283,7 @@ def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
 
 
 def test_a_taper_is_pressed_most_at_its_slender_end() -> None:
-    """Reference: by hand, −P/A of the local section, four times as much at the head."""
+    """Reference: by hand, −P/A of the local section, four times as large at the head."""
     shell = stressed(arm(1000.0))
     stress, x = shell.at(0.0).membrane[:, 0], shell.centroids[:, 0]
     (segment,) = arm().segments
@@ -298,8 +302,8 @@ TIME = np.linspace(0.0, 1.0, 1001)
 def shell() -> ShellStress:
     """Return a box of 4 m with global bending in one coordinate, a spot near 3 m in the other.
 
-    The spot is one triangle of the top, whose faces bend; it shows at 0.701 s for an instant,
-    between those at which every triangle is looked at.
+    The spot is a triangle of the top in bending. It occurs only at 0.701 s, between the instants at
+    which all triangles are evaluated.
     """
     mesh = mesh_segment(THIN, {"start": 0.0, "end": 4.0}, 0.1)
     mesh = add_thickness(box_segment("box", 0.0, 4.0, THIN), mesh)
@@ -315,7 +319,7 @@ def shell() -> ShellStress:
 
 
 def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
-    """Reference: analytic, 1 MPa at the flanges; a spot raises the mean of a patch by a
+    """Reference: analytic, 1 MPa at the flanges. The spot increases the mean of a patch by a
     thirtieth.
     """
     history = stress_near_places(shell, [1.0, 3.0, 9.0], ["box"])
@@ -351,7 +355,9 @@ def test_triangles_without_the_largest_stress_alone_are_left_out(
 
 @pytest.mark.parametrize("places", [[1.0, 3.0], []])
 def test_the_largest_is_found(shell: ShellStress, places: list[float]) -> None:
-    """With a band it is the spot; without, what all triangles have at some instants."""
+    """With a band, the result is the spot; otherwise the largest stress at the evaluated
+    instants.
+    """
     found = summarise(shell, stress_near_places(shell, places, ["box"]))
     if not places:
         assert found.von_mises == pytest.approx(1.0e6, rel=1e-3)

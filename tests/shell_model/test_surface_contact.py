@@ -48,7 +48,7 @@ def _with_pads(boom: Boom, pad: PadSize = PAD) -> Boom:
 
 
 def _rigid(system: GapSystem, readings: dict[str, float]) -> Array:
-    """Return the rigid motion of the free inner segment with these readings."""
+    """Return the rigid motion of the free inner segment with these outputs."""
     free = np.flatnonzero(system.omega2 == 0.0)
     rows = np.array([system.observers[name].row[free] for name in readings])
     state = np.zeros(system.num_modes)
@@ -66,7 +66,7 @@ def _forces(system: GapSystem, state: Array) -> Array:
 def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(
     box_shell: Callable[..., SegmentShell], normal: str, side: int
 ) -> None:
-    """Reference: analytic, the polynomial at places that are no nodes, at nodes, on edges."""
+    """Reference: analytic, the polynomial at nodes, on edges and between them."""
     shell = box_shell(0.5)
     wall = Wall("z" if normal == "z" else "y", side)
     half = 0.5 * (BOX.width if normal == "z" else BOX.height)
@@ -100,7 +100,7 @@ def test_a_place_beside_a_wall_is_refused(box_shell: Callable[..., SegmentShell]
 @pytest.mark.slow
 @pytest.mark.parametrize("side", [1.0, -1.0])
 def test_a_uniform_approach_presses_as_the_stations_do(side: float) -> None:
-    """Reference: analytic, (4) at both stations; the pressure's middle is that of the overlap."""
+    """Reference: analytic, (4) at both stations. The resultant is at the centre of the overlap."""
     system = _system(flat_boom())
     depth = 2.0e-3
     heave = side * (LAW.above + depth)
@@ -147,7 +147,7 @@ def test_one_sided_law_has_no_points_below() -> None:
 
 @pytest.mark.slow
 def test_friction_stays_at_the_stations() -> None:
-    """Reference: this shell with contact at its stations, but for 1e-4 of truncated modes."""
+    """Reference: the shell with contact at its stations, within 1e-4 by truncated modes."""
     lines, surface = (
         _system(flat_boom(friction=0.2), line=line) for line in ("near webs", "surface")
     )
@@ -161,7 +161,7 @@ def test_friction_stays_at_the_stations() -> None:
 
 @pytest.mark.slow
 def test_in_space_each_point_presses_one_corner() -> None:
-    """Reference: analytic. A roll is met by ∫ k_A y² dA = k_A L b³/12 on each flange."""
+    """Reference: analytic. Each flange resists roll with ∫ k_A y² dA = k_A L b³/12."""
     system = _system(boom_in_space(friction=0.2))
     pressing = sorted(row for friction in system.frictions for row in friction.normal_rows)
     assert pressing == list(range(len(system.laws))) == list(range(4 * 16))
@@ -182,7 +182,9 @@ def test_in_space_each_point_presses_one_corner() -> None:
 
 @pytest.mark.slow
 def test_contact_over_a_surface_keeps_energy() -> None:
-    """Reference: analytic, the ledger; first contact where the stations' is, at the tail."""
+    """Reference: analytic, the energy balance. The first contact is at the tail, as with
+    stations.
+    """
     surface, lines = (
         AdaptiveStep()(Motion(_system(flat_boom(), line=line), 0.25))
         for line in ("surface", "near webs")
@@ -223,7 +225,7 @@ def test_pads_take_the_place_of_points_one_by_one(boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_larger_pads_are_softer() -> None:
-    """Reference: none but sense: further from the stiff corners the flanges give way more."""
+    """Reference: physics. Flanges are softer at a larger distance from the corners."""
     slow = (2.0 * np.pi * 10.0) ** 2
 
     def give(width: float, offset: float = 0.0) -> float:

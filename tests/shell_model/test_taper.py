@@ -79,8 +79,8 @@ def test_it_bends_as_its_beam(shape: str) -> None:
 
 @pytest.mark.parametrize("shape", ENDS)
 def test_its_walls_stand_where_the_section_is(shape: str) -> None:
-    """Reference: by hand. Nodes lie on the section at their x; mass of the beam; 1 N/m on each
-    half.
+    """Reference: by hand. Nodes are on the section at their x. The mass is that of the beam, and
+    each half has 1 N/m.
     """
     boom = cantilever(shape)
     (shell,) = assemble_segments(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
@@ -162,7 +162,9 @@ def test_its_section_forces_are_those_of_statics() -> None:
 @pytest.mark.parametrize("lateral", [None, 5e-3])
 @pytest.mark.parametrize("pad", [None, PadSize(0.12, 0.05)])
 def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -> None:
-    """Reference: by hand. Moved by 1 m it approaches by 1 m; turned by 1 rad, by x of the pad."""
+    """Reference: by hand. A translation of 1 m gives 1 m; a rotation of 1 rad gives the x of the
+    pad.
+    """
     boom = tapered_boom(pad, lateral)
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.3), MPI.COMM_SELF)
     rows = ShellContacts.from_shells(
@@ -183,7 +185,7 @@ def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -
 
 
 def test_surfaces_are_parallel() -> None:
-    """Reference: the message."""
+    """Reference: exact message."""
     boom = tapered_boom(None, None)
     options = ShellOptions(mesh_size=0.4, contact_line="surface")
     with pytest.raises(BoomError, match="'surface' lets parallel walls touch, and 'outer' tapers"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shells that telescope: rows and springs along the way, motion beside that of beams."""
+"""Telescoping shells: rows and springs at extensions, and motion compared with beams."""
 
 from dataclasses import replace
 from functools import cache
@@ -60,7 +60,7 @@ def shell(way: float, drive: Drive | None = None) -> ReducedShell:
 
 
 def local(system: GapSystem) -> Array:
-    """(num_rows,) in m/N what walls give way."""
+    """Return the local compliance (num_rows,) in m/N."""
     whole = compliance(system.omega2, system.rows)
     return local_compliance(whole, system.laws, system.station_of_row.tolist())
 
@@ -73,7 +73,7 @@ def standing(system: GapSystem, way: float) -> GapSystem:
 
 
 def test_springs_keep_stiffness_and_mass_of_the_residual_modes() -> None:
-    """Reference: analytic, two masses on springs behind two rows that turn along the way."""
+    """Reference: analytic, two masses on springs, with two rows that rotate with the extension."""
     omega2 = np.array([squared(900.0), squared(2500.0)])
     shifted = omega2 + squared(SLOW)
     angles = np.linspace(0.0, 0.3, 5)
@@ -92,7 +92,7 @@ def test_springs_keep_stiffness_and_mass_of_the_residual_modes() -> None:
 
 @pytest.mark.slow
 def test_shell_at_an_extension_equals_a_shell_built_there() -> None:
-    """Reference: other code, the shell reduced where it rests, with as many rings there."""
+    """Reference: other code path, the shell reduced at this extension with the same mesh lines."""
     errors = shell(0.0, DRIVE).errors
     assert 1.0e-4 < errors["contact_compliance"] < 0.01
     assert errors["readings"] < 0.02
@@ -112,7 +112,9 @@ def test_shell_at_an_extension_equals_a_shell_built_there() -> None:
 
 @pytest.mark.slow
 def test_pads_of_a_boom_in_space_on_the_way() -> None:
-    """Reference: other code, the shell in space reduced there: rest and compliances."""
+    """Reference: other code path, the shell in space reduced at this extension: statics and
+    compliances.
+    """
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = boom_in_space(friction=0.2, sideways=0.3)
@@ -137,7 +139,7 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
 
 @pytest.mark.slow
 def test_no_ring_of_the_mesh_is_felt() -> None:
-    """Reference: analytic, the lever rule; compliances of pads are straight from ring to ring
+    """Reference: analytic, the lever rule. Between mesh lines, compliances of pads are linear
     within 0.1 %.
     """
     ways = np.linspace(0.5, 2.0, 49)
@@ -169,7 +171,9 @@ def moved(system: GapSystem, duration: float) -> Trajectory:
 
 @pytest.mark.slow
 def test_motion_without_speed_equals_the_fixed_shell() -> None:
-    """Reference: other code, the shell reduced where it rests, over its first presses."""
+    """Reference: other code path, the shell reduced at this extension, during its first
+    contacts.
+    """
     still = replace(shell(0.0, DRIVE).system, travels=())
     runs = [moved(system, 0.5) for system in (still, shell(0.0).system)]
     assert runs[1].data.attrs["contact_changes"] > 10
@@ -179,7 +183,9 @@ def test_motion_without_speed_equals_the_fixed_shell() -> None:
 
 @pytest.mark.slow
 def test_beams_are_as_near_as_where_it_rests() -> None:
-    """Reference: other code, beam elements, as near as resting booms; the energy balance closes."""
+    """Reference: other code, beam elements, as near as at constant extension; and the energy
+    balance.
+    """
     apart = []
     for drive in (None, DRIVE):
         boom = touching(telescope(0.0, drive, dashpot=3.0e3), LAW)
@@ -195,7 +201,9 @@ def test_beams_are_as_near_as_where_it_rests() -> None:
 
 
 def told(system: GapSystem) -> Array:
-    """(5,) what tip and head read at rest, and the lowest frequencies of contacts as springs."""
+    """Return static tip and head, and the three lowest frequencies with springs as contacts
+    (5,).
+    """
     rest = equilibrium(system, system.load)
     stiffness = system.stiffness + 1.0e8 * system.rows.T @ system.rows
     squares = eigh(stiffness, eigvals_only=True, subset_by_index=[0, 2])
@@ -205,7 +213,9 @@ def told(system: GapSystem) -> Array:
 
 @pytest.mark.slow
 def test_shell_with_axial_forces_equals_a_shell_built_there() -> None:
-    """Reference: other code path, the shell reduced there; analytic, the energy balance."""
+    """Reference: other code path, the shell reduced at this extension; analytic, the energy
+    balance.
+    """
 
     def reduced(way: float, drive: Drive | None = None) -> GapSystem:
         free = telescope(way, drive, 0.3)
