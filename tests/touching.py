@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Booms whose joints get a contact law."""
+"""Booms with contact laws in their joints."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,7 +14,9 @@ Laws = ContactLaw | Sequence[ContactLaw]
 
 
 def touching(boom: Boom, laws: Laws, lateral_laws: Laws = ()) -> Boom:
-    """Return the boom with a law in all joints, or one in each; that of a gap sets its play."""
+    """Return the boom with a law in all joints, or one in each; the law of a gap also gives the
+    play.
+    """
     changes: list[dict[str, Any]] = [{} for _ in boom.joints]
     for prefix, given in (("", laws), ("lateral_", lateral_laws if boom.spatial else ())):
         each = [given] * len(boom.joints) if isinstance(given, ContactLaw) else given

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""One blank figure per run: layout and printing take longer than the motion of beams."""
+"""A blank figure per run, since layout and printing take longer than the motion of beams."""
 
 from PIL import Image
 

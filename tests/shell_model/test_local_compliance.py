@@ -204,8 +204,8 @@ def test_estimated_compliance_follows_the_shell(
 
 @pytest.mark.slow
 def test_a_pad_on_the_corners_bends_no_wall() -> None:
-    """Reference: other code path, stations at the midpoints of the pads; narrow pads are near from
-    above.
+    """Reference: other code path, stations at the centres of the pads. Narrow pads have slightly
+    more compliance.
     """
 
     def local(boom: Boom) -> float:

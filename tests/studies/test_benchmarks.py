@@ -45,7 +45,7 @@ def found() -> Study:
     ],
 )
 def test_coarse_meshes_close_in(found: Study, what: str, last: float, order: float) -> None:
-    """Reference: external and analytic, as each row names it."""
+    """Reference: external or analytic, as named in each row."""
     (errors,) = (plot.curves[what][1] for plot in found.plots if what in plot.curves)
     assert errors[-1] < last
     assert np.log2(errors[-2] / errors[-1]) > order

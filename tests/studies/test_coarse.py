@@ -27,7 +27,7 @@ CONTACT_SIZE = contact_size.Sizes(
 
 @pytest.mark.slow
 def test_pads_beside_the_webs_give_way_more() -> None:
-    """Reference: other code, plate theory; a flange is ten times softer than a corner."""
+    """Reference: other code, plate theory. A flange is ten times as soft as a corner."""
     found = contact_size.study(silent, CONTACT_SIZE)
     meshes = found.data["local-compliance"]
     local = np.array([[row[f"edges × {part:g}"] for part in CONTACT_SIZE.meshes] for row in meshes])
@@ -74,7 +74,7 @@ MESH = mesh.Sizes(meshes=(8.0, 4.0, 2.0), default=4.0, duration=0.9, frequencies
 
 @pytest.mark.slow
 def test_coarse_meshes_close_in() -> None:
-    """Reference: other code, the limit of uniform meshes. Refinement softens."""
+    """Reference: other code, the limit of uniform meshes. Refinement increases the compliance."""
     found = mesh.study(silent, MESH)
     values = {
         row["quantity"]: [row[f"edges × {part:g}"] for part in MESH.meshes]
@@ -101,7 +101,9 @@ STIFFENERS = stiffeners.Sizes(
 
 @pytest.mark.slow
 def test_stiffeners_act_where_they_are() -> None:
-    """Reference: analytic, a plate in shear, a ring, masses; each stiffens its own end alone."""
+    """Reference: analytic, a plate in shear, a ring, masses. Each stiffener has an effect at its
+    end only.
+    """
     found = stiffeners.study(silent, STIFFENERS)
     for verification in found.verifications:
         assert verification.holds, (verification.what, verification.error)
@@ -134,7 +136,7 @@ STRESS = stress.Sizes(meshes=(0.2, 0.1, 0.05), default=0.1, places=(14.0,))
 
 
 def test_contact_forces_hold_the_segment() -> None:
-    """Reference: analytic. 550.7 N of lift at 14 m on levers of 4 and 5 m."""
+    """Reference: analytic, 550.7 N upwards at 14 m with lever arms of 4 and 5 m."""
     forces = stress.contact_forces(build_boom(friction_case()))
     assert {x: side for x, (side, _) in forces.items()} == {9.0: -1, 10.0: 1}
     assert forces[10.0][1] == pytest.approx(5.0 * 550.7)
@@ -143,7 +145,7 @@ def test_contact_forces_hold_the_segment() -> None:
 
 @pytest.mark.slow
 def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
-    """Reference: analytic away from contacts; near them refinement doubles the stress at a
+    """Reference: analytic away from contacts. Near contacts refinement doubles the stress at a
     point.
     """
     found = stress.study(silent, STRESS)
@@ -169,7 +171,7 @@ SURFACE_CONTACT = surface_contact.Sizes(
 
 @pytest.mark.slow
 def test_a_surface_is_softer_than_webs_on_webs() -> None:
-    """Reference: order of compliances; forces of known approaches are their integrals."""
+    """Reference: the order of compliances, and integrals for known approaches."""
     found = surface_contact.study(silent, SURFACE_CONTACT)
     assert all(verification.holds for verification in found.verifications)
     assert len(found.verifications) == 6

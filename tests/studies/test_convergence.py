@@ -77,7 +77,7 @@ def test_studies_leave_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
 
 
 def test_every_documented_value_is_proven() -> None:
-    """docs/verification.md is what the last run of all studies has written."""
+    """docs/verification.md has the output of the last run of all studies."""
     _, _, sections = DOCUMENT.read_text(encoding="utf-8").partition("\n## ")
     rows = [
         line.strip("|").split("|")
@@ -91,7 +91,7 @@ def test_every_documented_value_is_proven() -> None:
 
 
 class _Here:
-    """A pool that does its work at once."""
+    """A pool that works at once."""
 
     def __init__(self, *_: object, **__: object) -> None: ...
 
@@ -147,7 +147,7 @@ def test_a_power_law_is_told_exactly() -> None:
 
 @pytest.mark.parametrize("values", [(1.0, 2.0, 1.5), (1.0, 1.1, 1.3), (1.0, 1.0, 1.0), (1.0, 1.1)])
 def test_no_order_without_convergence(values: tuple[float, ...]) -> None:
-    """Values that go back and forth, part, or stand still have no order, and so no limit."""
+    """Values that oscillate, diverge or are constant have no order and no limit."""
     found = refined(values)
     assert math.isnan(found.order)
     assert math.isnan(found.limit)
@@ -159,7 +159,7 @@ def test_no_order_without_convergence(values: tuple[float, ...]) -> None:
 
 
 def test_a_slow_order_leads_nowhere() -> None:
-    """Reference: analytic, steps that fall to nine tenths are of order 0.15."""
+    """Reference: analytic. Differences that decrease to nine tenths have the order 0.15."""
     found = refined([2.0, 1.9, 1.81])
     assert found.order == pytest.approx(0.152, abs=1.0e-3)
     assert found.best == 1.81

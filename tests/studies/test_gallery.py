@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The gallery shows the pictures that its script makes, each with where it comes from."""
+"""The gallery and its script: the same pictures, each with its source."""
 
 import re
 from pathlib import Path

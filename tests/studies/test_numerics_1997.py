@@ -42,7 +42,7 @@ def moved(tip: Array, head: float = 0.1, gained: float = 0.0, since: float = 0.0
 
 
 def swing(frequency: float = 0.9, late: float = 0.0) -> Array:
-    """In m, whose phase is off by so many s after six."""
+    """Return a vibration in m with a delay in s after six seconds."""
     return np.sin(2.0 * np.pi * frequency * (TIME - late * np.clip(TIME - 6.0, 0.0, 1.0)))
 
 
@@ -56,7 +56,7 @@ def sample(*tips: Array, gained: float = 0.0, since: float = 0.0) -> Sample:
     [(swing(), 0.0, 0.0), (swing(late=0.15), 0.0, 0.135), (swing(late=0.4), 0.0, 0.36)],
 )  # fmt: skip
 def test_peaks_conform_and_part(others: Array, early: float, late: float) -> None:
-    """Reference: analytic, sines of the same phase, and one that slips after 6 s."""
+    """Reference: analytic, sines of the same phase, and one with a delay after 6 s."""
     found = sample(swing(), swing(), others)
     assert found.peaks(CUTOFF) == pytest.approx((early, late), abs=0.04)
     assert found.conforms_then_diverges(CUTOFF) == (late > 0.2)
@@ -79,7 +79,9 @@ def test_the_series_solved_well_take_the_place_of_those_of_then() -> None:
 
 
 def test_models_are_as_far_apart_as_their_tips() -> None:
-    """Reference: by hand, ±1 m and a tenth more after six seconds: 0.1 of a range of 2.2."""
+    """Reference: by hand, ±1 m and a tenth more after six seconds, which is 0.1 of a range of
+    2.2.
+    """
     larger = np.where(TIME > 6.0, 1.1, 1.0) * swing()
     early, late = sample(swing(), swing(), larger).tip_distances()
     assert early == 0.0
@@ -88,7 +90,9 @@ def test_models_are_as_far_apart_as_their_tips() -> None:
 
 @pytest.mark.parametrize(("head", "stratifies"), [(0.1, False), (1.0, True)])
 def test_s7_takes_all_of_its_parts(head: float, stratifies: bool) -> None:
-    """Reference: by hand: tips part late by 0.05 of their range, heads by nothing or all of it."""
+    """Reference: by hand. Tips differ late by 0.05 of their range, heads by 0 or by their whole
+    range.
+    """
     tips = swing(), swing(), np.where(TIME > 6.0, 1.1, 1.0) * swing()
     runs = [moved(tip, 0.1) for tip in tips[:2]] + [moved(tips[2], head)]
     assert Sample(runs, moved(0.05 * tips[0])).stratifies() == stratifies
@@ -137,8 +141,8 @@ def survey(samples: Sequence[Sample], reached: float) -> Survey:
 
 
 def test_outcomes_follow_from_the_runs() -> None:
-    """Reference: by hand: two of four runs part after 6 s, two break out at 6.5 s, a solver reaches
-    2 of 7 s.
+    """Reference: by hand. Two of four runs diverge after 6 s, the energy of two diverges at 6.5 s,
+    and a solver reaches 2 of 7 s.
     """
     alike, parting = (swing(), swing(), swing()), (swing(), swing(), swing(late=0.4))
     lost = sample(*alike, gained=2.0, since=6.5)

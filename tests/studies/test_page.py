@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""docs/verification.md has the sections and the rows that the studies write now."""
+"""docs/verification.md has the sections and rows of the current studies."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -90,7 +90,7 @@ def row(cells: Sequence[str]) -> tuple[str, str, str]:
 
 
 def sections() -> dict[str, list[tuple[str, str, str]]]:
-    """Title → its rows."""
+    """Return the rows of each section by its title."""
     page = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
     return {
         title: [
@@ -110,7 +110,7 @@ def test_sections_follow_the_order_of_the_studies() -> None:
 
 @pytest.mark.parametrize("name", STAND_INS)
 def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: the study itself, all that takes long one; what is measured holds."""
+    """Reference: the study, with constants in place of slow computations. Measured values hold."""
     if name in ("design_results", "combinations"):
         pytest.importorskip("rainflow", reason="the cycles are counted by it")
     for what, surrogate in STAND_INS[name].items():

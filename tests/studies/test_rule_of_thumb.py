@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The rule of thumb is the mechanics that it is derived from, and tells a shell's distance."""
+"""The rule of thumb, compared with the mechanics of its derivation and with shells."""
 
 import numpy as np
 import pytest
@@ -28,8 +28,8 @@ def rule(bending: float, shear: float = 0.0) -> Rule:
 
 
 def fallen(deflection: float, free: float) -> tuple[float, float, float]:
-    """Height of the peak, speed where the forces balance, and period, of a unit mass that falls
-    through a free way under a unit force and is caught by a spring.
+    """Return peak, speed at equilibrium and period of a unit mass that falls through a free travel
+    on a spring under a unit force.
     """
     omega = deflection**-0.5
     amplitude = np.sqrt(deflection**2 + 2.0 * deflection * free)
@@ -40,7 +40,7 @@ def fallen(deflection: float, free: float) -> tuple[float, float, float]:
 
 @pytest.mark.parametrize("play", [0.0, 0.004, 0.014])
 def test_the_rule_is_the_derivative_of_a_caught_fall(play: float) -> None:
-    """Reference: analytic, differences of the fall's peak and period over its deflection."""
+    """Reference: analytic, differences of peak and period over the deflection."""
     small, deflection = 1e-6, 9.6e-3
     point = Point(play, 1.0)
     beam = rule(deflection * (1.0 - small), deflection * small / (1.0 + UNEVEN))
@@ -57,7 +57,7 @@ def test_the_rule_is_the_derivative_of_a_caught_fall(play: float) -> None:
 
 
 def test_without_play_the_phase_decides() -> None:
-    """Reference: analytic, half of the π n δ by which phases of a swing part."""
+    """Reference: analytic, half of the phase difference π n δ."""
     beam = rule(0.0099, 0.0001)
     missing_part = beam.missing_part(EULER)
     assert beam.tip_error(EULER, Point(0.0, 1.0), 5.0) == pytest.approx(
@@ -77,7 +77,7 @@ def test_the_first_boom_is_the_paper_s() -> None:
 
 
 def test_flange_frequency_equals_a_strip() -> None:
-    """Reference: analytic, Timoshenko: π/2 √(D/ρt)/b² of a plate that rests on two sides."""
+    """Reference: analytic, Timoshenko's π/2 √(D/ρt)/b² for a plate on two supported sides."""
     case = boom_case(Proportions())
     width, wall = 0.83 * 0.4945 / 1.634, 4.87e-3
     rigidity = 2.1e11 * wall**3 / (12.0 * (1.0 - 0.3**2))
@@ -96,7 +96,9 @@ def test_the_rule_lowers_the_tip_by_walls_as_statics_do() -> None:
 
 @pytest.mark.slow
 def test_a_short_boom_is_as_far_off_as_the_rule_tells() -> None:
-    """Reference: other code, the shell; springs are five times nearer than any beam."""
+    """Reference: other code, the shell. Beams with springs are five times as near as any other
+    beam.
+    """
     name = "a third as long"
     sizes = Sizes(booms={name: BOOMS[name]}, mesh_size=0.3, plays=(0.0, 4e-3), periods=2.0)
     found = measure(BOOMS[name], sizes)

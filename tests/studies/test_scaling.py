@@ -18,7 +18,7 @@ SIZES = Sizes(meshes=(1.0, 0.5), buckling=(0.5,), default=1.0, ranks=(1,), durat
 
 
 def test_every_stage_is_measured(tmp_path: Path) -> None:
-    """Stages make up the whole, memory only grows, a finer mesh has more degrees of freedom."""
+    """Stages sum to the total, memory increases, and a finer mesh has more degrees of freedom."""
     scaling(SIZES, tmp_path, Console(quiet=True))
     data = json.loads((tmp_path / "scaling.json").read_text(encoding="utf-8"))
     by_size, by_default = data["scaling"], data["scaling-default"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Schemes of the 1990s against their textbook, and contacts by them against a spring."""
+"""Schemes of the 1990s, compared with a textbook, and contacts compared with a spring."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -32,7 +32,7 @@ DEEP = 100.0
 
 
 def sprung() -> GapSystem:
-    """1 kg without a spring of its own that two stops never leave, which are 1 N/m together."""
+    """Return 1 kg always in contact with two stops of together 1 N/m, without another spring."""
     contact = PowerContact(0.5, 1.0).with_clearance(-DEEP)
     return replace(
         oscillator(),
@@ -45,7 +45,7 @@ def sprung() -> GapSystem:
 
 
 def rubbing(force: float) -> GapSystem:
-    """1 kg that slides on a friction of so many N."""
+    """Return 1 kg that slides against a friction force in N."""
     friction = DryFriction(coefficient=1.0, station=0, normal_force=force)
     rows = {"friction_rows": np.ones((1, 1)), "frictions": [friction]}
     return replace(oscillator(), omega2=np.zeros(1), stations=[0.0], **rows)
@@ -59,8 +59,8 @@ def test_an_oscillator_turns_as_the_textbook_says(scheme: Scheme, phase: float) 
 
 
 def test_known_errors_in_ten_steps_a_period() -> None:
-    """Reference: by hand: periods longer by (ω h)²/12 less a twentieth, shorter by (ω h)²/24;
-    Wilson damps.
+    """Reference: by hand. Periods are longer by (ω h)²/12 less a twentieth, or shorter by (ω
+    h)²/24. Wilson's scheme damps.
     """
     phase = 2.0 * np.pi / 10.0
     newmark, wilson, central = (textbook_root(scheme, phase) for scheme in ALL)
@@ -84,7 +84,7 @@ def test_wilson_overshoots_and_newmark_does_not() -> None:
 
 
 def test_central_differences_break_out_beyond_two_over_omega() -> None:
-    """Reference: analytic, stable for ω h < 2 alone."""
+    """Reference: analytic. The scheme is stable for ω h < 2 only."""
     stays, grows = (
         integrate(Motion(oscillator(), 100.0, step, position=np.ones(1)), CENTRAL, False)
         for step in (1.98, 2.02)
@@ -96,7 +96,7 @@ def test_central_differences_break_out_beyond_two_over_omega() -> None:
 
 @pytest.mark.parametrize("scheme", ALL, ids=str)
 def test_an_iterated_contact_is_a_spring_of_the_mode(scheme: Scheme) -> None:
-    """Reference: other code, the same spring as the mode's own."""
+    """Reference: other code path, the same spring as the stiffness of the mode."""
     of_mode, of_contact = (
         integrate(Motion(system, 20.0, 0.1, position=np.ones(1)), scheme, True).trajectory
         for system in (replace(sprung(), omega2=np.ones(1), rows=np.zeros((1, 1))), sprung())
@@ -105,7 +105,9 @@ def test_an_iterated_contact_is_a_spring_of_the_mode(scheme: Scheme) -> None:
 
 
 def test_a_lagged_contact_gains_energy() -> None:
-    """Reference: analytic: a lag is a dashpot of −k h, so that the swing grows by exp(h t/4)."""
+    """Reference: analytic. A lag is equivalent to a dashpot of −k h, so that amplitudes grow as
+    exp(h t/4).
+    """
     step, duration = 0.05, 20.0
     swings = []
     for iterated in (True, False):
@@ -117,7 +119,7 @@ def test_a_lagged_contact_gains_energy() -> None:
 
 
 def test_iterated_impacts_come_near_the_converged_ones() -> None:
-    """Reference: other code, splitting; one blow in 60 steps, within 1 % of the way back."""
+    """Reference: other code, splitting. An impact has 60 steps; the rebound agrees within 1 %."""
     stop = replace(sprung(), laws=[PowerContact(100.0, 1.0).with_clearance(0.5)])
     motion = Motion(stop, 2.0, 0.005, velocity=np.ones(1))
     found = integrate(motion, NEWMARK, True).trajectory.states[-1]
@@ -135,7 +137,7 @@ def test_sliding_dissipates_the_work_of_friction() -> None:
 
 
 def test_friction_stop_within_a_step_does_not_converge() -> None:
-    """Reference: by hand: at rest after 1 s, the sign of the speed turns with every guess."""
+    """Reference: by hand. At rest after 1 s, the sign of the speed changes with every iteration."""
     run = integrate(Motion(rubbing(1.0), 2.0, 0.03, velocity=np.ones(1)), NEWMARK, True)
     assert not run.unconverged[:33].any()
     assert run.unconverged[33:].mean() > 0.4

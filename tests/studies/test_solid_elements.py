@@ -61,7 +61,7 @@ def segment(supports: tuple[Support, ...] = (), length: float = LENGTH) -> Segme
 
 
 def distorted(mesh: SolidMesh) -> SolidMesh:
-    """Every inner point a fifth of a cell off its place."""
+    """Return the mesh with every inner point moved by a fifth of a cell."""
     clear = 0.5 * np.array([BOX.width - BOX.web, BOX.height - BOX.flange]) + 1.0e-9
     inner = (mesh.points[:, 1:] > clear).any(axis=1)
     shift = np.empty_like(mesh.points)
@@ -89,7 +89,9 @@ def energy(solid: SolidFamily, field: Array) -> float:
     ],
 )
 def test_patch_of_constant_strain(family: SymmetryClass, strain: Array) -> None:
-    """Reference: analytic, V (2 μ ε:ε + λ tr² ε) in a distorted mesh; inner nodes feel no force."""
+    """Reference: analytic, V (2 μ ε:ε + λ tr² ε) in a distorted mesh, without forces on inner
+    nodes.
+    """
     solid = assemble_solid(segment(), distorted(coarse()), family)
     field = solid.nodes @ strain
     mu, nu = STEEL.shear_modulus, STEEL.poissons_ratio
@@ -116,7 +118,7 @@ def test_pure_bending_is_exact() -> None:
 
 
 def test_rigid_motions_cost_nothing_and_carry_the_mass() -> None:
-    """Reference: analytic. ρ A L for the three slides, ρ (J_y + J_z) L for the roll."""
+    """Reference: analytic, ρ A L for translations, ρ (J_y + J_z) L for roll."""
     mass = STEEL.density * BOX.area * LENGTH
     polar = STEEL.density * BOX.polar_second_moment_of_area * LENGTH
     counts = []
@@ -139,7 +141,7 @@ def test_rigid_motions_cost_nothing_and_carry_the_mass() -> None:
 
 
 def test_means_read_rigid_motions_and_thickening() -> None:
-    """Reference: analytic. A lift, a turn about the axis, and a section that swells."""
+    """Reference: analytic, a translation, a rotation about the axis, and a thickening section."""
     fields = {
         ALONG_Z: (lambda x, y, z: (0.0 * x, 0.0 * x, 1.0 + x), SectionNodes.mean_deflection, 3.0),
         TWISTING: (lambda x, y, z: (0.0 * x, -z, y), SectionNodes.twist, 1.0),
@@ -332,7 +334,7 @@ TINY = Sizes(
 
 
 def comparison(wall: float, error: float) -> Comparison:
-    """One in which every quantity has the same error."""
+    """Return a comparison in which every quantity has the same error."""
     return Comparison(
         wall,
         *(
@@ -343,7 +345,7 @@ def comparison(wall: float, error: float) -> Comparison:
 
 
 def test_order_and_passed_limits_are_those_of_a_power_law() -> None:
-    """Reference: analytic, errors of 3 (t/b)^1.5 of a box 0.3 m wide."""
+    """Reference: analytic, errors of 3 (t/b)^1.5 for a box 0.3 m wide."""
     head = COMPLIANCES[0]
     found = [comparison(t, 3.0 * (t / 0.3) ** 1.5) for t in (0.005, 0.01, 0.02)]
     assert order(found, head) == pytest.approx(1.5, rel=1.0e-9)
@@ -357,7 +359,7 @@ def test_order_and_passed_limits_are_those_of_a_power_law() -> None:
 
 @pytest.mark.slow
 def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
-    """Reference: other code, elasticity in space, which is stiffer."""
+    """Reference: other code, three-dimensional elasticity, which is stiffer."""
     told: list[str] = []
     (found,) = compare(TINY, told.append)
     assert told == ["walls of 40 mm"]
@@ -371,7 +373,7 @@ def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
 
 @pytest.mark.slow
 def test_the_solid_stands_by_itself() -> None:
-    """Reference: analytic. The rod's lateral inertia is twice what its frequency may err by."""
+    """Reference: analytic. The effect of the rod's lateral inertia is twice the permitted error."""
     verifications = {verification.what: verification for verification in solid_verifications()}
     assert all(verification.holds for verification in verifications.values())
     rod = verifications["solid box: lowest frequency as a rod"]

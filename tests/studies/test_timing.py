@@ -36,7 +36,7 @@ from tests.other_codes import INSTALLED
 
 
 class Clock:
-    """Time that passes only where something sleeps: the machine's own load does not count."""
+    """Clock that advances only during sleep, independent of the load of the machine."""
 
     def __init__(self) -> None:
         self.now = 0.0
@@ -65,7 +65,7 @@ def test_runs_take_turns(clock: Clock) -> None:
 
 
 def test_long_runs_are_not_repeated(clock: Clock) -> None:
-    """Reference: analytic. Two sleeps pass the budget, or one does."""
+    """Reference: analytic. Two sleeps exceed the budget, or one does."""
     nap = 1.1 * MEASURABLE
     runs = [partial(clock.sleep, nap), partial(clock.sleep, 0.001)]
     assert [len(taken) for taken in time_in_turns(runs, 3, 1.5 * nap)] == [2, 3]
@@ -73,7 +73,7 @@ def test_long_runs_are_not_repeated(clock: Clock) -> None:
 
 
 def test_short_runs_are_averaged(clock: Clock) -> None:
-    """Reference: analytic. Sleeps of 5 and 15 ms by turns: six of them pass 50 ms."""
+    """Reference: analytic. Of alternate sleeps of 5 and 15 ms, six exceed 50 ms."""
     naps = itertools.cycle((0.005, 0.015))
     ((taken,),) = time_in_turns([lambda: clock.sleep(next(naps))], 1, 10.0)
     assert taken == pytest.approx(0.06 / 6)
@@ -88,7 +88,7 @@ def test_short_runs_are_averaged(clock: Clock) -> None:
     ],
 )  # fmt: skip
 def test_digits_follow_the_noise(values: tuple[float, ...], text: str) -> None:
-    """Reference: half the range by hand; its first digit is the last shown."""
+    """Reference: by hand. The last digit is the first digit of half the range."""
     assert repeated(values) == text
 
 
@@ -123,9 +123,7 @@ def data(folder: Path) -> Any:
 
 @pytest.mark.slow
 def test_generic_solvers_err_no_more_than_the_time_step(data: Any) -> None:
-    """Reference: other code, the time step of the same level; at most a hundred times as
-    accurate.
-    """
+    """Reference: other code, the time step at its level; at most a hundred times as accurate."""
     entries = iter(data["solvers"])
     for step, solvers in SIZES.levels:
         ours = next(entries)
@@ -141,21 +139,25 @@ def test_generic_solvers_err_no_more_than_the_time_step(data: Any) -> None:
 
 @pytest.mark.slow
 def test_the_levels_of_the_command() -> None:
-    """Shorter and shorter steps; every solver."""
+    """The command has descending steps and all solvers."""
     steps = [step for step, _ in LEVELS]
     assert steps == sorted(steps, reverse=True)
     assert {name for _, names in LEVELS for name in names} == set(SOLVERS)
 
 
 def test_less_accurate_solver_is_named() -> None:
-    """Reference: by hand; a tolerance that errs by ten times itself, and one that always does."""
+    """Reference: by hand, an error of ten times the tolerance, and an error that is always too
+    large.
+    """
     assert match_tolerance(lambda tolerance: 10.0 * tolerance, 1e-5) == pytest.approx((1e-6, 1e-5))
     assert match_tolerance(lambda tolerance: 1.0, 0.5) == (None, 1.0)
 
 
 @pytest.mark.slow
 def test_every_table_is_complete(folder: Path, data: Any) -> None:
-    """Half the step errs less, and by friction the energy balances at each."""
+    """Half the step has a smaller error, and with friction the energy balance closes for each
+    step.
+    """
     coarse, fine, chosen = data["errors"]
     assert [one["steps"] for one in (coarse, fine)] == [700, 1400]
     assert 0.0 < fine["tip off (% of range)"] < coarse["tip off (% of range)"] < 1.0
@@ -185,7 +187,7 @@ def test_missing_program_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.slow
 @INSTALLED
 def test_exudyn_moves_telescoped_beams_alike() -> None:
-    """Reference: other code; its beams and its scheme err by 0.4 % of the range at this step."""
+    """Reference: other code, with an error of 0.4 % of the range at this step."""
     problem = replace(other_programs.telescoped_beams(), steps=[5.0e-5])
     ((_, off, _),) = problem.elsewhere()
     assert 1.0e-4 < off < 0.01

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The unreduced shell moves as its own matrices say, and as the reduced one does."""
+"""Motion of the unreduced shell, compared with its matrices and with the reduced shell."""
 
 from dataclasses import replace
 from functools import cache
@@ -43,7 +43,7 @@ def _dense(matrix: PETSc.Mat) -> Array:
 
 
 class _Loaded:
-    """A short box on its supports, under a load that excites a few of its natural modes or all."""
+    """A short box on supports, under a load that excites a few natural modes or all."""
 
     def __init__(self, shell: SegmentShell) -> None:
         load = 80.0 * shell.unit_loads["z"]
@@ -69,7 +69,7 @@ class _Loaded:
         )
 
     def tip(self, time: Array) -> Array:
-        """(num_times,) of the few modes in m."""
+        """Return the tip deflection (num_times,) of the few modes in m."""
         return np.asarray((1.0 - np.cos(np.outer(time, self._omega))) @ self._gains)
 
 
@@ -85,7 +85,7 @@ def _full(boom: Boom, size: float = 0.5) -> BoomShell:
 
 @pytest.mark.parametrize("radius", [0.5, 0.8, 1.0])
 def test_free_motion_is_of_second_order(loaded: _Loaded, radius: float) -> None:
-    """Reference: analytic, the natural modes that a step load excites, of the same matrices."""
+    """Reference: analytic, the natural modes of the same matrices under a step load."""
     errors = []
     period = loaded.period
     for parts in (16.0, 32.0, 64.0):
@@ -99,7 +99,7 @@ def test_free_motion_is_of_second_order(loaded: _Loaded, radius: float) -> None:
 
 
 def test_long_steps_end_at_rest(loaded: _Loaded) -> None:
-    """Reference: analytic, the static deflection; with ρ∞ = 0 a long step leaves nothing else."""
+    """Reference: analytic, the static deflection, which a long step with ρ∞ = 0 gives."""
     period = loaded.period
     motion = integrate_directly(
         loaded.all, 2.0e5 * period, 1.0e4 * period, 1.0e4 * period, 0.0, energy_bound=np.inf
@@ -108,7 +108,7 @@ def test_long_steps_end_at_rest(loaded: _Loaded) -> None:
 
 
 def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
-    """Reference: analytic. At ρ∞ = 1 energy is kept; below it falls, the more the smaller ρ∞ is."""
+    """Reference: analytic. At ρ∞ = 1 energy is conserved. A smaller ρ∞ has a larger loss."""
     step = loaded.period / 64.0
 
     def missing_energy(radius: float) -> Array:
@@ -148,7 +148,7 @@ def test_impact_follows_the_reduced_shell(exponent: float, stiffness: float) -> 
 
 @pytest.mark.slow
 def test_friction_below_its_limit_holds_exactly() -> None:
-    """Reference: analytic. A tenth of the load is held: no row moves, and nothing is lost."""
+    """Reference: analytic. Under a tenth of the load no row moves, and there is no loss."""
     held = flat_boom(friction=0.2)
     light = tuple(replace(segment, load=0.1 * segment.load) for segment in held.segments)
     motion = integrate_directly(_full(replace(held, segments=light)), 0.1, 5.0e-4)
@@ -166,8 +166,8 @@ def test_friction_below_its_limit_holds_exactly() -> None:
 
 @pytest.mark.slow
 def test_friction_and_contact_are_those_of_the_reduced_shell() -> None:
-    """Reference: other code, the reduced shell through the first blow; where a station presses and
-    sticks at once, the sum of both forces is unique.
+    """Reference: other code path, the reduced shell during the first impact. If a station has
+    contact and sticks, only the sum of both forces is unique.
     """
     boom = flat_boom(friction=0.2)
     system = reduce_boom(touching(boom, _SOFT), ShellOptions(0.5), MPI.COMM_SELF).system
@@ -223,7 +223,7 @@ def test_bad_steps_are_refused(step: float, radius: float, message: str) -> None
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
 def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
-    """Reference: analytic, (4) and Coulomb's law; dependent rows slide by their mean."""
+    """Reference: analytic, (4) and Coulomb's law. Dependent rows slide by their mean."""
     random = np.random.default_rng(1)
     law = PowerContact(10.0 ** (5.0 + 3.0 * exponent), exponent).with_clearance(1.0e-3)
     laws = [law.one_sided(side) for side in (1, -1, 1, -1)]
@@ -257,8 +257,8 @@ def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
 
 
 def test_a_block_on_a_rough_floor_stays_or_slides() -> None:
-    """Reference: analytic. Below μN nothing moves; above, the rest times the compliance, and loss
-    μN s.
+    """Reference: analytic. Below μN nothing moves. Above it, the excess times the compliance is the
+    displacement s, with the loss μN s.
     """
     rows = ResistingRows([], [DryFriction(0.5, 0, 20.0)], np.array([[1.0e-3]]), onward=2.0)
     assert rows.forces(np.array([9.0e-3])) == pytest.approx([9.0], rel=1.0e-14)

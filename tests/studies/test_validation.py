@@ -27,7 +27,9 @@ def test_friction_follows_code_aster(rows: object) -> None:
 
 
 def test_the_roller_stiffens_the_beam_as_measured() -> None:
-    """Reference: measured, DROPBEAR; without the roller 1.8751² and Rayleigh's 0.2427, to 1 %."""
+    """Reference: measured, DROPBEAR. Without roller 1.8751² and Rayleigh's 0.2427 apply, within 1
+    %.
+    """
     verifications = list(validation.moving_roller())
     assert len(verifications) == 6
     assert max(verification.error for verification in verifications) < 0.012
@@ -48,7 +50,7 @@ def test_a_heavier_tip_slows_the_boom_lift() -> None:
 
 
 def test_colliding_oscillators_are_mirror_images() -> None:
-    """Reference: analytic; the wall must be met for it to mean something."""
+    """Reference: analytic. The oscillator must touch the wall for a meaningful comparison."""
     verification = validation.impact_pair()
     assert verification.value < 1.0e-9
     pair = validation.Oscillators(25.0, 98696.0, [1.0], 10.0, 0.07).system()

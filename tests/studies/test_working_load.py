@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Two points of the paper's boom on two coarse meshes, and what is told of some motions."""
+"""Two points of the paper's boom on two coarse meshes, and verifications of invented motions."""
 
 import numpy as np
 import pytest
@@ -40,7 +40,7 @@ def told(*peaks: float) -> list[tuple[str, float]]:
 
 
 def test_a_first_peak_is_proven_where_there_is_one() -> None:
-    """Reference: analytic, changes of 1 % of the tip, and of 2 % of the one peak that there is."""
+    """Reference: analytic, changes of 1 % of the tip, and of 2 % of the only peak."""
     none = float("nan")
     tip = ("tip, part of its range, webs, worst of 2 points (0 mm, load × 1)", pytest.approx(0.01))
     peak = ("first tip peak, webs, worst of 1 points (1 mm, load × 1)", pytest.approx(0.02))
@@ -50,7 +50,7 @@ def test_a_first_peak_is_proven_where_there_is_one() -> None:
 
 @pytest.mark.slow
 def test_a_mesh_errs_more_under_more_load() -> None:
-    """Reference: other code, the finer mesh. Ten times the load goes deeper into the walls."""
+    """Reference: other mesh, the finer one. Ten times the load bends walls more."""
     contact_types: list[str] = []
     found = study(contact_types.append, TINY)
     assert contact_types == ["near webs", "in space, near webs"]

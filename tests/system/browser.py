@@ -34,13 +34,13 @@ os.execv(sys.argv[3], sys.argv[3:])
 
 
 def find_browser() -> str | None:
-    """Return the path of a Chromium, None where there is none."""
+    """Return the path of Chromium; None if it is not installed."""
     names = ("chromium", "chromium-browser", "google-chrome")
     return next(filter(None, map(shutil.which, names)), None)
 
 
 class Page:
-    """A tab of the browser, and everything that it complains of."""
+    """A tab of the browser, with its errors and warnings."""
 
     def __init__(self, requests: int, answers: int) -> None:
         self._requests, self._answers = requests, answers
@@ -81,7 +81,7 @@ class Page:
         return answer["result"].get("value")
 
     def wait_for(self, expression: str) -> None:
-        """Go on when it counts as true."""
+        """Wait until an expression is true."""
         end = time.monotonic() + SECONDS
         while not self.evaluate(f"!!({expression})"):
             assert time.monotonic() < end, f"{expression} stays false"
@@ -95,7 +95,7 @@ class Page:
             self._ask("Input.dispatchMouseEvent", type=kind, x=x, y=y, **button)
 
     def show_as(self, media: str) -> None:
-        """On paper, ``print``, or on a screen, an empty text."""
+        """Emulate a medium: ``print`` for paper, an empty text for a screen."""
         self._ask("Emulation.setEmulatedMedia", media=media)
 
     def _ask(self, method: str, **parameters: Any) -> Any:

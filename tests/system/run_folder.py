@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The command line as a user meets it, and what every run's folder must hold."""
+"""The command line of a user, and the required files of every run."""
 
 import csv
 import json
@@ -45,7 +45,7 @@ def trajectories(folder: Path) -> xr.Dataset:
 
 
 class _Page(HTMLParser):
-    """Collects the tags that never close, and whatever a page would fetch."""
+    """Parser of unclosed tags, and of external resources of a page."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Every case that comes with the project runs and is reported, on coarse meshes and briefly."""
+"""Short runs and reports of all shipped cases on coarse meshes."""
 
 from html import unescape
 from pathlib import Path
@@ -26,7 +26,7 @@ NAMES = ["drawn-out", "friction-walk", "paper", "paper-friction", "spatial", "th
 @pytest.mark.usefixtures("unprinted")
 @pytest.mark.parametrize("name", NAMES)
 def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
-    """Reference: the models among each other. Up to the first contact they are alike."""
+    """Reference: the other models, which agree up to the first contact."""
     file = str(CASES / f"{name}.toml")
     whole = case_file.load(file)
     mesh_size = 0.5 if any(model.needs_shell for model in whole.models) else None

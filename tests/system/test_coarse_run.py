@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A run of every kind of model: every file opens, and what they hold agrees."""
+"""A run of every kind of model, with readable and consistent files."""
 
 import shutil
 from collections.abc import Sequence
@@ -37,7 +37,7 @@ BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-bonded"]
 
 @pytest.fixture
 def _short_film(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Shorten the film, which other tests check, though one run draws it in its own process."""
+    """Shorten the film, which other tests check."""
     monkeypatch.setattr("runs.report.snapshots.RENDERED", RENDERED)
     monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
 
@@ -136,7 +136,7 @@ def test_before_the_first_contact_the_inner_segment_falls_freely(whole: Path) ->
 
 
 def test_the_shell_touches_when_the_shear_flexible_beam_does(whole: Path) -> None:
-    """Reference: other model. Shear is all that a beam lacks for the slow motion."""
+    """Reference: other model. For the slow motion, a beam neglects shear only."""
     models = summary_of(whole)["models"]
     shell, beam = models["shell"]["first_contact"], models["timoshenko"]["first_contact"]
     assert shell == pytest.approx(beam, rel=1e-3)
@@ -145,7 +145,9 @@ def test_the_shell_touches_when_the_shear_flexible_beam_does(whole: Path) -> Non
 
 
 def test_the_fields_move_as_the_trajectory_does(whole: Path) -> None:
-    """Reference: the trajectory. The tip's section is stiff: its points deflect with it."""
+    """Reference: the trajectory. The section at the tip is stiff, so that its points deflect
+    alike.
+    """
     with xr.open_dataset(whole / "fields.nc", engine="scipy") as fields:
         at_tip = np.flatnonzero(np.abs(fields["points"].values[:, 0] - 19.0) < 1e-6)
         shapes = fields["modes"].values[:, at_tip, 2]
@@ -179,7 +181,7 @@ def test_a_time_outside_the_run_is_one_line(
 def test_fields_of_another_version_are_one_line(
     again: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Reference: a folder whose fields do not name their plates, as those of a version."""
+    """Reference: a folder with fields without names of plates, as in an earlier version."""
     fields = xr.load_dataset(again / "fields.nc", engine="scipy")
     fields.drop_vars("plate_1").to_netcdf(again / "fields.nc", engine="scipy")
     (again / ".manifest").unlink()
@@ -212,7 +214,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
 def test_pictures_can_be_left_to_later(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Reference: a renderer that must not be asked."""
+    """Reference: a renderer that must not be called."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
     def refuse(*arguments: object) -> list[Path]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What an installation brings, and that the files which name a version name the same."""
+"""Content of an installation, and equal versions in all files."""
 
 import re
 import tomllib

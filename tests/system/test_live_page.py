@@ -68,7 +68,7 @@ def tip(page: Page) -> float:
 
 
 def test_a_slider_changes_numbers_and_pictures(page: Page) -> None:
-    """Reference: more payload lowers the tip; its place in the picture follows the number."""
+    """Reference: physics. More payload lowers the tip, also in the picture."""
     before, drawn = tip(page), page.evaluate(END)
     moved = page.evaluate(ROW.format("motion", "Maximum dynamic"))
     page.evaluate(SLIDE.format(300, "Payload"))
@@ -160,7 +160,7 @@ def test_the_case_is_saved_with_its_changes(page: Page) -> None:
 
 
 def test_a_shell_runs_beside_the_beam(tmp_path: Path) -> None:
-    """A run that is cancelled leaves room for the next, which shows its results and report."""
+    """After a cancelled run, the next one shows its results and report."""
     press = "document.getElementById('run').click()"
     progress = "document.getElementById('progress').textContent"
     with live_page("coarse.toml", tmp_path) as page:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Two ranks leave what one leaves, and say what is wrong once."""
+"""Equal results on two ranks, and error messages printed once."""
 
 import subprocess
 from collections.abc import Callable
@@ -61,8 +61,8 @@ def complaints(answer: subprocess.CompletedProcess[str]) -> list[str]:
 def test_two_ranks_run_a_shell_as_one_does(
     two_ranks: Ranks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Reference: one rank until the first contact; the highest modes ring at the head by less than
-    1e-4.
+    """Reference: one rank, until the first contact. The highest modes contribute less than 1e-4 at
+    the head.
     """
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     case = tmp_path / "case.toml"

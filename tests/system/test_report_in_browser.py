@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The report as a reader meets it: in a real browser, as narrow as a telephone."""
+"""The report in a real browser, also at the width of a telephone."""
 
 import json
 import re
@@ -94,7 +94,7 @@ SHOWN = f"{PLOT}.data.filter(t => t.visible === true && t.name).map(t => t.name)
 
 
 def test_a_curve_says_the_number_of_the_file(page: Page, folder: Path) -> None:
-    """Reference: trajectories.nc; what hovers has five digits."""
+    """Reference: trajectories.nc. Values under the mouse have five digits."""
     page.open(folder / "report.html", 1000)
     page.evaluate(MIDDLE.format("#figure-tip"))
     page.wait_for(f"{PLOT}.querySelector('.nsewdrag')")
@@ -115,7 +115,7 @@ def test_a_curve_says_the_number_of_the_file(page: Page, folder: Path) -> None:
 
 
 def test_a_curve_is_hidden_by_its_name(page: Page, folder: Path) -> None:
-    """Reference: the legend that is pressed; on paper the picture stands in its place."""
+    """Reference: the clicked legend. On paper a picture replaces the chart."""
     page.open(folder / "report.html", 1000)
     page.evaluate(MIDDLE.format("#figure-tip"))
     page.wait_for(f"{PLOT}.querySelector('.legendtoggle')")
@@ -146,7 +146,7 @@ MAGNIFIED = "document.querySelector('header p').textContent.match(/× ([0-9.]+)/
 
 
 def test_the_slider_moves_the_boom(page: Page, folder: Path) -> None:
-    """Reference: trajectories.nc, times the shown scale; shapes leave 0.2 %."""
+    """Reference: trajectories.nc times the displayed scale, within 0.2 %."""
     page.open(folder / "viewer.html", 1000)
     page.wait_for(f"{BOOM}.dataset.frame == '0'")
     magnified = float(page.evaluate(MAGNIFIED))
@@ -166,7 +166,7 @@ def test_the_slider_moves_the_boom(page: Page, folder: Path) -> None:
 
 
 def test_the_browser_would_notice(page: Page, tmp_path: Path) -> None:
-    """Reference: a page that has every fault, of which each is found."""
+    """Reference: a page with every fault, all of which are found."""
     path = tmp_path / "faulty.html"
     path.write_text(
         '<!DOCTYPE html><html><head><meta charset="utf-8">'

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""What is judged does not hang on round-off, which another machine does otherwise."""
+"""Equal verdicts in spite of round-off, which depends on the machine."""
 
 from dataclasses import replace
 
@@ -31,7 +31,7 @@ def chaotic() -> Case:
 
 
 def run(change: float) -> Results:
-    """Results with E changed in relative terms."""
+    """Return results with a relative change of E."""
     case = chaotic()
     modulus = case.material.youngs_modulus * (1.0 + change)
     material = replace(case.material, youngs_modulus=modulus)
@@ -40,7 +40,9 @@ def run(change: float) -> Results:
 
 
 def test_verdicts_are_the_same_for_any_round_off() -> None:
-    """Reference: the case itself, which a relative change of E of 1e-12 makes another sample of."""
+    """Reference: the case. A relative change of E of 1e-12 gives another sample of the chaotic
+    motion.
+    """
     one, other = (run(change) for change in (0.0, 1.0e-12))
     assert {v.id: v.verdict for v in judge(one) if v.id in DECIDED} == DECIDED
     tip = one.trajectories["tip"].sel(model="kantorovich-5").values

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Runs of beams alone: every file opens, and a folder that is not whole is refused."""
+"""Runs of beams: readable files, and refusal of incomplete folders."""
 
 import json
 import os
@@ -79,7 +79,7 @@ def test_a_run_reads_back(series: Path) -> None:
 
 @pytest.mark.usefixtures("unprinted")
 def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, again: Path) -> None:
-    """Reference: the run itself; the arithmetic is the same, so the numbers are too."""
+    """Reference: the first run. Equal arithmetic gives equal numbers."""
     (again / "figures" / "stale.png").write_bytes(b"of an earlier version")
     (again / "fields.nc").write_bytes(b"of a shell that is not run now")
     with (again / ".manifest").open("a") as manifest:
@@ -121,7 +121,7 @@ def test_files_of_two_runs_are_not_mixed(again: Path, refusal: Refusal) -> None:
 
 
 def test_a_run_of_another_version_is_told_from_a_mixed_one(again: Path, refusal: Refusal) -> None:
-    """Reference: a folder as a version has written it that did not know one of today's keys."""
+    """Reference: a folder of an earlier version without one of the current keys."""
     (again / ".manifest").unlink()
     case, summary = again / "case.toml", again / "summary.json"
     now = case.read_bytes()
@@ -137,7 +137,7 @@ def test_a_run_of_another_version_is_told_from_a_mixed_one(again: Path, refusal:
 @pytest.mark.parametrize("command", ["report", "snapshot"])
 @pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "viewer.html"])
 def test_a_flipped_bit_is_one_line(again: Path, name: str, command: str, refusal: Refusal) -> None:
-    """The file reads as before; ``sha256sum -c .manifest`` finds it, too."""
+    """The file can still be read; ``sha256sum -c .manifest`` also finds the change."""
     content = bytearray((again / name).read_bytes())
     content[-40] ^= 1
     (again / name).write_bytes(content)
@@ -153,7 +153,7 @@ def test_a_flipped_bit_is_one_line(again: Path, name: str, command: str, refusal
 
 @pytest.mark.parametrize("name", ["trajectories.nc", ".manifest"])
 def test_a_pipe_in_place_of_a_file_is_one_line(again: Path, name: str, refusal: Refusal) -> None:
-    """Who reads it would wait for its writer for ever. Long paths are cut in the middle."""
+    """Reading it would wait for its writer for ever. Long paths are shortened in the middle."""
     (again / name).unlink(missing_ok=True)
     os.mkfifo(again / name)
     if name == ".manifest":
@@ -199,7 +199,7 @@ def test_a_damaged_folder_is_one_line(
 def test_a_summary_of_another_version_is_one_line(
     again: Path, command: str, refusal: Refusal
 ) -> None:
-    """Reference: a folder as a version has written it that did not know one of today's keys."""
+    """Reference: a folder of an earlier version without one of the current keys."""
     (again / ".manifest").unlink()
     summary = summary_of(again)
     del summary["models"]["kantorovich-5"]["contact_changes"]
@@ -217,7 +217,7 @@ def test_a_run_without_a_shell_has_no_snapshots(series: Path, refusal: Refusal) 
 
 @pytest.mark.usefixtures("few_figures")
 def test_a_case_without_play_runs(tmp_path: Path) -> None:
-    """No station at all: the files still open."""
+    """Files of a boom without stations are readable."""
     folder = tmp_path / "out"
     assert protractile("run", COARSE, "--models", "beam-fe-bonded", "--out", folder) == 0
     check_common_files(folder, ["beam-fe-bonded"])
@@ -226,7 +226,7 @@ def test_a_case_without_play_runs(tmp_path: Path) -> None:
 
 @pytest.mark.usefixtures("few_figures")
 def test_a_beam_without_joints_runs(tmp_path: Path) -> None:
-    """Reference: analytic. A pinned beam's midspan swings to twice 5 q L⁴ / 384 E J, nearly."""
+    """Reference: analytic. The midspan of a pinned beam reaches nearly twice 5 q L⁴ / 384 E J."""
     series = table("[[model]]", name="beam", kind="kantorovich", terms=[6], base="pinned")
     text = CANTILEVER.replace("duration = 2.0", "duration = 0.6") + "load = 83.16\n" + series
     text = text.replace(CLAMPED, "supports = [0.0, 10.0]")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Ctrl-C and SIGTERM end a command in one line, and nothing of it is left."""
+"""End of commands by Ctrl-C and SIGTERM, with one line and without remaining files."""
 
 import os
 import signal
@@ -37,7 +37,7 @@ with ending.when_interrupted(clean):
 
 
 def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
-    """Python in a process group of its own, as a terminal starts it."""
+    """Start Python in a process group of its own, like a terminal."""
     return subprocess.Popen(
         [sys.executable, *arguments],
         cwd=folder,
@@ -56,7 +56,7 @@ def command(folder: Path, *arguments: str) -> subprocess.Popen[str]:
 
 
 def works(folder: Path) -> Callable[[subprocess.Popen[str]], bool]:
-    """Whether something is in the making."""
+    """Return whether a folder is being written."""
     return lambda process: bool(list(folder.glob(".out.*")))
 
 
@@ -85,7 +85,7 @@ def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: s
 
 
 def tells(stage: str) -> Callable[[subprocess.Popen[str]], bool]:
-    """Whether the next line that a process says of its progress is of a stage."""
+    """Return whether the next line of progress is of a stage."""
     return lambda process: stage in (process.stderr.readline() if process.stderr else "")
 
 
@@ -108,7 +108,7 @@ def test_sigterm_ends_a_run_after_meshing(tmp_path: Path) -> None:
 def test_a_sweep_ends_with_its_processes(
     tmp_path: Path, number: signal.Signals, all_hear_it: bool
 ) -> None:
-    """Finished points stay. Its output ends when the last process that could write to it does."""
+    """Finished points remain. The output ends with the last process that can write to it."""
     process = command(tmp_path, *SWEEP)
     wait_until(has_a_point(tmp_path), process)
     (os.killpg if all_hear_it else os.kill)(process.pid, number)
@@ -140,7 +140,7 @@ with workers(2) as pool:
 
 
 def test_processes_end_with_their_parent() -> None:
-    """Reference: by construction. Output ends when the last process that could write to it does."""
+    """Reference: by construction. The output ends with the last process that can write to it."""
     process = start(ROOT, "-c", WORKERS)
     assert process.stdout.readline() == "works\n"
     process.terminate()

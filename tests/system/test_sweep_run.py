@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The sweep as a command: on all cores, on ranks, killed and taken up again."""
+"""The command ``sweep``: on all cores, on ranks, killed and resumed."""
 
 import io
 import os
@@ -36,7 +36,7 @@ def write_case(folder: Path) -> Path:
 
 @pytest.fixture
 def case(here: Path) -> str:
-    """case.toml in the current folder."""
+    """Write case.toml to the current folder."""
     return write_case(here).name
 
 

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""All campaigns as a table; exit status 1 if data is lost, or damaged data accepted."""
+"""Results of all campaigns as a table; exit status 1 if data are lost, or damaged data are
+accepted.
+"""
 
 import sys
 from collections.abc import Sequence

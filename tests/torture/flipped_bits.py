@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Flipped bits in the cache and in the points of a sweep.
 
-Of each file as many as of any other, so that names and checksums are hit as often as numbers. What
-comes of it must be what comes without, to the last bit, and a notice must say that an entry was
-made again, once.
+All files have equal numbers of flips, so that names and checksums are hit as often as numbers.
+Results must be the same to the last bit, and a single notice must report that an entry was computed
+again.
 """
 
 from collections.abc import Callable, Iterator
@@ -71,7 +71,7 @@ def _shell(cache: Cache) -> bytes:
 
 
 def _points(folder: Path) -> bytes:
-    """Three points of the fastest model."""
+    """Return the plan of three points of the fastest model."""
     planned = plan(_COARSE, ["joint.play=0.006:0.014:3"], ["beam-fe-bonded"], None)
     with ThreadPoolExecutor(1) as pool:
         return repr(sweep.run_points(planned, folder, pool, lambda *_: None)).encode()

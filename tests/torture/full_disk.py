@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Every call that writes, refused once: what was there before stays, to the last byte.
+"""Refusal of every single write call, after which old files must be unchanged to the last byte.
 
-A disk that is full stays full; one that errs does so once. The calls are those of Python, by which
-all files of a run, a report and a sweep are written.
+A full disk stays full; a disk error occurs once. The calls are those of Python that write the files
+of a run, a report and a sweep.
 """
 
 import builtins
@@ -29,12 +29,12 @@ _WRITES = set("wax+")
 
 
 class Disk:
-    """The files of a folder, on a disk that refuses one of the calls that write to it.
+    """Disk of a folder that refuses one of the write calls.
 
     Args:
-        folder: whose files they are.
-        last: the number of calls that go well.
-        number: what the next one says, of ``errno``; all that follow, if the disk is full.
+        folder: folder of the files.
+        last: number of successful calls.
+        number: ``errno`` of the next call, and of all later ones if the disk is full.
     """
 
     def __init__(self, folder: Path, last: float, number: int) -> None:

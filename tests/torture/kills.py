@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Commands killed at random moments, with all their processes, and run again; SIGTERM to others.
+"""Commands that are killed at random moments and repeated, and commands that receive SIGTERM.
 
-What was there before stays, or all is there that is new. The next run leaves what an undisturbed
-one leaves, to the last byte, and nothing else beside it.
+Either the old files stay, or all new ones are complete. The next run writes the same files as an
+undisturbed run, to the last byte, and no others.
 """
 
 import os
@@ -97,7 +97,8 @@ def killed(
 
 
 def terminated(place: Path, tries: int, options: Sequence[str] = ("--mesh-size", "0.1")) -> Row:
-    """SIGTERM to runs that mesh and reduce a shell; a breach leaves something, or says other words.
+    """Send SIGTERM to runs that mesh and reduce a shell; a breach leaves files, or has another
+    message.
 
     Args:
         place: an empty folder.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Runs that share a cache which is cold, and runs that write to one folder."""
+"""Runs with a common empty cache, and runs that write to the same folder."""
 
 import os
 import subprocess
@@ -35,7 +35,7 @@ def rows(folder: Path, tries: int = 3) -> Iterator[Row]:
 
 
 def cold_cache(folder: Path, tries: int) -> Row:
-    """Four runs of one shell."""
+    """Yield the results of four runs of one shell."""
     alone = folder / "alone"
     assert _finish([_start(_SHELL, alone, folder / "cache")])
     breaches = 0
@@ -49,7 +49,7 @@ def cold_cache(folder: Path, tries: int) -> Row:
 
 
 def one_folder(folder: Path, tries: int, models: Sequence[str]) -> Row:
-    """Two runs of the same models, given as options of the command line."""
+    """Yield the results of two runs of the same models, which are options of the command line."""
     alone, cache = folder / "alone", folder / "cache"
     assert _finish([_start(models, alone, cache)])
     breaches = 0
