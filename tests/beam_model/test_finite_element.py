@@ -129,7 +129,7 @@ def test_places_too_near_for_an_element_share_a_node(
         assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=2e-5, abs=0.0)
 
 
-def test_shear_matters_where_statics_are_tested(beam: Beam) -> None:
+def test_shear_contributes_to_the_tested_statics(beam: Beam) -> None:
     segment = beam(supports=(3.0, 4.2))
     tip = [
         OverhangingBeam(segment, [(8.0, 1.0)], 0.0, shear_stiffness(segment, theory)).deflection(

@@ -25,7 +25,7 @@ def system(num_modes: int = MODES) -> GapSystem:
     return modal_system(omega**2, rows[3], rows[:2], laws, tip=rows[2], **rubbing)
 
 
-def test_a_condensed_system_answers_slow_forces_alike() -> None:
+def test_condensed_system_has_the_same_slow_response() -> None:
     """Reference: analytic, C(σ) = B (Ω² + σ)⁻¹ Bᵀ of the whole system."""
     whole = system()
     few, shapes = condense(whole, 20)
@@ -56,7 +56,7 @@ def test_excited_modes_are_kept_before_slower_unexcited_modes() -> None:
     np.testing.assert_allclose(few.frequencies[:16], expected, rtol=1e-12, atol=1e-9)
 
 
-def test_rigid_motions_stay_where_pushes_leave_no_room() -> None:
+def test_rigid_motions_remain_in_small_condensed_systems() -> None:
     """Reference: analytic, the compliance of the whole system; its rigid mode is the last one."""
     rows = np.random.default_rng(4).normal(size=(24, MODES))
     whole = replace(

@@ -64,7 +64,7 @@ def test_pads_do_not_matter_to_a_bonded_boom(paper_boom: Boom, elements: Models)
 
 
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
-def test_bonded_boom_rests_where_statics_put_it(
+def test_bonded_boom_has_the_deflections_of_statics(
     paper_boom: Boom, elements: Models, theory: Theory
 ) -> None:
     """Reference: analytic. The joint is statically determinate."""

@@ -174,7 +174,7 @@ def test_twist_follows_the_local_constant() -> None:
         assert row @ np.linalg.solve(twist.stiffness, row) == pytest.approx(flexibility, rel=1e-5)
 
 
-def test_sections_fit_where_they_touch() -> None:
+def test_tapered_sections_fit_at_the_overlap() -> None:
     """Reference: by hand. A fly 0.62 m high in an arm of 0.6 m with walls of 20 and 10 mm has a
     clearance of −0.05 m.
     """
@@ -190,7 +190,7 @@ def test_sections_fit_where_they_touch() -> None:
     assert Boom((outer, slender), (joint,)).stations == [(6.0, "z"), (8.0, "z")]
 
 
-def test_ends_are_alike() -> None:
+def test_ends_have_equal_shapes() -> None:
     """Reference: exact messages."""
     other = octagon(0.3, 0.35, 0.05, 0.01, 0.01, 0.008)
     with pytest.raises(ValueError, match=r"segments\[0\].head_section: has other shapes than the"):

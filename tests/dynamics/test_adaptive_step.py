@@ -197,7 +197,7 @@ def test_bad_tolerances_are_refused(tolerance: float) -> None:
         AdaptiveStep(tolerance)
 
 
-def test_rests_unless_told() -> None:
+def test_initial_state_is_zero_by_default() -> None:
     motion = Motion(CHAOTIC, 1.0, 0.3)
     assert motion.from_rest
     assert motion.outputs == 3

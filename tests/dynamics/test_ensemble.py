@@ -280,7 +280,7 @@ class Counted:
         return replace(self, way=self.way.finer())
 
 
-def test_stops_when_it_is_known() -> None:
+def test_runs_stop_at_known_horizons() -> None:
     """Reference: by hand, the numbers of runs. The linear system needs 4 besides its motion, the
     chaotic system 3 for each change. Within a quarter of the run only the finer step diverges.
     """
@@ -398,7 +398,7 @@ def test_says_whether_step_or_physics_limits() -> None:
         assert (found.of_step[0] < found.times[0, 0]) == (expected == "step")
 
 
-def test_growth_decides_where_chance_would() -> None:
+def test_growth_decides_instead_of_chance() -> None:
     """Reference: by hand. The finer step is the first to reach the large share by chance. At the
     small share it is equivalent to 1e-9.
     """

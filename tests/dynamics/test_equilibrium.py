@@ -30,7 +30,7 @@ def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0])
-def test_a_free_mass_rests_where_its_stop_carries_the_force(exponent: float) -> None:
+def test_free_mass_rests_on_its_stop(exponent: float) -> None:
     """Reference: analytic. k pⁿ = 50 N."""
     system = mass_over_stop(exponent, 0.0)
     position = equilibrium(system, 50.0 * system.rows[0])
@@ -99,7 +99,7 @@ def _tipping(one_mass: Callable[..., GapSystem]) -> GapSystem:
     return one_mass(MASS, STOPS, spring=NEGATIVE)
 
 
-def test_modes_soften_as_the_whole_stiffness_does() -> None:
+def test_modes_soften_like_the_whole_stiffness() -> None:
     """Reference: analytic, the eigenvalues of diag(ω²) − G by another routine. Translations keep
     ω = 0.
     """
@@ -115,7 +115,7 @@ def test_modes_soften_as_the_whole_stiffness_does() -> None:
     np.testing.assert_allclose(turned, np.diag(found), atol=1e-9)
 
 
-def test_a_mode_buckles_where_its_stiffness_vanishes() -> None:
+def test_mode_buckles_at_zero_stiffness() -> None:
     """Reference: analytic, K/K_G for one coordinate, and the root of a determinant for two."""
     assert buckling_factor(np.array([[9.0]]), np.array([[2.0]])) == pytest.approx(4.5, rel=1e-14)
     stiffness, geometric = np.array([[9.0, 2.0], [2.0, 16e6]]), np.array([[2.0, 1.0], [1.0, 1e6]])
@@ -151,7 +151,7 @@ def test_unstable_mass_rests_on_its_stop(tipping: GapSystem) -> None:
     np.testing.assert_allclose(found, [rest], rtol=1e-9)
 
 
-def test_the_pressed_boom_is_damped_as_asked_for() -> None:
+def test_boom_in_contact_has_the_given_damping() -> None:
     """Reference: the given ratio, for a mass bonded to an elastic one."""
     two = modal_system([NEGATIVE / MASS, 400.0], [-9.0, 0.0], [0.5, -0.4], [STOPS], tip=[1.0, 1.0])
     omega, ratios = closed_contact_damping(with_modal_damping(two, 0.03))

@@ -60,7 +60,7 @@ KINKS = {**KINKED, "a jump": PiecewiseLinear((0.507, 0.507 + 1.0e-6), (0.0, 1.0)
 
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-3, 1.0e-4])
 @pytest.mark.parametrize("where", KINKS)
-def test_kinks_are_followed_wherever_they_are(where: str, step: float) -> None:
+def test_kinks_within_steps_are_resolved(where: str, step: float) -> None:
     """Reference: analytic, relative to the range of each mode. A step replaces the history by a
     line with its mean and first moment; the error of a mode is of fourth order in ω h.
     """

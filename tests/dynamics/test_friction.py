@@ -221,7 +221,7 @@ def sled(speed: float, fall: float, friction: DryFriction, stiffness: float = 1.
     )
 
 
-def test_a_sled_stops_where_its_weight_stops_it() -> None:
+def test_sled_stops_by_friction_under_its_weight() -> None:
     """Reference: analytic. The distance is v²/(2 μ g) under the weight, and v²/(2 μ (g + N/m)) with
     an additional normal force.
     """

@@ -109,7 +109,7 @@ def test_another_integrator_finds_the_same(example: ModuleType) -> None:
 
 
 @of("sweep")
-def test_the_mass_rebounds_as_asked(example: ModuleType) -> None:
+def test_mass_rebounds_with_the_given_restitution(example: ModuleType) -> None:
     """Reference: analytic, the restitution from which the damping is computed."""
     for asked in (0.3, 0.7, 1.0):
         assert example.rebound(asked) == pytest.approx(asked, abs=2e-3)

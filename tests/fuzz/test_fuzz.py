@@ -39,6 +39,6 @@ def test_a_sample_keeps_the_contract() -> None:
         (-24, b"", "exit status -24: b''"),
     ],
 )
-def test_a_breach_is_told(status: int, err: bytes, breach: str) -> None:
+def test_a_breach_is_reported(status: int, err: bytes, breach: str) -> None:
     assert Ending(status, err, 1.0, 1e9).breach() == breach
     assert Ending(status, err, 1.0, 5e9).breach()

@@ -94,7 +94,7 @@ def test_places_of_three_segments(paper_boom: Boom) -> None:
     }
 
 
-def test_places_where_something_acts(paper_boom: Boom, spatial_boom: Boom) -> None:
+def test_positions_of_stations_and_loads(paper_boom: Boom, spatial_boom: Boom) -> None:
     """Stations are ordered by joints along z, joints along y, stops; nodes are at all forces."""
     loads = (Load(0, "z", 5.0, 4.0, np.ones_like), Load(0, "z", 5.0, None, np.ones_like))
     stop = Stop(1, 14.0, 0.002, PowerContact(1.0e9, 1.0, stiffness_below=0.0))

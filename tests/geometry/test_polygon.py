@@ -60,7 +60,7 @@ def test_a_rectangle_has_the_numbers_of_a_box(walls: tuple[float, float, float, 
     assert str(closed_polygon(polygon.corners, polygon.thicknesses)) == str(box)
 
 
-def test_it_tapers_wherever_its_corners_begin() -> None:
+def test_taper_does_not_depend_on_the_first_corner() -> None:
     """Reference: by hand. A taper between equal sections is constant, for any first corner and
     order.
     """

@@ -305,7 +305,7 @@ def test_carriers_hold_a_force_through_the_axis(name: str, direction: Direction)
     )
 
 
-def test_flats_carry_nothing_along_z_and_the_inclined_plates_alike() -> None:
+def test_flats_carry_nothing_along_z_and_inclined_plates_equal_forces() -> None:
     """Reference: symmetry."""
     assert [n for n, _ in HEXAGON.shear_plates("z")] == [1, 2, 4, 5]
     right, left = (dict(HEXAGON.shear_plates("z"))[n] for n in (1, 5))
@@ -399,7 +399,7 @@ def test_properties_against_integration_over_the_plane() -> None:
     assert UNEQUAL.second_moment_of_area == pytest.approx(moment(2), rel=1e-11)
 
 
-def test_walls_given_twice_alike_are_those_of_a_plain_box() -> None:
+def test_equal_walls_are_those_of_a_plain_box() -> None:
     plain = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
     assert BoxSection(0.60, 0.40, 0.04, 0.01, bottom_flange=0.04, left_web=0.01) == plain
     assert (str(plain), str(UNEQUAL)) == ("600 x 400 x 40 / 10", "600 x 400 x 40 / 20 / 10 / 10")

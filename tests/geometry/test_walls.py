@@ -18,7 +18,7 @@ from geometry.walls import free_room, trapezoids
 from tests.geometry.test_polygon import ALL, HEXAGON
 
 
-def test_plates_meet_where_their_surfaces_do() -> None:
+def test_plates_meet_at_the_corners_of_their_surfaces() -> None:
     """Reference: analytic. The trapezoids of a box have the corners of its outer and inner
     surface.
     """

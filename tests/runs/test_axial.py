@@ -171,7 +171,7 @@ head_section = { height = 0.5, width = 0.3, flange = 0.006, web = 0.006 }
 PRESSED = table("[[axial]]", force=3e5) + elements("beam", theory="euler-bernoulli")
 
 
-def test_a_tapered_boom_is_pressed_most_where_it_is_drawn_to(tmp_path: Path) -> None:
+def test_tapered_boom_has_the_largest_stress_at_the_extension(tmp_path: Path) -> None:
     """Reference: by hand, 300 kN on four walls. The tail moves from 5 m, with walls of 9 mm, to 9
     m. There the taper from 12 to 6 mm and from 0.7 to 0.5 m is at nine tenths, with walls of 6.6
     mm.

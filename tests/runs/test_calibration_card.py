@@ -14,7 +14,7 @@ from studies.motions import friction_case
 from tests.touching import touching
 
 
-def test_it_tells_stiffness_and_springs() -> None:
+def test_card_has_stiffness_and_springs() -> None:
     """Reference: analytic, 1/D of a diagonal residual compliance, and given factors."""
     boom = build_boom(friction_case())
     law = PowerContact(1.0e9, 1.0).with_clearance(0.007)

@@ -69,7 +69,7 @@ def test_long_runs_are_thinned_to_their_own_samples() -> None:
     np.testing.assert_allclose(curve.y, np.sin(50.0 * curve.x), atol=1e-7)
 
 
-def test_the_library_comes_whole() -> None:
+def test_page_contains_the_whole_library() -> None:
     """Reference: the content of the wheel."""
     library = pytest.importorskip("plotly.offline").get_plotlyjs()
     assert gzip.decompress(base64.b64decode(pack_plotly())).decode() == library
@@ -89,7 +89,7 @@ def test_shell_beam_and_bonded_are_read_first(name: str, first: set[str]) -> Non
     assert main_models(case, [model.name for model in case.models]) == first
 
 
-def test_colours_can_be_told_apart() -> None:
+def test_colours_are_distinct() -> None:
     """Reference: external, WCAG 2.1. A graphical object needs a contrast of 3 to the paper."""
     for colour in (*theme.PALETTE, theme.PLAY_FREE, theme.LOSS):
         linear = [

@@ -80,7 +80,7 @@ def test_every_model_stands_on_its_cylinder(case: Case) -> None:
         assert results.summary.models[model].energy_residual < 1e-4
 
 
-def test_check_tells_the_cylinder_and_how_far_its_dashpot_damps(case: Case) -> None:
+def test_check_reports_the_cylinder_and_its_damping(case: Case) -> None:
     """Reference: analytic, the lever arm about the pin, the moment of the weights, and the axial
     component between pin and lug.
     """

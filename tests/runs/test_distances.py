@@ -93,7 +93,7 @@ def shown(data: xr.Dataset, planned: Plan) -> str:
     return captured.get()
 
 
-def test_a_sweep_tells_the_distances_of_its_models(against: Plan) -> None:
+def test_sweep_reports_the_distances_of_its_models(against: Plan) -> None:
     """Reference: other code path, the tips of both models in one run."""
     data = output.write(against, run(against), Path("out"))
     case = case_file.select(case_file.load("case.toml"), "", MODELS)

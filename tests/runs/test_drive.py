@@ -209,13 +209,13 @@ def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) ->
     assert [rest.time for rest in bonded] == [begun.time, largest.time]
 
 
-def test_of_no_rest_nothing_is_said_where_it_is_drawn_to() -> None:
+def test_no_extension_note_without_static_states() -> None:
     """Reference: by hand. The models of a telescoping boom may have no equilibrium."""
     assert extension_note(shipped("drawn-out"), []) == ""
 
 
 @pytest.mark.usefixtures("unprinted")
-def test_a_run_tells_of_its_drive(tmp_path: Path) -> None:
+def test_run_reports_its_drive(tmp_path: Path) -> None:
     """Reference: analytic, the travels of the case, and the drive force from contact forces."""
     results = run_case(read_case(tmp_path, edited(SHORT, FAST)), models=["kantorovich-5"])
     data = results.trajectories.sel(model="kantorovich-5")
@@ -364,7 +364,7 @@ def test_largest_speed_is_the_steepest_slope(tmp_path: Path) -> None:
     assert ", at 10 m/s at most; " in line
 
 
-def test_a_drawing_shows_where_a_segment_is_drawn_to() -> None:
+def test_drawing_shows_the_extension_of_a_segment() -> None:
     """Reference: the case. The inner segment of 10 m starts at 5 m and travels 4 m."""
     case = shipped("drawn-out")
     with rc_context(theme.RC):

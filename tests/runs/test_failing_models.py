@@ -59,7 +59,9 @@ def moved(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     return modes
 
 
-def test_the_others_are_written_and_it_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_other_models_are_written_and_the_failure_is_reported(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
     write_case(TOO_SHORT)
     assert protractile(*RUN, "--large") == 3
     out, err = capsys.readouterr()
@@ -75,7 +77,7 @@ def test_the_others_are_written_and_it_is_told(capsys: pytest.CaptureFixture[str
     assert protractile("report", "out") == 0
 
 
-def test_nothing_is_written_where_all_fail(capsys: pytest.CaptureFixture[str]) -> None:
+def test_nothing_is_written_if_all_models_fail(capsys: pytest.CaptureFixture[str]) -> None:
     write_case(TOO_SHORT)
     run = "run", "case.toml", "--models", "kantorovich-4", "--out", "out", "--large"
     assert protractile(*run) == 3

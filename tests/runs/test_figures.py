@@ -271,7 +271,7 @@ def test_initial_contact_is_no_first_contact(results: Results, drawn: Drawn) -> 
     assert "first contact\ns" in model_table(results).headings
 
 
-def test_energies_start_where_the_boom_does(results: Results, drawn: Drawn) -> None:
+def test_energies_start_with_the_initial_energy(results: Results, drawn: Drawn) -> None:
     """Reference: by hand, an initial strain energy of 5 J."""
     loaded = results.trajectories.assign(strain_energy=results.trajectories["strain_energy"] + 5.0)
     line = {}
@@ -286,7 +286,7 @@ def test_energies_start_where_the_boom_does(results: Results, drawn: Drawn) -> N
     np.testing.assert_allclose(line["loaded"] - line["from zero"], 5.0, rtol=1e-9)
 
 
-def test_friction_is_drawn_where_there_is_any(results: Results, drawn: Drawn) -> None:
+def test_friction_is_drawn_at_stations_with_friction(results: Results, drawn: Drawn) -> None:
     """Reference: the forces themselves, 1 kN at one of two stations."""
     assert drawn(friction, results) == []
     regular = drawn(tip, with_friction(results)) + drawn(heads, with_friction(results))
@@ -364,7 +364,7 @@ def test_a_boom_in_space_moves_to_the_sides(results: Results, drawn: Drawn) -> N
     assert titles == ["x = 9 m", "x = 10 m, lateral"]
 
 
-def test_horizons_are_drawn_where_they_are_measured(results: Results, drawn: Drawn) -> None:
+def test_measured_horizons_are_drawn(results: Results, drawn: Drawn) -> None:
     """Reference: the numbers of the summary."""
     assert drawn(horizons, results) == []
     measured = {

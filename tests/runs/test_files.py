@@ -57,7 +57,7 @@ with scratch_folder(Path({str(path)!r})) as part:
     )
 
 
-def test_a_file_gets_its_name_when_it_is_complete(tmp_path: Path) -> None:
+def test_only_complete_files_get_their_names(tmp_path: Path) -> None:
     path = tmp_path / "summary.json"
     with atomic_path(path) as part:
         part.write_text("{}", encoding="utf-8")

@@ -60,7 +60,7 @@ def test_everything_weighs_across_the_boom(tmp_path: Path, angle: float) -> None
     np.testing.assert_allclose(moved, expected / (1.0 - share), rtol=1e-6 + 0.1 * abs(share))
 
 
-def test_from_rest_the_boom_swings_about_where_its_weight_holds_it(tmp_path: Path) -> None:
+def test_boom_vibrates_about_its_static_deflection(tmp_path: Path) -> None:
     """Reference: analytic. The tip falls with g and reaches nearly twice the static deflection."""
     moved = tip(change(read(tmp_path, "[gravity]\n"), **{"time.duration": 1.0}))
     static = tip(read(tmp_path, '[gravity]\n[start]\nstate = "equilibrium"\n'))[0]
@@ -89,7 +89,7 @@ def test_a_segment_has_its_own_material(tmp_path: Path) -> None:
     assert (arm.material.density, arm.material.yield_strength) == (7850.0, 690e6)
 
 
-def test_the_case_needs_no_material_where_each_segment_has_its_own(tmp_path: Path) -> None:
+def test_case_needs_no_material_besides_those_of_all_segments(tmp_path: Path) -> None:
     case = read(tmp_path, material="# none\n", segment=f"material = {ALUMINIUM}")
     (arm,) = build_boom(case).segments
     assert arm.material.youngs_modulus == 7e10

@@ -139,7 +139,7 @@ def test_importing_the_package_keeps_warnings() -> None:
     assert "UserWarning: heard" in done.stderr
 
 
-def test_every_module_counts_wherever_it_lies(tmp_path: Path) -> None:
+def test_modules_in_all_folders_count(tmp_path: Path) -> None:
     package = tmp_path / "package"
     deep = package / "inner" / "innermost"
     deep.mkdir(parents=True)

@@ -46,7 +46,7 @@ def under_moment(bending: float) -> float:
 
 @pytest.mark.parametrize("model", [ELEMENTS, SERIES], ids=["elements", "series"])
 @pytest.mark.parametrize(("load", "expected"), [(PART, under_part), (MOMENT, under_moment)])
-def test_beams_rest_where_statics_put_them(
+def test_beams_have_the_deflections_of_statics(
     tmp_path: Path, load: str, expected: Callable[[float], float], model: str
 ) -> None:
     """Reference: analytic. Elements and series contain the influence line of the tip, a cubic."""

@@ -45,7 +45,7 @@ def header(folder: Path) -> list[str]:
         return next(csv.reader(file))
 
 
-def test_columns_of_stations_are_told_apart(run: Run, tmp_path: Path) -> None:
+def test_columns_of_stations_are_distinct(run: Run, tmp_path: Path) -> None:
     """The boom has two stations in each of two directions, and a stop at the position of one."""
     plain = run.results.trajectories
     places = [("9", "z"), ("10", "z"), ("9", "y"), ("10", "y"), ("9", "z")]

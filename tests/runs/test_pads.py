@@ -57,12 +57,12 @@ def test_a_play_may_be_more_above_than_below(tmp_path: Path) -> None:
     assert law.force(y) == pytest.approx([-1.0e6, 0.0, 0.0, 1.0e6])
 
 
-def test_check_tells_both_sides(tmp_path: Path) -> None:
+def test_check_reports_both_sides(tmp_path: Path) -> None:
     case = case_with(tmp_path, "stiffness = 1e9\nplay_above = 0.004\n")
     assert "4 above, 10 below" in printed_check(case)
 
 
-def test_the_play_above_is_where_the_tail_presses(tmp_path: Path) -> None:
+def test_play_above_is_at_the_contact_of_the_tail(tmp_path: Path) -> None:
     """Reference: symmetry. Load and play mirrored in z give the mirrored motion."""
     tips = []
     for part, sign in ((0.004, 1.0), (0.010, -1.0)):
@@ -199,7 +199,7 @@ def test_pads_share_as_they_are_stiff(tmp_path: Path) -> None:
     assert pressed == pytest.approx([stiff * 1e-3, -stiff * 1e-3, -stiff / 3.0 * 3e-3])
 
 
-def test_each_pad_tells_its_pressure(tmp_path: Path) -> None:
+def test_pressure_of_each_pad_is_reported(tmp_path: Path) -> None:
     """Reference: by hand, the largest force at the head over both areas; it exceeds that at the
     tail.
     """

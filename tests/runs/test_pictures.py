@@ -109,7 +109,7 @@ def test_refuses_a_time_outside_the_run(shell: Scene, tmp_path: Path) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 @pytest.mark.parametrize("place", [(4.0, 0.0, 1.0), (-6.0, 2.0, -0.5)])
-def test_letters_stand_where_the_camera_sees_their_place(place: tuple[float, ...]) -> None:
+def test_labels_are_at_the_projected_points(place: tuple[float, ...]) -> None:
     """Reference: other code, the centre of a small plate in VTK's picture."""
     camera = Camera(np.array([0.0, 0.0, 0.5]), 20.0, (400, 160), elevation=10.0)
     corners = np.array([[-0.3, 0, -0.3], [0.3, 0, -0.3], [0.3, 0, 0.3], [-0.3, 0, 0.3]])
@@ -219,7 +219,7 @@ def test_arrows_and_their_numbers_stay_above_the_axis(steep: float) -> None:
 
 
 @pytest.mark.slow
-def test_stress_is_dark_where_it_is_large(pictures: list[Path]) -> None:
+def test_large_stress_is_dark(pictures: list[Path]) -> None:
     """Reference: the fixture, with stress in the inner segment from 9 to 9.4 m only."""
     overlap = picture_of(pictures, "stress-first-peak.png")[390:800]
     dark = warmth(overlap) < -30.0
@@ -248,7 +248,7 @@ def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
 
 @pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
-def test_loads_masses_and_cylinders_are_marked_where_the_boom_is(shell: Scene) -> None:
+def test_symbols_of_loads_masses_and_cylinders_follow_the_boom(shell: Scene) -> None:
     """Reference: analytic. Symbols of 30 pt: a red arrow and a black ball at the tip, a bar along
     the cylinder.
     """

@@ -109,7 +109,7 @@ def test_progress_shows_stage_and_remaining_time(monkeypatch: pytest.MonkeyPatch
     ]
 
 
-def test_aborts_when_its_line_has_been_read(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ranks_abort_after_their_line_is_read(monkeypatch: pytest.MonkeyPatch) -> None:
     """The reader is late, so that an immediate abort would precede the reading of the line."""
     reader, writer = os.pipe()
     read: list[bytes] = []
@@ -129,7 +129,7 @@ def test_aborts_when_its_line_has_been_read(monkeypatch: pytest.MonkeyPatch) -> 
     assert at_abort == [[b"protractile: no number is finite\n"]]
 
 
-def test_aborts_at_once_where_nothing_is_a_pipe(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_ranks_abort_at_once_without_a_pipe(monkeypatch: pytest.MonkeyPatch) -> None:
     codes: list[int] = []
     comm = SimpleNamespace(size=2, rank=0, Abort=codes.append)
     monkeypatch.setattr("sys.stderr", io.StringIO())

@@ -182,7 +182,7 @@ def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None
 
 
 @pytest.mark.parametrize("name", ["crane", "inspection-arm", "lift"])
-def test_a_boom_rests_where_a_hand_puts_it(name: str) -> None:
+def test_booms_have_the_deflections_of_statics_by_hand(name: str) -> None:
     """Reference: analytic, lever rule and unit-load method with the rotations by play, within 0.1
     %.
     """

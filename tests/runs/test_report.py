@@ -105,7 +105,7 @@ def test_shows_every_verdict_first(results: Results, page: Page) -> None:
     assert order == sorted(order)
 
 
-def test_shows_every_model_and_where_it_comes_from(results: Results, page: Page) -> None:
+def test_report_shows_every_model_and_its_source(results: Results, page: Page) -> None:
     cells = re.sub(r"\s+", " ", page.text)
     for name, model in results.summary.models.items():
         assert f"{name} {model.kind}" in cells

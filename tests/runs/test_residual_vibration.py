@@ -149,7 +149,7 @@ def test_unfinished_drive_has_no_residual_vibration(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("level", "fastest"), [(4.0, 2.5), (6.0, 3.0), (1.0, None), (2.99, 2.0), (1.99, 1.0)]
 )
-def test_the_fastest_is_where_lines_cross(level: float, fastest: float | None) -> None:
+def test_admissible_speed_is_at_the_crossing_of_lines(level: float, fastest: float | None) -> None:
     """Reference: by hand. Less than 1 % above the level does not count."""
     one = VibrationCurve(
         np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {"end": np.full(3, level)}

@@ -200,7 +200,7 @@ def test_exhausted_fatigue_life_exceeds_the_limit(results: Results) -> None:
     assert cells(table)["Fatigue damage (Miner)"][PLAYED] == "3.2"
 
 
-def test_the_tip_travels_from_where_it_is_at_first(results: Results) -> None:
+def test_tip_travel_begins_at_the_initial_deflection(results: Results) -> None:
     """Reference: by hand, a tip that starts at 20 mm. A tip that starts at 0 has one number."""
     assert "Tip travel from t = 0, mm" not in cells(summary_table(results))
     tip = results.trajectories["tip"]

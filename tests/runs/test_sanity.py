@@ -211,7 +211,7 @@ def test_unusual_numbers_give_cautions(tmp_path: Path, old: str, new: str, line:
     assert proportion_cautions(case, build_boom(case)) == [f"caution: {line}"]
 
 
-def test_a_run_shorter_than_a_swing_is_told(tmp_path: Path) -> None:
+def test_run_shorter_than_a_period_gives_a_caution(tmp_path: Path) -> None:
     """Reference: the frequency in the line above."""
     shown = printed_check(read_case(tmp_path, edited("duration = 3.0", "duration = 0.2")))
     line = (
@@ -340,7 +340,7 @@ def test_shipped_cases_have_no_cautions(path: Path) -> None:
     ],
     ids=["modulus", "density", "height", "payload", "load", "contact", "mesh"],
 )  # fmt: skip
-def test_each_slip_is_told(tmp_path: Path, old: str, new: str, slip: str) -> None:
+def test_each_error_gives_a_caution(tmp_path: Path, old: str, new: str, slip: str) -> None:
     assert f"caution: {slip}" in slips_of(tmp_path, old, new)
 
 
@@ -360,7 +360,7 @@ def test_folds_and_heads_are_walls_too(tmp_path: Path) -> None:
     assert slips_of(tmp_path, box, f"section = {wide}\nhead_section = {narrow}") == [caution]
 
 
-def test_weights_of_the_wrong_sign_are_told(tmp_path: Path) -> None:
+def test_weights_of_the_wrong_sign_give_a_caution(tmp_path: Path) -> None:
     text = CASE.replace("load = -", "load = ").replace("[payload]\nmass = 500.0\n", "")
     case = read_case(tmp_path, text)
     assert proportion_cautions(case, build_boom(case)) == [

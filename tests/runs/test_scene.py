@@ -84,7 +84,7 @@ def test_supports_and_forces_are_marked(shell: Scene) -> None:
     assert [symbol.segment for symbol in loads] == [0, 1]
 
 
-def test_the_change_of_a_sections_shape_leaves_out_its_motion_as_a_whole(shell: Scene) -> None:
+def test_change_of_shape_excludes_the_rigid_motion(shell: Scene) -> None:
     """Reference: analytic, a section that widens by c y, moves and rotates by φ."""
     _, y, z = shell.points.T
     moved = np.stack([0.0 * y, 0.03 - 0.02 * z + 0.01 * y, -0.05 + 0.02 * y], axis=1)
@@ -183,7 +183,7 @@ def test_scale_is_round_and_fits(largest: float, scale: float) -> None:
     assert round_scale(largest) == pytest.approx(scale)
 
 
-def test_the_motion_of_an_overlap_as_a_whole_is_left_out(shell: Scene) -> None:
+def test_rigid_motion_of_an_overlap_is_subtracted(shell: Scene) -> None:
     """Reference: analytic, a parabola w = c x² over 1 m. Without its rigid motion, at most w″/12 ·
     (1/2)² remains in the middle. The relative displacement of the inner segment is preserved.
     """
@@ -459,7 +459,7 @@ def test_few_shapes_leave_little() -> None:
     assert np.abs(parts @ shapes - moved).max() < 2.0 * TRUNCATION * np.abs(moved).max()
 
 
-def test_a_slope_raises_points_and_shapes_alike(shown: View) -> None:
+def test_points_and_shapes_rotate_with_the_boom(shown: View) -> None:
     """Reference: analytic. At 90 degrees x points upwards and z backwards."""
     flat, risen = (places(pack_view(shown, angle)) for angle in (0.0, 90.0))
     expected = np.stack([-flat[..., 2], flat[..., 1], flat[..., 0]], axis=-1)

@@ -204,7 +204,7 @@ def test_without_a_shell_there_is_nothing(tmp_path: Path) -> None:
     assert stress_history(FigureContext(results(None), tmp_path)) == []
 
 
-def test_the_largest_stress_stands_beside_the_yield_strength_where_it_is_known() -> None:
+def test_largest_stress_is_compared_with_a_known_yield_strength() -> None:
     """Reference: 91.6 MPa of 355 MPa."""
     plain = results(STRESS)
     material = plain.case.material

@@ -258,7 +258,7 @@ def ball(*histories: History) -> GapSystem:
     return replace(system, excitations=lifted)
 
 
-def test_loads_are_taken_where_they_are_largest() -> None:
+def test_instants_are_at_extremes_of_loads() -> None:
     """Reference: by hand. A ramp has its maximum at its end, a sine of 1 Hz extremes at 0.25 and
     0.75 s.
     """
@@ -273,7 +273,7 @@ def test_no_swing_of_a_load_is_missed() -> None:
     assert Sine(1000.0)(np.array(peaks)) == pytest.approx([1.0, -1.0], rel=1e-3)
 
 
-def test_a_drawn_boom_rests_under_the_largest_loads_of_where_it_is() -> None:
+def test_extended_boom_is_under_the_largest_loads_meanwhile() -> None:
     """Reference: by hand. The boom is extended from 1 s on, during the second of two peaks, and
     retracted at 3 s.
     """

@@ -78,7 +78,7 @@ def test_slips_in_a_drive(tmp_path: Path, rope: str, message: str) -> None:
     assert refusal(tmp_path, changed_text({"least_overlap = 1.0 }": rope})) == message
 
 
-def test_nothing_sticks_where_nothing_rubs(tmp_path: Path) -> None:
+def test_no_stick_slip_without_friction(tmp_path: Path) -> None:
     """Reference: exact message."""
     changes = {"least_overlap = 1.0 }": ROPE, "friction = 0.2 ": "# "}
     assert refusal(tmp_path, changed_text(changes)) == (
@@ -121,7 +121,7 @@ def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
     assert data["drive_force"].values[:100] == pytest.approx(pulled.thrust)
 
 
-def test_a_check_tells_whether_it_will_stick_and_slip(tmp_path: Path) -> None:
+def test_check_predicts_stick_slip(tmp_path: Path) -> None:
     """Reference: by hand. With an overlap of 1 m, the lever rule gives pad forces of 27 and 21.6
     kN. 550.7 kg on 200 kN/m have 3.03 Hz and the damping ratio 500/2√(k m). The critical speed
     follows from the formula.
@@ -155,7 +155,7 @@ def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
 
 
 @pytest.mark.slow
-def test_a_run_tells_how_it_sticks_and_slips(tmp_path: Path) -> None:
+def test_run_reports_stick_slip(tmp_path: Path) -> None:
     """Reference: analytic. During slip the drive force is friction plus m Δṡ/Δt. The extension is
     the command less the lag. Other results are those of a stiff drive.
     """
@@ -258,7 +258,7 @@ def _check_shown(results: Results, folder: Path) -> None:
     assert figure.title.startswith(f"Drive of inner: sticks {own.sticks} times, slips by up to ")
 
 
-def test_a_lag_is_told_in_the_units_of_the_case(tmp_path: Path) -> None:
+def test_lag_is_in_the_units_of_the_case(tmp_path: Path) -> None:
     """Reference: by hand, 0.1 m of the remaining overlap of 1 m."""
     boom, data = build_boom(drawn_by(tmp_path, ROPE)), xr.Dataset({"drive_lag": ("time", [-0.1])})
     (line,) = lag_cautions(boom, data, System("mm-t-s"))
@@ -267,7 +267,7 @@ def test_a_lag_is_told_in_the_units_of_the_case(tmp_path: Path) -> None:
     )
 
 
-def test_a_report_warns_where_it_lags_far_behind(tmp_path: Path) -> None:
+def test_large_lag_gives_a_caution_in_the_report(tmp_path: Path) -> None:
     """Reference: by hand. 9.72 kN stretch a rope of 1e5 N/m by 97 mm, at most by half as much
     again.
     """

@@ -60,7 +60,7 @@ def test_values_have_short_decimals(planned: Planned, given: str, values: list[f
     assert [point.case.joints[0].play for point in planned(f"joint.play={given}").points] == values
 
 
-def test_keys_go_where_they_say(planned: Planned) -> None:
+def test_values_are_set_at_their_keys(planned: Planned) -> None:
     sweeping = planned("segment[2].load=20,40", "segment[2].span[2]=18.5,19", "payload.mass=5,9")
     assert list(sweeping.units) == ["N/m", "m", "kg"]
     assert [point.label for point in sweeping.points][:3] == [
@@ -168,7 +168,7 @@ def test_a_folder_of_something_else_is_refused(planned: Planned) -> None:
         sweep.prepare(Path(), planned("joint.play=0,0.01").file)
 
 
-def test_a_decay_settles_when_the_formula_says() -> None:
+def test_decay_has_the_settling_time_of_the_formula() -> None:
     """Reference: analytic, τ ln 20 for exp(−t/τ). The mean of the last fifth has an error of
     e⁻¹⁶.
     """

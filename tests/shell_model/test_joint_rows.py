@@ -105,7 +105,7 @@ def test_loads_act_where_and_when_they_say() -> None:
     assert 0.5 * (tip + tail) @ point[free] == pytest.approx(100.0 / mass, rel=1.0e-9)
 
 
-def test_readings_add_up_over_the_segments_of_either() -> None:
+def test_operators_add_up_over_all_segments() -> None:
     one, other = (
         Operator({0: Row({3: 1.0})}),
         Operator({0: Row({3: 0.5, 4: 2.0}), 1: Row({7: 1.0})}),
