@@ -31,7 +31,7 @@ def model_tables(results: Results) -> list[Table]:
         *calibration_tables(results),
         wall_table(results),
     )
-    return [table for table in tables if table is not None]
+    return [table for table in tables if table is not None and table.rows]
 
 
 def model_table(results: Results) -> Table:
@@ -144,21 +144,17 @@ def step_table(results: Results) -> Table:
     return Table("Steps", columns, notes, "steps")
 
 
-def law_table(results: Results) -> Table | None:
+def law_table(results: Results) -> Table:
     """Return the table of the contact laws of joints in each model, with the first peak."""
     laws = [
         (model.name, joint, seen.contact)
         for model in results.completed_models
         if not model.bonded
         for joint, seen in zip(
-            results.case.joints,
-            model.model_boom(results.boom).boom.joints,
-            strict=True,
+            results.case.joints, model.model_boom(results.boom).boom.joints, strict=True
         )
         if not joint.bonded
     ]
-    if not laws:
-        return None
     models = results.summary.models
     peaks = [models[name].first_peak["tip"].height for name, _, _ in laws]
     columns = (
@@ -189,15 +185,13 @@ def lateral_peak_table(results: Results) -> Table | None:
         peaks = [model.first_peak[place] for model in models.values()]
         first_peaks = [_first_peak(peak, duration) for peak in peaks]
         other = models[reference].first_peak[place].height
+        differences = [
+            p.height / other - 1.0 if p.height is not None and other else None for p in peaks
+        ]
         columns += [
             Column(way, [time for time, _ in first_peaks], ".3f", "s"),
             Column(way, [height for _, height in first_peaks], ".1f", "mm"),
-            Column(
-                f"{way}, off {reference}",
-                [_relative_difference(p.height, other) for p in peaks],
-                ".2g",
-                "%",
-            ),
+            Column(f"{way}, off {reference}", differences, ".2g", "%"),
         ]
     return Table("First peaks of the tip in space", columns, name="space")
 
@@ -219,7 +213,7 @@ def buckling_table(results: Results) -> Table | None:
         "Buckling factor: multiple of the axial forces at which the boom with closed joints "
         "buckles. The tip includes second-order effects.",
     )
-    return Table("Axial forces", columns, notes, "buckling")
+    return Table("Axial forces", columns, notes, "axial")
 
 
 def _first_peak(peak: FirstPeak, duration: float) -> tuple[Cell, Cell]:
@@ -227,29 +221,23 @@ def _first_peak(peak: FirstPeak, duration: float) -> tuple[Cell, Cell]:
     return peak if peak.height is not None else ("no peak", f"within {duration:g} s")
 
 
-def _relative_difference(height: float | None, other: float | None) -> float | None:
-    return None if height is None or other is None else height / other - 1.0
-
-
-def wall_table(results: Results) -> Table | None:
-    """Return the table of wall forces at the time of maximum stress; None without shells."""
+def wall_table(results: Results) -> Table:
+    """Return the table of wall forces of shells at the time of maximum stress."""
     shells = {n: model.stress for n, model in results.summary.models.items() if model.stress}
-    walls = [
-        (name, section, wall, carried)
+    rows = [
+        (name, section.segment, f"{section.x:g}", wall, forces.axial, forces.shear, forces.moment)
         for name, stress in shells.items()
         for section in stress.walls
-        for wall, carried in section.forces.items()
+        for wall, forces in section.forces.items()
     ]
-    if not walls:
-        return None
     columns = (
-        Column("model", [name for name, *_ in walls]),
-        Column("segment", [section.segment for _, section, _, _ in walls]),
-        Column("at x", [f"{section.x:g}" for _, section, _, _ in walls], unit="m"),
-        Column("wall", [wall for _, _, wall, _ in walls]),
-        Column("axial force", [carried.axial for *_, carried in walls], ".2f", "kN"),
-        Column("shear force", [carried.shear for *_, carried in walls], ".2f", "kN"),
-        Column("moment", [carried.moment for *_, carried in walls], ".2f", "kN m"),
+        "model",
+        "segment",
+        ("at x", "", "m"),
+        "wall",
+        ("axial force", ".2f", "kN"),
+        ("shear force", ".2f", "kN"),
+        ("moment", ".2f", "kN m"),
     )
     largest = [f"{name}: {_largest(results.boom, stress)}" for name, stress in shells.items()]
     means = (
@@ -259,7 +247,7 @@ def wall_table(results: Results) -> Table | None:
         "positive with tension at the top."
     )
     title = "Section forces of walls at the instant of the largest stress"
-    return Table(title, columns, (*largest, means), "walls")
+    return Table.of_rows("walls", title, columns, rows, (*largest, means))
 
 
 def _largest(boom: Boom, stress: StressSummary) -> str:
@@ -305,28 +293,24 @@ def calibration_tables(results: Results) -> list[Table]:
 
 def _segments(card: CalibrationCard, names: str, count: int) -> Table:
     rows = [
-        (beam, *plane)
+        (beam.segment, *plane, beam.torsion)
         for beam in card.segments
         for plane in zip(
             "zy", beam.bending, beam.bending_part, beam.shear, beam.shear_part, strict=False
         )
     ]
-    beams, along, bending, bending_part, shear, shear_part = zip(*rows, strict=True)
-    columns = [
-        Column("segment", [beam.segment for beam in beams]),
-        Column("bends along", along),
-        Column("bending stiffness\nE I", bending, ".4g", "MN m²"),
-        Column("of the section", bending_part, ".2f", "%"),
-        Column("shear stiffness\nG A", shear, ".4g", "MN"),
-        Column("of the shear flow", shear_part, ".1f", "%"),
-    ]
-    if any(beam.torsion is not None for beam in beams):
-        columns.append(
-            Column("torsional stiffness\nG I_T", [beam.torsion for beam in beams], ".4g", "MN m²")
-        )
+    columns = (
+        "segment",
+        "bends along",
+        ("bending stiffness\nE I", ".4g", "MN m²"),
+        ("of the section", ".2f", "%"),
+        ("shear stiffness\nG A", ".4g", "MN"),
+        ("of the shear flow", ".1f", "%"),
+        ("torsional stiffness\nG I_T", ".4g", "MN m²"),
+    )
     notes = ("Stiffnesses of a Timoshenko beam with the compliance of the shell away from pads.",)
     title = f"Equivalent beam stiffnesses of the segments, for {names}"
-    return Table(title, columns, notes, f"calibrated-segments-{count}")
+    return Table.of_rows(f"calibrated-segments-{count}", title, columns, rows, notes, sparse=True)
 
 
 def _springs(card: CalibrationCard, names: str, count: int) -> Table:

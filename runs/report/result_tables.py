@@ -17,7 +17,7 @@ from runs.pipeline.proofs import proof_table
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import StaticResult
 from runs.report.figure_context import extension_note
-from runs.report.formatting import NONE, amount, number
+from runs.report.formatting import amount, number
 from runs.report.model_tables import metric_columns
 from runs.report.tables import Cell, Column, Table
 
@@ -46,7 +46,7 @@ def result_tables(results: Results) -> list[Table]:
         *combination_tables(design.combinations, results.case),
         design.proofs and proof_table(design.proofs, results.case),
     ]
-    return [table for table in tables if table is not None]
+    return [table for table in tables if table is not None and table.rows]
 
 
 def play_table(results: Results) -> Table | None:
@@ -74,18 +74,15 @@ def rest_tables(results: Results) -> list[Table]:
     }
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     as_extended = extension_note(results.case, rests.values())
-    tables = (
+    return [
         _tilt_table(rests, as_extended),
         _contact_table(rests, as_extended),
         _reaction_table(results),
-    )
-    return [table for table in tables if table is not None]
+    ]
 
 
-def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | None:
+def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
     tilts = [(name, tilt) for name, rest in rests.items() for tilt in rest.tilts]
-    if not tilts:
-        return None
     columns = (
         Column("model", [name for name, _ in tilts]),
         Column("joint", [f"{tilt.inner} in {tilt.outer}" for _, tilt in tilts]),
@@ -97,10 +94,8 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table | Non
     return Table(title, columns, (note + as_extended,), "tilts")
 
 
-def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table | None:
+def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
     places = dict.fromkeys(pressed.place for rest in rests.values() for pressed in rest.stations)
-    if not places:
-        return None
     columns = [Column("station", [f"x = {place} m" for place in places])]
     for name, rest in rests.items():
         forces = {one.place: one.force for one in rest.stations}
@@ -111,11 +106,9 @@ def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table | 
     return Table(title, columns, (note + as_extended,), "pressed")
 
 
-def _reaction_table(results: Results) -> Table | None:
+def _reaction_table(results: Results) -> Table:
     design = results.summary.design
     reactions = design.reactions
-    if not reactions:
-        return None
     bonded = {(one.segment, one.x): one.force for one in design.reactions_bonded}
     beside = [bonded.get((one.segment, one.x)) for one in reactions]
     columns = (
@@ -140,15 +133,13 @@ def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iter
         yield Column(title, cells, form, unit)
 
 
-def mode_table(results: Results) -> Table | None:
+def mode_table(results: Results) -> Table:
     """Return the table of the first modes with closed contacts, all models side by side."""
     of = {
         name: {(mode.motion, mode.number): mode.frequency for mode in design.modes}
         for name, design in results.summary.design.models.items()
         if design.modes
     }
-    if not of:
-        return None
     lowest: dict[tuple[str, int], float] = {}
     for frequencies in of.values():
         for way, frequency in frequencies.items():
@@ -165,19 +156,18 @@ def mode_table(results: Results) -> Table | None:
     return Table("Modes in the static state at t = 0", columns, notes, "modes")
 
 
-def peak_table(results: Results) -> Table | None:
+def peak_table(results: Results) -> Table:
     """Return the table of maxima in motion and values at rest, for the leading models."""
     of = {
-        name: {(peak.what, peak.where, peak.unit): peak for peak in motion.peaks}
+        name: {
+            (peak.what, peak.where): f"{amount(peak.largest, peak.unit)}{times(peak)}"
+            for peak in motion.peaks
+        }
         for name, motion in results.motions.items()
     }
     rows = dict.fromkeys(where for peaks in of.values() for where in peaks)
-    if not rows:
-        return None
-    columns = [Column("maximum", [_named(what, where) for what, where, _ in rows])]
-    columns += [
-        Column(name, [_peak_cell(peaks.get(where)) for where in rows]) for name, peaks in of.items()
-    ]
+    columns = [Column("maximum", [_named(what, where) for what, where in rows])]
+    columns += [Column(name, [peaks.get(where) for where in rows]) for name, peaks in of.items()]
     notes = ("Absolute values. In brackets: ratio to the static value under the maximum load.",)
     return Table("Forces and deflections in motion", columns, notes, "peaks")
 
@@ -185,12 +175,6 @@ def peak_table(results: Results) -> Table | None:
 def is_negligible(one: PlayDifference) -> bool:
     """Return True if the effect of play is negligible."""
     return one.share is not None and abs(one.share) < NEGLIGIBLE
-
-
-def _peak_cell(peak: Peak | None) -> str:
-    if peak is None:
-        return NONE
-    return f"{amount(peak.largest, peak.unit)}{times(peak)}"
 
 
 def times(peak: Peak) -> str:
@@ -210,8 +194,8 @@ def _named(what: str, where: str) -> str:
     return f"{what}, {where}" if where else what
 
 
-def drive_table(results: Results) -> Table | None:
-    """Return the table of forces, powers and work of drives; None without telescoping."""
+def drive_table(results: Results) -> Table:
+    """Return the table of forces, powers and work of drives."""
     data = results.trajectories
     rows = [
         (str(model), inner, *_effort(results, str(model), suffix))
@@ -219,22 +203,19 @@ def drive_table(results: Results) -> Table | None:
         if f"drive_power{suffix}" in data
         for model in data["model"].values
     ]
-    if not rows:
-        return None
-    models, driven, mean, force, power, work = zip(*rows, strict=True)
     columns = (
-        Column("model", models),
-        Column("drive of", driven),
-        Column("against friction:\nmean", mean, ".3g", "kN"),
-        Column("at most", force, ".3g", "kN"),
-        Column("power, at most", power, ".3g", "kW"),
-        Column("work", work, ".3g", "kJ"),
+        "model",
+        "drive of",
+        ("against friction:\nmean", ".3g", "kN"),
+        ("at most", ".3g", "kN"),
+        ("power, at most", ".3g", "kW"),
+        ("work", ".3g", "kJ"),
     )
     notes = (
         "Forces against the friction of the pads during telescoping. Power and work include "
         "contact forces on sloping segments and axial loads.",
     )
-    return Table("Drives", columns, notes, "drives")
+    return Table.of_rows("drives", "Drives", columns, rows, notes)
 
 
 def luffing_table(results: Results) -> Table | None:
@@ -255,18 +236,17 @@ def luffing_table(results: Results) -> Table | None:
             force = arms * data[force_name(position)].sel(model=model).values
             ends = lengths[0], lengths[-1], np.ptp(lengths)
             rows.append((str(model), position, *ends, force.min(), force.max()))
-    models, numbers, first, last, strokes, least, most = zip(*rows, strict=True)
     columns = (
-        Column("model", models),
-        Column("cylinder", numbers),
-        Column("length at\nthe start", first, ".4g", "m"),
-        Column("at the end", last, ".4g", "m"),
-        Column("stroke", strokes, ".4g", "m"),
-        Column("least force", least, ".4g", "kN"),
-        Column("largest force", most, ".4g", "kN"),
+        "model",
+        "cylinder",
+        ("length at\nthe start", ".4g", "m"),
+        ("at the end", ".4g", "m"),
+        ("stroke", ".4g", "m"),
+        ("least force", ".4g", "kN"),
+        ("largest force", ".4g", "kN"),
     )
     notes = ("Compression is positive. Forces refer to the lever arm at the current angle.",)
-    return Table("Luffing", columns, notes, "luffing")
+    return Table.of_rows("luffing", "Luffing", columns, rows, notes)
 
 
 def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, float, float]:
@@ -282,16 +262,14 @@ def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, fl
     return mean, float(np.abs(friction).max()), float(power.max()), work
 
 
-def stick_slip_table(results: Results) -> Table | None:
-    """Return the table of stick-slip results; None without elastic drives."""
+def stick_slip_table(results: Results) -> Table:
+    """Return the table of stick-slip results of elastic drives."""
     rows = [
         (model, inner, model_summary.stick_slip[name])
         for suffix, inner in results.case.driven_segments.items()
         for model, model_summary in results.summary.models.items()
         if (name := f"drive_force{suffix}") in model_summary.stick_slip
     ]
-    if not rows:
-        return None
     motions = [one for *_, one in rows]
     columns = (
         Column("model", [model for model, *_ in rows]),
@@ -330,11 +308,9 @@ def record_tables(results: Results) -> Iterator[Table]:
             )
 
 
-def pad_table(results: Results) -> Table | None:
+def pad_table(results: Results) -> Table:
     """Return the table of pad forces and pressures; None without pads of given size."""
     pads = results.summary.pads
-    if not pads:
-        return None
     columns = (
         Column("model", [pad.model for pad in pads]),
         Column("joint", [f"{pad.inner} in {pad.outer}" for pad in pads]),
@@ -351,39 +327,35 @@ def pad_table(results: Results) -> Table | None:
     return Table("Slide pads", columns, (note,), "pads")
 
 
-def stress_table(results: Results) -> Table | None:
+def stress_table(results: Results) -> Table:
     """Return the table of maximum stresses: outer fibres of all models, plates of shells."""
-    rows = []
+    rows: list[Sequence[Cell]] = []
     for name, motion in results.motions.items():
         walls = {wall.segment: wall for wall in sorted(motion.walls, key=lambda wall: wall.patch)}
-        rows += [(name, fibre, walls.get(fibre.segment)) for fibre in motion.fibres]
-    if not rows:
-        return None
-    patches = [wall.patch if wall else None for *_, wall in rows]
-    fibres_used = [fibre.utilisation for _, fibre, _ in rows]
-    plates_used = [wall.utilisation if wall else None for *_, wall in rows]
-    columns = [
-        Column("model", [name for name, *_ in rows]),
-        Column("segment", [fibre.segment for _, fibre, _ in rows]),
-        Column("outer fibre", [abs(fibre.stress) for _, fibre, _ in rows], ".4g", "MPa"),
-        Column("at x", [fibre.x for _, fibre, _ in rows], ".4g", "m"),
-        Column("at", [fibre.time for _, fibre, _ in rows], ".3f", "s"),
-    ]
-    if any(fibres_used):
-        columns.append(Column("utilisation", fibres_used, ".3g", "%"))
-    if any(wall for *_, wall in rows):
-        columns.append(Column("plate, patch mean", patches, ".4g", "MPa"))
-    if any(plates_used):
-        columns.append(Column("utilisation", plates_used, ".3g", "%"))
+        for fibre in motion.fibres:
+            wall = walls.get(fibre.segment)
+            plate = (wall.patch, wall.utilisation) if wall else (None, None)
+            at_fibre = abs(fibre.stress), fibre.x, fibre.time, fibre.utilisation
+            rows.append((name, fibre.segment, *at_fibre, *plate))
+    columns = (
+        "model",
+        "segment",
+        ("outer fibre", ".4g", "MPa"),
+        ("at x", ".4g", "m"),
+        ("at", ".3f", "s"),
+        ("utilisation", ".3g", "%"),
+        ("plate, patch mean", ".4g", "MPa"),
+        ("plate utilisation", ".3g", "%"),
+    )
     notes = (
         "Outer fibre: axial stress from section forces. Plate: von Mises stress with plate "
         "bending, mean over a patch of half a wall near stations and supports. Utilisation: "
         "fraction of the yield strength.",
     )
-    return Table("Stress", columns, notes, "stress")
+    return Table.of_rows("stress", "Stress", columns, rows, notes, sparse=True)
 
 
-def buckling_table(results: Results) -> Table | None:
+def buckling_table(results: Results) -> Table:
     """Return buckling factors of the walls of each segment; None if not requested."""
     rows: list[Sequence[Cell]] = []
     for name, model_results in results.summary.design.models.items():
@@ -397,34 +369,27 @@ def buckling_table(results: Results) -> Table | None:
             (name, segment, *shells.get(segment, (None,) * 4), *panels.get(segment, (None,) * 3))
             for segment in dict.fromkeys([*shells, *panels])
         ]
-    if not rows:
-        return None
-    headings = (
-        ("model",),
-        ("segment",),
+    columns = (
+        "model",
+        "segment",
         ("factor, shell", ".3g"),
-        ("wall",),
+        "wall",
         ("at x", ".4g", "m"),
         ("mesh error", ".2g", "%"),
         ("factor, panel\nformulas", ".3g"),
-        ("wall",),
-        ("at x", ".4g", "m"),
+        "panel",
+        ("panel at x", ".4g", "m"),
     )
-    columns = [
-        Column(heading[0], cells, *heading[1:])
-        for heading, cells in zip(headings, zip(*rows, strict=True), strict=True)
-        if any(cell is not None for cell in cells)
-    ]
     notes = (
         "Factor of all loads at which a wall buckles, in the static state under the maximum load; "
         "walls are elastic and flat. Shell: pads included; extrapolated from two meshes, of which "
         "the finer one has the mesh error. Panel formulas: long, simply supported walls without "
         "pads.",
     )
-    return Table("Buckling of walls", columns, notes, "buckling")
+    return Table.of_rows("buckling", "Buckling of walls", columns, rows, notes, sparse=True)
 
 
-def life_table(results: Results) -> Table | None:
+def life_table(results: Results) -> Table:
     """Return the table of rainflow stress ranges of segments, for the leading models."""
     models = results.summary.design.models
     rows = [
@@ -433,8 +398,6 @@ def life_table(results: Results) -> Table | None:
         if name in results.main_models
         for life in model_results.life
     ]
-    if not rows:
-        return None
     lives = [life for _, life in rows]
     columns = [
         Column("model", [name for name, _ in rows]),

@@ -132,24 +132,29 @@ class Table:
         cls,
         name: str,
         title: str,
-        columns: Mapping[str, str] | Sequence[str],
+        columns: Mapping[str, str] | Sequence[str | tuple[str, ...]],
         rows: Sequence[Sequence[Cell]],
         notes: Sequence[str] = (),
+        sparse: bool = False,
     ) -> Table:
-        """Return a table from rows with numbers in the units of the headings.
+        """Return a table from rows.
 
         Args:
             name: name of the anchor in the report.
             title: title above the table.
-            columns: number format by heading; only headings if all cells are text.
-            rows: rows with a cell for each heading.
+            columns: title of each column, or title, number format and unit as in :class:`Column`;
+                or number formats by title.
+            rows: rows with a cell for each column.
             notes: sentences below the table.
+            sparse: True to leave out columns without values.
         """
-        forms = columns if isinstance(columns, Mapping) else dict.fromkeys(columns, "")
+        pairs = columns.items() if isinstance(columns, Mapping) else columns
         parts = [
-            Column(heading, [row[i] for row in rows], form)
-            for i, (heading, form) in enumerate(forms.items())
+            Column(head, [row[i] for row in rows], *more)
+            for i, (head, *more) in enumerate((p,) if isinstance(p, str) else p for p in pairs)
         ]
+        if sparse:
+            parts = [part for part in parts if any(cell is not None for cell in part.cells)]
         return cls(title, parts, notes, name)
 
     @property
