@@ -13,13 +13,13 @@ from runs.report import theme
 from runs.report.charts import pack_charts, pack_plotly
 from runs.report.figure_context import Figure
 from runs.report.formatting import number, percent
-from runs.report.limits import limit_table
 from runs.report.model_tables import model_tables
 from runs.report.pages import Addition, page
 from runs.report.predictability import comparison_tables, predictability_tables
 from runs.report.result_tables import result_tables
 from runs.report.summary_table import (
     deviation_note,
+    limit_table,
     play_effect,
     summary_table,
     utilisation_verdict,

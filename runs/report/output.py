@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Writer of the files of a run."""
+"""Writer of the files of a run, and of its workbook for Excel and LibreOffice."""
 
 from __future__ import annotations
 
@@ -11,27 +11,31 @@ from io import StringIO
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
+from runs.case.messages import BadInput
 from runs.case.user_files import check_not_working_folder
 from runs.client import judge
-from runs.folder.files import folder_lock, modified_folder, write_atomically
+from runs.folder.files import atomic_path, folder_lock, modified_folder, write_atomically
 from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
 from runs.pipeline.run import Run
 from runs.pipeline.summary import Snapshots
 from runs.report import snapshots
-from runs.report.document import render
+from runs.report.document import render, tables_by_part
 from runs.report.figure_context import Figure
 from runs.report.figures import draw_in_folder
 from runs.report.opengl import RenderingUnavailable
 from runs.report.pages import Addition
 from runs.report.tables import as_json
 from runs.report.viewer import VIEWER, viewer
-from runs.report.workbook import write_workbook
 
 REPORT = "report.html"
 CALIBRATION = "calibration.json"
+WORKBOOK = "results.xlsx"
 LATER = "not requested; protractile snapshot draws them"
+# Largest width of a column of the workbook in characters, and number of rows above its headings.
+WIDEST, ABOVE = 60, 2
 
 
 @contextmanager
@@ -162,3 +166,44 @@ def write_csv(trajectories: xr.Dataset, path: Path) -> None:
             numbers = np.column_stack([time, rows]).tolist()
             lines = [(line % tuple(row)).replace("nan", "") for row in numbers]
             file.writelines(f"{begin.getvalue()}{text}" for text in lines)
+
+
+def write_workbook(results: Results, folder: Path, name: str, option: str) -> None:
+    """Write a sheet of quantities in SI units, and a sheet for each table of the report.
+
+    Args:
+        results: results of a run.
+        folder: folder of the file, which is written atomically.
+        name: folder in messages, as the user gave it.
+        option: option in messages, as the user gave it.
+
+    Raises:
+        BadInput: openpyxl is not installed.
+    """
+    quantities = results.quantities.rename_axis("quantity").reset_index()
+    sheets: list[tuple[str, str, pd.DataFrame, Sequence[str]]] = [
+        ("quantities", f"{results.case.title}: SI units", quantities, ())
+    ]
+    sheets += [
+        (table.name, table.title, table.flat_frame, table.notes)
+        for several in tables_by_part(results).values()
+        for table in several
+    ]
+    try:
+        with (
+            atomic_path(folder / WORKBOOK) as path,
+            pd.ExcelWriter(path, engine="openpyxl") as writer,
+        ):
+            for short, title, frame, notes in sheets:
+                frame.to_excel(writer, sheet_name=short, index=False, startrow=ABOVE)
+                sheet = writer.sheets[short]
+                sheet["A1"] = title
+                for row, note in enumerate(notes, start=ABOVE + len(frame) + 3):
+                    sheet.cell(row, 1, note)
+                for i, (heading, cells) in enumerate(frame.items()):
+                    lengths = [len(str(cell)) for cell in (heading, *cells)]
+                    letter = sheet.cell(1, i + 1).column_letter
+                    sheet.column_dimensions[letter].width = min(2 + max(lengths), WIDEST)
+    except ImportError:
+        what = "openpyxl is missing, which writes workbooks; install it with pip"
+        raise BadInput(name, option, what) from None

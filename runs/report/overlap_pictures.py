@@ -11,8 +11,6 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 import xarray as xr
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import Normalize
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
@@ -313,12 +311,8 @@ class StressScale:
     def add_bar(self, sheet: Sheet) -> None:
         """Draw the scale beside the boom."""
         end, goes_on = self.end / 1.0e6, self.largest > self.end
-        bar = sheet.figure.colorbar(
-            ScalarMappable(Normalize(0.0, end), theme.STRESS),
-            cax=sheet.axes(1215, 655, 330, 34),
-            orientation="horizontal",
-            extend="max" if goes_on else "neither",
-        )
+        extend = "max" if goes_on else "neither"
+        bar = sheet.colour_bar((1215, 655, 330, 34), end, theme.STRESS, extend)
         ticks = [t for t in MaxNLocator(3).tick_values(0.0, end) if t <= LAST_TICK * end]
         last = f"≥ {end:.3g}" if goes_on else f"{end:.3g}"
         labels = {**{t: f"{t:g}" for t in ticks}, end: last}

@@ -26,8 +26,7 @@ from runs.pipeline.results import FIELDS, Results, read_fields
 from runs.pipeline.summary import Snapshots
 from runs.process import workers
 from runs.report import opengl, theme
-from runs.report.boom_pictures import BoomView, draw_boom
-from runs.report.buckling_pictures import render_buckling
+from runs.report.boom_pictures import BoomView, draw_boom, render_buckling
 from runs.report.crane_position import CranePosition
 from runs.report.figure_context import Figure
 from runs.report.overlap_pictures import StressScale, draw_overlap, draw_stress

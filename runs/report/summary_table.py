@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Summary at the top of a report: effect of play, governing results, model quality."""
+"""Summary at the top of a report: effect of play, governing results, model quality, limits."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from runs.pipeline.model_quality import static_deviation
 from runs.pipeline.motion_results import Peak
 from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.pads import PadLoad
-from runs.pipeline.quantities import decay_time
+from runs.pipeline.quantities import check_limits, decay_time
 from runs.pipeline.results import Results
 from runs.pipeline.strength import Utilisation, utilisations
 from runs.report.figure_context import farthest, tip_directions
@@ -316,3 +316,32 @@ def _largest(results: ModelDesignResults, what: str, at: str = "") -> str | None
 def largest_peak(results: ModelDesignResults, what: str) -> Peak | None:
     peaks = [peak for peak in results.motion.peaks if peak.what == what] if results.motion else []
     return max(peaks, key=lambda one: one.largest, default=None)
+
+
+def limit_table(results: Results) -> Table | None:
+    """Return the table of the limits of a case, with the values of the main models."""
+    checks = list(check_limits(results))
+    if not checks:
+        return None
+    columns = [
+        Column("limit", [str(check.limit) for check in checks]),
+        Column("satisfied", ["✓" if check.holds else "✗" for check in checks]),
+    ]
+    columns += [
+        Column(name, [check.limit.format(check.values.get(name)) for check in checks])
+        for name in results.main_models
+    ]
+    notes = [f"{results.main_models[0]} governs; if it has no value, the next model governs."]
+    return Table("Limits of the case", columns, notes, "limits", ["✗"])
+
+
+def limit_faults(results: Results) -> Iterator[str]:
+    """Yield a line with key, value and model for each limit that is exceeded."""
+    for check in check_limits(results):
+        if check.holds:
+            continue
+        what = "no model has such a result"
+        if check.decisive is not None:
+            model, value = check.decisive
+            what = f"{check.limit.format(value)} in {model}; the case demands {check.limit}"
+        yield f"limits.{check.limit.quantity.name}: {what}"

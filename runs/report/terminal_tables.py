@@ -15,13 +15,14 @@ from runs.pipeline.strength import utilisations
 from runs.process.terminal import Terminal, message, say, shorten
 from runs.report.figure_context import farthest
 from runs.report.formatting import number, percent
-from runs.report.limits import limit_faults, limit_table
 from runs.report.model_tables import model_table
 from runs.report.pages import Addition
 from runs.report.result_tables import record_tables
 from runs.report.summary_table import (
     governing_pads,
     largest_peak,
+    limit_faults,
+    limit_table,
     play_effect,
     utilisation_verdict,
 )

@@ -19,7 +19,7 @@ import xarray as xr
 import protractile as pt
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import simulate
-from runs.report import workbook
+from runs.report import output
 from tests.system.run_folder import COARSE, files, protractile
 
 BEAM = ["beam-fe-bonded"]
@@ -91,14 +91,14 @@ def test_results_are_saved_reported_and_put_into_a_workbook(
     again = pt.report(folder, excel=True)
     assert again.summary.models.keys() == {*BEAM}
     assert (folder / "report.html").is_file()
-    book = openpyxl.load_workbook(folder / workbook.WORKBOOK)
+    book = openpyxl.load_workbook(folder / output.WORKBOOK)
     tables = pt.tables(again)
     assert book.sheetnames == ["quantities", *tables]
     rows = {row[0]: row for row in book["quantities"].iter_rows(min_row=4, values_only=True)}
     tip = again.quantities.loc["tip"]
     assert rows["tip"] == ("tip", "m", pytest.approx(tip[BEAM[0]], rel=1e-12))
     assert tip[BEAM[0]] == float(np.abs(again.trajectories["tip"]).max())
-    headings = [cell.value for cell in book["models"][1 + workbook.ABOVE]]
+    headings = [cell.value for cell in book["models"][1 + output.ABOVE]]
     assert headings == [*tables["models"].columns]
     assert "<b>The paper's boom" in results._repr_html_().replace("&#x27;", "'")
     (folder / "mine.txt").touch()

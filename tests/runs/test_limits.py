@@ -12,7 +12,7 @@ from protractile.cases import run_case
 from runs import cli
 from runs.case import reading
 from runs.pipeline.quantities import case_limits, check_limits, decay_time, measure
-from runs.report.limits import limit_faults, limit_table
+from runs.report.summary_table import limit_faults, limit_table
 from runs.sweep import output
 from runs.sweep.points import plan
 from tests.runs.cantilever import (

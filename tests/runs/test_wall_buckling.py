@@ -19,7 +19,7 @@ from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.pipeline.wall_buckling import with_locations
 from runs.report import opengl, sheet
-from runs.report.buckling_pictures import render_buckling
+from runs.report.boom_pictures import render_buckling
 from runs.report.opengl import RenderingUnavailable
 from runs.report.result_tables import buckling_table
 from runs.report.summary_table import summary_table
