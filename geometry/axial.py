@@ -131,7 +131,7 @@ def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: in
 def pin_moments(
     segments: Sequence[Segment], joints: Sequence[Joint], bodies: Sequence[Body]
 ) -> Iterator[tuple[int, Array]]:
-    """Yield (segment, load vector) of the moment of axial forces about each pin below the axis.
+    """Yield (segment, load vector) of the moment of axial forces, for each pin below the axis.
 
     The pin is fixed, so that a rotation w′ at the pin moves the segment along x by −d w′ against
     the axial forces N. Their work N d w′ equals the work of a constant moment N d at the pin.

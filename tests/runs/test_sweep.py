@@ -374,7 +374,7 @@ def test_charts_fit_the_number_of_keys(
     assert written(planned(*texts)) == names
 
 
-def test_maps_are_labelled_where_they_were_computed(planned: Planned, sheets: list[Sheet]) -> None:
+def test_maps_have_labels_at_computed_values(planned: Planned, sheets: list[Sheet]) -> None:
     """With many or irregular values, round values have labels."""
     charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"), CHARTED[:1])
     axes = sheets[0].axes[0]

@@ -411,7 +411,7 @@ def test_verdict_comes_from_the_first_decisive_run(
     assert (found[0], found[1].verdict) == (name, verdict)
 
 
-def test_names_the_case_of_each_verdict_where_there_are_several() -> None:
+def test_verdicts_of_several_cases_name_their_case() -> None:
     """Each statement has a paragraph instead of a column."""
     paragraphs = printed(print_verdicts, RUNS, width=80).split("\n\n")[1:]
     heads = [paragraph.splitlines()[0] for paragraph in paragraphs]

@@ -74,7 +74,7 @@ def test_a_run_has_factors_of_shell_and_panels(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_a_telescoping_shell_buckles_where_its_tip_is_farthest(tmp_path: Path) -> None:
+def test_buckling_of_a_telescoping_shell_is_at_the_farthest_tip(tmp_path: Path) -> None:
     """Reference: other code, panel formulas of the same state, at the largest extension."""
     results = run(tmp_path, "drawn-out.toml", duration="0.05")
     shell = results.summary.design.models["shell"]

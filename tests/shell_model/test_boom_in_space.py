@@ -121,7 +121,7 @@ def test_segments_rolling_together_keep_their_gaps() -> None:
 
 
 @pytest.mark.slow
-def test_each_pad_rubs_where_it_presses() -> None:
+def test_friction_of_each_pad_follows_its_contact() -> None:
     """Reference: external source, (11). The contact row of each pad gives its normal force; it
     slides across its normal.
     """

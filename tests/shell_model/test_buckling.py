@@ -133,7 +133,7 @@ def buckled(boom: Boom, options: ShellOptions, count: int = 1) -> list[SegmentBu
 
 
 @pytest.mark.slow
-def test_a_beam_on_two_supports_buckles_where_it_bends_most() -> None:
+def test_beam_buckles_at_its_largest_moment() -> None:
     """Reference: other code, finite strips under the largest moment, from below."""
     supports = Support(0.0), Support(4.0)
     segment = box_segment("beam", 0.0, 4.0, TUBE, load=-8.0e3, supports=supports)

@@ -86,7 +86,7 @@ def test_friction_takes_energy_and_gives_none_back() -> None:
 
 
 @pytest.mark.slow
-def test_loads_act_where_and_when_they_say() -> None:
+def test_loads_act_at_their_positions_and_times() -> None:
     """Reference: analytic, force over mass of a free segment. A uniform load equals the constant
     load.
     """

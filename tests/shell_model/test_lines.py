@@ -105,7 +105,7 @@ def test_cuts_pass_no_triangle() -> None:
     assert band_boundaries(spans, []).tolist() == [0.0, 3.0, 4.0]
 
 
-def test_cuts_are_where_something_acts() -> None:
+def test_band_boundaries_are_at_loads() -> None:
     """Reference: by hand. Loaded positions remain boundaries; near lines that cause short bands do
     not.
     """

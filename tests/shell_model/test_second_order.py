@@ -122,7 +122,7 @@ def test_shell_held_by_contacts_tips_over_as_a_beam() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("lateral", [None, 6e-3])
-def test_a_bonded_shell_buckles_where_its_beam_does(lateral: float | None) -> None:
+def test_bonded_shell_has_the_buckling_load_of_its_beam(lateral: float | None) -> None:
     """Reference: other code, shear-flexible elements; local compliance takes up to 2 %."""
     boom = telescope(THRUST, lateral)
     beam = critical_factor(boom, finite_element_segments(boom, 0.25, "timoshenko", True))

@@ -121,7 +121,7 @@ def test_a_thrown_segment_flies_with_its_stiffeners(inertial: bool) -> None:
         assert speeds[0] < 0.095
 
 
-def test_an_outline_where_a_diaphragm_stands_has_the_walls_nodes_alone() -> None:
+def test_outline_at_a_diaphragm_has_only_nodes_of_walls() -> None:
     """Reference: the box without diaphragm on the same mesh. Supports fix the same nodes."""
     held = (Support(0.0), Support(2.0, "clamped"))
     shells = shell_of(supports=held), shell_of(COLLARS[:2], PLATES, held)
@@ -176,7 +176,7 @@ def test_overlapping_collars_on_different_walls_are_one_around_all() -> None:
 
 
 @pytest.mark.slow
-def test_a_collar_where_the_moment_is_largest_stiffens_as_a_stepped_beam() -> None:
+def test_collar_at_the_largest_moment_stiffens_like_a_stepped_beam() -> None:
     """Reference: analytic, the overhang of a Timoshenko beam with thicker walls over half a metre
     at its support. They reduce the deflection by 8 %, which beams neglect.
     """

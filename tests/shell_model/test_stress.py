@@ -199,7 +199,7 @@ def test_wall_forces_are_in_equilibrium(cantilever: ShellStress) -> None:
 
 
 @pytest.mark.slow
-def test_a_row_goes_all_around_where_pads_refine_some_walls() -> None:
+def test_row_includes_all_walls_of_a_graded_mesh() -> None:
     """Reference: by hand, the area of each wall is its height or width times the row's length."""
     boom = flat_boom()
     outer, inner = boom.segments

@@ -78,7 +78,7 @@ def test_it_bends_as_its_beam(shape: str) -> None:
 
 
 @pytest.mark.parametrize("shape", ENDS)
-def test_its_walls_stand_where_the_section_is(shape: str) -> None:
+def test_walls_of_a_taper_are_on_the_local_section(shape: str) -> None:
     """Reference: by hand. Nodes are on the section at their x. The mass is that of the beam, and
     each half has 1 N/m.
     """

@@ -182,7 +182,7 @@ def test_motion_without_speed_equals_the_fixed_shell() -> None:
 
 
 @pytest.mark.slow
-def test_beams_are_as_near_as_where_it_rests() -> None:
+def test_beams_are_as_near_as_at_constant_extension() -> None:
     """Reference: other code, beam elements, as near as at constant extension; and the energy
     balance.
     """

@@ -100,7 +100,7 @@ STIFFENERS = stiffeners.Sizes(
 
 
 @pytest.mark.slow
-def test_stiffeners_act_where_they_are() -> None:
+def test_stiffeners_act_at_their_ends_only() -> None:
     """Reference: analytic, a plate in shear, a ring, masses. Each stiffener has an effect at its
     end only.
     """

@@ -132,7 +132,7 @@ def test_the_published_example() -> None:
     assert 100.0 * found.index == pytest.approx(0.1031, abs=1.0e-4)
 
 
-def test_a_power_law_is_told_exactly() -> None:
+def test_power_law_has_its_exact_order() -> None:
     """Reference: analytic, 2 + 3 h^1.5 at h = 0.9, 0.3, 0.1."""
     found = refined([2.0 + 3.0 * h**1.5 for h in (2.7, 0.9, 0.3, 0.1)], ratio=3.0)
     assert found.order == pytest.approx(1.5, rel=1.0e-12)

@@ -46,7 +46,7 @@ def judged(one: Interpretation, peak: float = 0.17, **verdicts: Judgement) -> Ju
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
-def test_restored_laws_are_equally_stiff_where_the_pads_work(exponent: float) -> None:
+def test_restored_laws_have_equal_stiffness_at_pad_forces(exponent: float) -> None:
     """Reference: 1e9 N/m, the quadratic law's slope 2 √(1e13 · 25e3) by hand, to 1e-6."""
     stiffness = replace(RESTORED, exponent=exponent).contact_stiffness
     law = PowerContact(stiffness, exponent)

@@ -95,7 +95,7 @@ def test_the_rule_lowers_the_tip_by_walls_as_statics_do() -> None:
 
 
 @pytest.mark.slow
-def test_a_short_boom_is_as_far_off_as_the_rule_tells() -> None:
+def test_error_of_a_short_boom_follows_the_rule() -> None:
     """Reference: other code, the shell. Beams with springs are five times as near as any other
     beam.
     """

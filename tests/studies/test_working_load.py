@@ -39,7 +39,7 @@ def told(*peaks: float) -> list[tuple[str, float]]:
     ]
 
 
-def test_a_first_peak_is_proven_where_there_is_one() -> None:
+def test_existing_first_peaks_are_verified() -> None:
     """Reference: analytic, changes of 1 % of the tip, and of 2 % of the only peak."""
     none = float("nan")
     tip = ("tip, part of its range, webs, worst of 2 points (0 mm, load × 1)", pytest.approx(0.01))

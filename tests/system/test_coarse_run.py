@@ -135,7 +135,7 @@ def test_before_the_first_contact_the_inner_segment_falls_freely(whole: Path) ->
         assert summary["models"][name]["energy_residual"] < 1e-3
 
 
-def test_the_shell_touches_when_the_shear_flexible_beam_does(whole: Path) -> None:
+def test_shell_and_shear_flexible_beam_touch_at_equal_times(whole: Path) -> None:
     """Reference: other model. For the slow motion, a beam neglects shear only."""
     models = summary_of(whole)["models"]
     shell, beam = models["shell"]["first_contact"], models["timoshenko"]["first_contact"]

@@ -120,7 +120,9 @@ def test_files_of_two_runs_are_not_mixed(again: Path, refusal: Refusal) -> None:
     )
 
 
-def test_a_run_of_another_version_is_told_from_a_mixed_one(again: Path, refusal: Refusal) -> None:
+def test_other_versions_and_mixed_runs_have_different_messages(
+    again: Path, refusal: Refusal
+) -> None:
     """Reference: a folder of an earlier version without one of the current keys."""
     (again / ".manifest").unlink()
     case, summary = again / "case.toml", again / "summary.json"

@@ -96,7 +96,7 @@ class BuildContext:
 
 @dataclass(frozen=True, slots=True)
 class BuiltModel:
-    """A model that is built, before time integration."""
+    """A built model, before time integration."""
 
     system: GapSystem  #: gap system of all segments
     num_dofs: int  #: number of degrees of freedom before any reduction
