@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from math import hypot
 
 from runs.case.schema import Model
 from runs.pipeline.combinations import CombinationResult
@@ -57,9 +58,11 @@ class ModelDesignResults:
 
     @property
     def farthest_static(self) -> StaticResult | None:
-        """The static state with the largest tip deflection; None without static states."""
+        """The static state with the largest tip deflection in any direction; None without one."""
         return max(
-            [*self.static, *self.static_extended], key=lambda rest: abs(rest.tip), default=None
+            [*self.static, *self.static_extended],
+            key=lambda rest: hypot(rest.tip, rest.tip_lateral or 0.0),
+            default=None,
         )
 
 

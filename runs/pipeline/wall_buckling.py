@@ -89,7 +89,9 @@ def buckle_shell(
 
 
 def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | None:
-    """Return the static state with the largest tip deflection; None without an equilibrium.
+    """Return the static state with the largest tip deflection, None without an equilibrium.
+
+    Of a boom in space both directions count.
 
     Args:
         boom: boom with the contacts of the model.
@@ -103,8 +105,9 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | N
     equilibria |= extended_positions(system, duration)
     if not equilibria:
         return None
-    tip = system.observers["tip"].row
-    time = max(equilibria, key=lambda time: abs(float(tip @ equilibria[time])))
+    names = [name for name in ("tip", "tip_lateral") if name in system.observers]
+    tips = np.array([system.observers[name].row for name in names])
+    time = max(equilibria, key=lambda time: float(np.linalg.norm(tips @ equilibria[time])))
     ways = [travel(boom, number, time) for number in range(len(boom.segments))]
     extensions = {
         number: ways[joint.inner] - ways[joint.outer] for number, joint in enumerate(boom.joints)

@@ -240,6 +240,8 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if any("×" in cell for cells in rows.values() for cell in cells):
         extended = ", at any extension" if results.case.driven_segments else ""
         yield f"φ (×): maximum in motion over the static value under the maximum load{extended}."
+        if any(joint.friction for joint in results.case.joints):
+            yield "Static values leave friction out: friction may keep φ below 1."
     if "Residual vibration of the tip, mm" in rows:
         yield (
             "Residual vibration: amplitude about the static deflection; without telescoping: at "
