@@ -14,7 +14,11 @@ from dynamics.excitation import InitialImpulse, Ramp, Step
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
+from geometry.fit import room
+from geometry.joint import SIDES, SlidePad
 from geometry.load import Load
+from geometry.section import Direction
+from geometry.typography import TO_MILLI
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
@@ -35,6 +39,10 @@ CHECK_UNITS = "check units and loads"
 
 # Fractions of the weight of the boom: smaller loads have no effect, larger ones no boom can carry.
 MIN_LOAD, MAX_LOAD = 1.0e-3, 1.0e2
+
+# Force at the tip in N, and its largest fraction of the weight of the boom, that may be a mass in
+# kg.
+USUAL_LOAD, SMALL_LOAD = (20.0, 500.0), 0.1
 
 # Fraction of the mass of the boom: no boom is built for a smaller payload.
 MIN_PAYLOAD = 0.02
@@ -74,6 +82,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
         *_materials(case),
         *_cylinders(case, boom),
         *_joints(case),
+        *_gaps(boom),
         *_pads(case, boom),
         *_meshes(case, boom),
     ]
@@ -188,6 +197,26 @@ def _joints(case: Case) -> Iterator[str]:
                 "segment in another"
             )
         held[outer] = inner
+
+
+def _gaps(boom: Boom) -> Iterator[str]:
+    """Yield a caution for each pad that is thicker than the gap between its boxes."""
+    for number, joint in enumerate(boom.joints, start=1):
+        outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
+        if outer.section is None or inner.section is None:
+            continue
+        height, width = room(joint, outer, inner)
+        gaps: dict[Direction, float] = {"z": height, "y": width}
+        pads = {} if joint.pad is None else {"pad": joint.pad}
+        pads |= {f"pads[{i}]": pad for i, pad in enumerate(joint.pads, start=1)}
+        for key, pad in pads.items():
+            for way in [SIDES[pad.side][0]] if isinstance(pad, SlidePad) else boom.directions:
+                if (thickness := pad.thickness or 0.0) > gaps[way]:
+                    yield (
+                        f"joint[{number}].{key}.thickness: a pad of {TO_MILLI * thickness:.4g} mm "
+                        f"is thicker than the gap of {TO_MILLI * gaps[way]:.4g} mm between "
+                        f"{outer.name!r} and {inner.name!r}, both sides together"
+                    )
 
 
 def _pads(case: Case, boom: Boom) -> Iterator[str]:
@@ -314,6 +343,7 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
                 first = tables.index(table) + 1
                 yield f"{name}[{number + 1}]: repeats {name}[{first}]; leave one of them out"
     payload, end = case.payload, boom.tip - NEAR_TIP * boom.length
+    weight = STANDARD_GRAVITY * sum(segment.mass for segment in boom.segments)
     weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [case.gravity.across]))
 
     def weighs(force: float, mass: float) -> bool:
@@ -342,18 +372,25 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
                 f"{where}: {force:g} N in all is the weight of {segment.name!r}, which the table "
                 "gravity adds already; leave it out"
             )
-        if payload is None or load.x is None or load.x < end:
+        if load.x is None or load.x < end:
             continue
-        mass, weightless = payload.mass, case.gravity is None and payload.gravity == 0.0
-        if weighs(force, mass) and not weightless:
+        mass, weightless = 0.0, False
+        if payload is not None:
+            mass, weightless = payload.mass, case.gravity is None and payload.gravity == 0.0
+        if mass and weighs(force, mass) and not weightless:
             yield (
                 f"{where}: {force:g} N at the tip is the weight of the payload, which acts "
                 "already; leave it out"
             )
-        if isclose(-force, mass, rel_tol=SAME_WEIGHT):
+        elif isclose(-force, mass, rel_tol=SAME_WEIGHT):
             yield (
                 f"{where}: {force:g} N at the tip is a tenth of the weight of the payload of "
                 f"{mass:g} kg; if it is in kg, give {force * STANDARD_GRAVITY:.4g} N"
+            )
+        elif USUAL_LOAD[0] <= -force <= min(USUAL_LOAD[1], SMALL_LOAD * weight):
+            yield (
+                f"{where}: {force:g} N at the tip is {100.0 * -force / weight:.2g} % of the boom's "
+                f"weight; if it is in kg, give its weight, {force * weighing[-1]:.4g} N"
             )
 
 

@@ -130,7 +130,8 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
     [
         ("thickness = 0.012", "thickness = 0.2",
          "joint[1].pad.thickness: the thickness of the pad is 0.2 m, usual is from 0.0005 up to "
-         "0.1 m; if it is in cm, give 0.002 m"),
+         "0.1 m; if it is in cm, give 0.002 m\njoint[1].pad.thickness: a pad of 200 mm is "
+         "thicker than the gap of 33 mm between 'base' and 'fly', both sides together"),
         (PLAY, f"{PLAY}drive = {{ travel = -4.0, time = 1.0 }}\n",
          "joint[1].drive: the largest speed at which 'fly' moves is 8 m/s, usual is up to 5 "
          "m/s; if it is in mm/s, give 0.008 m/s"),
@@ -151,6 +152,12 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
         ("-1595.0", "-300.0",
          "load[1].magnitude: -300 N at the tip is a tenth of the weight of the payload of 300 "
          "kg; if it is in kg, give -2942 N"),
+        ("-1595.0", "-230.0",
+         "load[1].magnitude: -230 N at the tip is 3 % of the boom's weight; if it is in kg, give "
+         "its weight, -1595 N"),
+        ("thickness = 0.012", "thickness = 0.04",
+         "joint[1].pad.thickness: a pad of 40 mm is thicker than the gap of 33 mm between 'base' "
+         "and 'fly', both sides together"),
         ("-1595.0, ramp = 0.1", "-2942.0",
          "load[1].magnitude: -2942 N at the tip is the weight of the payload, which acts already; "
          "leave it out"),
@@ -208,7 +215,8 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
 def test_unusual_numbers_give_cautions(tmp_path: Path, old: str, new: str, line: str) -> None:
     """Each number causes only its own caution."""
     case = read_case(tmp_path, edited(old, new))
-    assert proportion_cautions(case, build_boom(case)) == [f"caution: {line}"]
+    lines = [f"caution: {one}" for one in line.split("\n")]
+    assert proportion_cautions(case, build_boom(case)) == lines
 
 
 def test_run_shorter_than_a_period_gives_a_caution(tmp_path: Path) -> None:
@@ -240,7 +248,7 @@ outer = "outer"
 inner = "inner"
 stations = [0.5, 0.6]
 play = 0.0002
-pad = {{ length = 0.01, width = 0.004, thickness = 0.0008 }}
+pad = {{ length = 0.01, width = 0.004, thickness = 0.0006 }}
 {elements("beam", element_length=0.05)}
 """
 
