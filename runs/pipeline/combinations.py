@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
@@ -22,10 +22,8 @@ from runs.case.units import System
 from runs.pipeline.largest_loads import BeamStates, StaticExtreme, beam_note, in_units
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import WallStress
+from runs.pipeline.wall_buckling import WallBuckling
 from runs.report.tables import Column, Table
-
-if TYPE_CHECKING:
-    from runs.pipeline.wall_buckling import WallBuckling
 
 # Mark of governing values in a table.
 _GOVERNS = " *"
