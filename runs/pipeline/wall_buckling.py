@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from dynamics.failure import NumericsError
 from geometry.boom import Boom
@@ -22,6 +21,7 @@ from runs.pipeline.static_results import extended_positions, instants, positions
 _MIRRORED = 1.0e-3
 
 if TYPE_CHECKING:
+    import xarray as xr
     from mpi4py import MPI
 
     from geometry.plating import PlatedMesh
@@ -147,6 +147,8 @@ def _first_shapes(results: Sequence[SegmentBuckling]) -> xr.Dataset | None:
     ]
     if not buckled:
         return None
+    import xarray as xr
+
     numbers, meshes, shapes, factors = zip(*buckled, strict=True)
     begins = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])[:-1]
     triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, begins, strict=True)]
