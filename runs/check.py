@@ -55,6 +55,7 @@ from runs.pipeline.proportions import (
     proportion_cautions,
     tip_cautions,
 )
+from runs.pipeline.quantities import static_limit_lines
 from runs.pipeline.static_results import bulge_cautions, tilts
 from runs.pipeline.statics import (
     Statics,
@@ -157,6 +158,7 @@ def check_case(declared: CheckedCase) -> Check:
         *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], boom_with_laws)),
         *overload_cautions(extremes, boom, advise),
         *panel_cautions(panels, case.system),
+        *static_limit_lines(case.limits, [e.largest for e in extremes if e.name == "tip"]),
         *stick_slip_cautions(drives, case.system),
     ]
     lines.append(f"A run may take {run_cost(case, preview)}.")
@@ -382,7 +384,9 @@ def _damping_ratios(preview: Preview) -> Table:
         cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model), fillvalue="")
         rows.append((_beam_name(model), *(cell for _, cell in [*cells][:SHOWN_MODES])))
     headings = ("model", *(f"mode {number}" for number in range(1, SHOWN_MODES + 1)))
-    return Table.of_rows("", "Damping ratios, joints in contact", headings, rows)
+    walls = "Walls under pads are rigid here, unlike in the other estimates."
+    notes = [walls] if any(joint.padded for joint in boom.joints) else []
+    return Table.of_rows("", "Damping ratios, joints in contact", headings, rows, notes)
 
 
 def _ratios(preview: Preview, model: Model) -> list[str]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import log, pi
 from typing import TYPE_CHECKING
@@ -188,6 +188,27 @@ def case_limits(table: LimitsTable | None) -> list[Limit]:
     return [
         Limit(one, values[one.name], one.name in least) for one in QUANTITIES if one.name in values
     ]
+
+
+def static_limit_lines(table: LimitsTable | None, tips: Sequence[float]) -> Iterator[str]:
+    """Yield a line for each limit of a case: its comparison with the static tip, if it has one.
+
+    Args:
+        table: limits of the case.
+        tips: largest static tip deflection in m; empty without an equilibrium.
+    """
+    for limit in case_limits(table):
+        if not tips or limit.quantity.name not in ("tip", "tip_at_rest"):
+            yield f"Limit {limit}: a run decides it."
+            continue
+        tip = abs(tips[0])
+        rests = f"under the largest loads the tip rests at {limit.format(tip)}"
+        if not limit.is_met_by(tip):
+            yield f"caution: the limit {limit} is exceeded: {rests}"
+        elif limit.quantity.name == "tip":
+            yield f"Limit {limit}: {rests} and moves farther; a run decides it."
+        else:
+            yield f"Limit {limit}: {rests}, within the limit."
 
 
 def check_limits(results: Results) -> Iterator[LimitCheck]:

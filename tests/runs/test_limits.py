@@ -11,6 +11,9 @@ from rich.console import Console
 from protractile.cases import run_case
 from runs import cli
 from runs.case import reading
+from runs.case.checked_case import CheckedCase
+from runs.case.schema import Case
+from runs.check import check_case
 from runs.pipeline.quantities import case_limits, check_limits, decay_time, measure
 from runs.report.summary_table import limit_faults, limit_table
 from runs.sweep import output
@@ -74,6 +77,27 @@ def test_limits_are_in_the_units_of_the_case() -> None:
         "tip": 0.9,
         "stress": 160.0e6,
     }
+
+
+def test_check_compares_limits_with_the_tip_at_rest() -> None:
+    """Reference: analytic, q L⁴/(8 E J) = 16 mm; exact words."""
+    loose = reading.load(write("tip_at_rest = 0.02\ntip = 0.02\nfirst_frequency = 3.4"))
+    rests = "under the largest loads the tip rests at 16 mm"
+    assert limit_sentences(loose) == [
+        f"Limit tip at rest ≤ 20 mm: {rests}, within the limit.",
+        f"Limit tip deflection ≤ 20 mm: {rests} and moves farther; a run decides it.",
+        "Limit first frequency ≥ 3.4 Hz: a run decides it.",
+    ]
+    tight = reading.load(write("tip_at_rest = 0.01\ntip = 0.015"))
+    assert limit_sentences(tight) == [
+        f"caution: the limit tip at rest ≤ 10 mm is exceeded: {rests}",
+        f"caution: the limit tip deflection ≤ 15 mm is exceeded: {rests}",
+    ]
+
+
+def limit_sentences(case: Case) -> list[str]:
+    """Return the sentences of ``check`` on limits."""
+    return [line for line in check_case(CheckedCase(case)).lines if "imit " in line]
 
 
 @pytest.mark.parametrize(
