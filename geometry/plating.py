@@ -23,7 +23,7 @@ class PlatedMesh(SegmentMesh):
 
     thickness: Array  #: thickness (num_triangles,) in m
     plain: Array  #: thickness (num_triangles,) in m without collars, 0 on diaphragms
-    #: weight (num_triangles,) in m that distributes a uniform line load over the walls: ``plain``,
+    #: weight (num_triangles,) in m that distributes a uniform line load over the walls, ``plain``
     #: divided by the relative area of the section if the segment tapers
     load_weight: Array
 

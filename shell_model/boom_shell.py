@@ -38,9 +38,9 @@ class ShellOptions:
 
     #: edge length in m; in a graded mesh, the length far from contacts and supports
     mesh_size: float = 0.1
-    #: position of contact. ``near webs``: forces act between the webs of both segments, like forces
-    #: of pads in the corners. ``across``: forces act over the width of the inner flanges, which
-    #: bend, in a flat boom. ``surface``: contact is possible over the whole overlap.
+    #: position of contact. With ``near webs``, forces act between the webs of both segments, like
+    #: forces of pads in the corners; with ``across``, over the width of the inner flanges, which
+    #: bend, in a flat boom. With ``surface``, contact is possible over the whole overlap.
     contact_line: ContactLine = "near webs"
     surface: SurfaceOptions = field(default_factory=SurfaceOptions)  #: options of surface contact
     krylov: KrylovOptions = field(default_factory=KrylovOptions)  #: options of the reduction

@@ -46,7 +46,7 @@ class ReducedShell:
     #: displacements and stresses of all modes on rank 0, see
     #: :func:`shell_model.stress.fields.gather_fields`
     fields: xr.Dataset | None
-    #: largest reduction errors of all segments: ``contact_compliance``, relative to the local
+    #: largest reduction errors of all segments, ``contact_compliance`` relative to the local
     #: compliance, NaN without contacts; ``readings``, the relative error of outputs such as the
     #: tip. Natural frequencies are accurate up to ``frequency_limit_in_hz``.
     errors: dict[str, float]

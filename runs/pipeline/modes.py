@@ -45,7 +45,7 @@ class Mode:
     """Mode of the boom with the contacts that are closed in the static state."""
 
     frequency: float  #: frequency in Hz
-    motion: str  #: dominant motion: ``bending in z``, ``bending in y`` or ``twist``
+    motion: str  #: dominant motion, ``bending in z``, ``bending in y`` or ``twist``
     number: int  #: number among the modes of the model with this dominant motion, from 1 on
     share: float  #: fraction of the kinetic energy in the dominant motion, from 0 to 1
     #: mode shapes of each segment; the dominant motion has a maximum of 1 m or 1 rad

@@ -34,7 +34,7 @@ class Envelope:
 class Peak:
     """Largest magnitude of a quantity in motion, and its static value."""
 
-    #: name of the quantity: ``deflection``, ``contact force``, ``cylinder force``, ``rope force``,
+    #: name of the quantity, ``deflection``, ``contact force``, ``cylinder force``, ``rope force``,
     #: ``reaction``, with axial loads also ``reaction along the boom`` and ``reaction, across and
     #: along``, ``moment at the support``, ``bending moment``; in space also ``torque at the
     #: support``, and the same names with ``lateral`` for y

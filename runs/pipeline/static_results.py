@@ -66,7 +66,7 @@ class StationLoad:
     place: str  #: name of the station in trajectories
     x: float  #: position in m
     direction: str  #: z or y
-    #: force in N, positive if the inner segment presses up (along y: towards larger y)
+    #: force in N, positive if the inner segment presses up (along y, towards larger y)
     force: float
     #: largest force on a pad of the station in N, not negative; stiffness and shims determine the
     #: distribution over the pads of a side. None without pads.

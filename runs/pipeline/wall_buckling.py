@@ -45,8 +45,8 @@ class BuckledShell:
     """Buckling of the segments of a shell."""
 
     segments: list[WallBuckling]  #: buckling factors of each segment
-    #: first mode of each segment with a factor: ``buckling_points`` (buckling_point, component) in
-    #: m and their ``buckling_shape``, whose largest magnitude in a segment is about 1;
+    #: first mode of each segment with a factor, by ``buckling_points`` (buckling_point, component)
+    #: in m and their ``buckling_shape``, whose largest magnitude in a segment is about 1;
     #: ``buckling_triangles`` (buckling_triangle, corner) with their ``buckling_segment``;
     #: ``buckling_factor`` (buckled). None if no segment has a factor.
     shapes: xr.Dataset | None

@@ -40,7 +40,7 @@ class Plates:
     forms: Any  #: compiled forms of the mesh, see :class:`ShellForms`
     supports: list[Any]  #: Dirichlet conditions of the rigid supports
     compressed: bool = False  #: True if the plates carry an axial force
-    copies: float = 1.0  #: factor of the forms: the number of congruent parts of the segment
+    copies: float = 1.0  #: number of congruent parts of the segment, a factor of the forms
 
     @cached_property
     def nodes(self) -> Sequence[tuple[Array, Indices]]:
