@@ -105,7 +105,9 @@ def elastic_compliance(system: GapSystem) -> Array:
 
 
 def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
-    """Return the residual compliance D (num_rows, num_rows) in m/N, which may be indefinite.
+    """Return the compliance of the fine model less that of the coarse one in m/N.
+
+    The residual compliance D (num_rows, num_rows) may be indefinite.
 
     Raises:
         ValueError: the numbers of rows differ.

@@ -33,8 +33,8 @@ def gap_system(
 ) -> GapSystem:
     """Return the gap system of a boom of beams.
 
-    Forces act at the centres of pads. ``sides`` is ``BOTH_SIDES`` for contact rows that act on both
-    sides, or ``EACH_SIDE`` for a row for each side.
+    Forces act at the centres of pads. With ``BOTH_SIDES`` one equation of a contact acts on both
+    sides, with ``EACH_SIDE`` each side has its equation.
     """
     modes = BoomModes(boom, models)
     system = system_without_drives(boom, modes, sides)

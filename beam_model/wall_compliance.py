@@ -150,7 +150,7 @@ def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
 
 
 def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
-    """Return pad and side of the contact rows of joints."""
+    """Return the pad and the side of each contact of the joints."""
     return [
         (pad, side)
         for pad in pads(boom)

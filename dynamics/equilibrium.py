@@ -105,7 +105,7 @@ def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: floa
     row_of_value = np.concatenate([term["row"] for term in terms])
 
     def sum_terms(of_term: OfTerm, x: Array) -> Array:
-        """Return the sums (num_rows,) of terms."""
+        """Return the sum of the terms of each row (num_rows,)."""
         gaps = unit * rows @ x
         values = [of_term(term, gaps[term["row"]]) for term in terms]
         return np.asarray(np.bincount(row_of_value, np.concatenate(values), len(rows)), dtype=float)

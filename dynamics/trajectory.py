@@ -135,7 +135,7 @@ class Trajectory:
         attributes: Mapping[str, object],
         energy_floor: float = 0.0,
     ) -> Trajectory:
-        """Return the trajectory of an integrator's output. Forces are sums over each station.
+        """Return the trajectory of an integrator's output, with forces summed at each station.
 
         Args:
             system: system of the motion.
@@ -143,7 +143,7 @@ class Trajectory:
             output: output at these times.
             attributes: attributes of the data, which include ``step``, ``steps``,
                 ``first_contact`` and ``contact_changes``.
-            energy_floor: input energy in J below which it is round-off.
+            energy_floor: largest input energy in J that counts as round-off.
         """
         stations = np.arange(len(system.stations))
         belongs = np.equal.outer(system.station_of_row, stations)

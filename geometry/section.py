@@ -108,7 +108,7 @@ class Face(NamedTuple):
 
     @property
     def width(self) -> float:
-        """The width along the mid-line in m."""
+        """The width between the mid-lines of its ends in m."""
         return self.high - self.low
 
     @property

@@ -245,7 +245,7 @@ class Segment:
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
-        """The directions of symmetry of the section with its collars."""
+        """The normals of the symmetry planes of the section with its collars."""
         return tuple(
             axis
             for axis in self.widest.mirrors

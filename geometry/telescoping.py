@@ -102,7 +102,7 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
 
 
 def farthest_travel(boom: Boom, segment: int) -> float:
-    """Return the largest outward travel of a segment in m; inward if drives only retract."""
+    """Return the largest outward travel of a segment in m, or inward (negative) without outward."""
     drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
     reaches = [drive.reach for drive in drives if drive is not None]
     return sum(high or low for low, high in reaches)

@@ -47,7 +47,7 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
 
     Args:
         source: path of a case file, for example in the folder ``CASES`` of the program; or the
-            tables of a case by their keys, with paths of CSV files relative to the current folder.
+            dictionary of its tables; paths of CSV files are relative to the current folder.
 
     Raises:
         BadInput: the file cannot be read, or its content is invalid.

@@ -218,7 +218,7 @@ def _check_factors(
 
 
 def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
-    """Yield the group of each load of a load case, and the name of the load."""
+    """Yield the load group (``dead``, ``payload`` …) and the name of each load of a load case."""
     if case.gravity is not None or any(one.load or one.lateral_load for one in case.segments):
         yield "dead", "the weight of the boom"
     if case.payload is not None:

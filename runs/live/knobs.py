@@ -137,7 +137,7 @@ class Draft:
         return list(self._numbers)
 
     def knobs(self) -> list[Knob]:
-        """Return the knobs, most important first; equal numbers of all joints share a knob."""
+        """Return the sliders, most important first; a value that is equal in all joints has one."""
         keys_of_knobs: dict[str, list[str]] = {}
         for pattern in _FIRST:
             keys = [key for key in self._numbers if re.fullmatch(pattern, key)]

@@ -196,8 +196,8 @@ def _s4(run: RunQuery) -> Finding:
 
 def _s5(run: RunQuery) -> Finding:
     """Measure: smallest ratio of a first tip peak with play to the one without. Threshold: 2, where
-    play adds as much as the whole deflection without play. The models with play differ by less than
-    a tenth, and first peaks scatter by 0.5 % only.
+    play adds as much as the whole deflection without play. The models with play differ from one
+    another by less than a tenth; first peaks scatter by 0.5 % only.
     """
     run.without_friction()
     without = run.peak_height(run.bonded())
@@ -409,7 +409,7 @@ def _mean(values: Array) -> tuple[float, float]:
 
 
 def _share(shows: Mask) -> tuple[float, float]:
-    """Return the share of members with a property, and twice the standard error of a share of ½."""
+    """Return the fraction of true entries, and twice the standard error of a fraction of ½."""
     return float(shows.mean()), 1.0 / float(np.sqrt(shows.size))
 
 

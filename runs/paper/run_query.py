@@ -127,7 +127,7 @@ class RunQuery:
         )
 
     def beam_elements(self) -> Model:
-        """Return the beam element model with play of the paper."""
+        """Return the beam element model of the paper's boom with play."""
         return self.one(
             "beam-fe",
             lambda model: not model.bonded and getattr(model, "theory", None) == "euler-bernoulli",

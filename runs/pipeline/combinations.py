@@ -108,7 +108,7 @@ def combination_tables(
     Args:
         results: results of the combinations.
         case: the case.
-        shell: name of the shell; None for results of beam elements.
+        shell: name of the shell; empty for results of beam elements.
     """
     system = case.system
     if not any(one.extremes for one in results):
@@ -120,7 +120,7 @@ def combination_tables(
         if most:
             cells = [_marked(one, most, system) if one else None for one in values]
             columns.append(Column(heading, cells))
-    notes = [f"{_GOVERNS.strip()} governs."]
+    notes = [f"{_GOVERNS.strip()} is the largest of its column."]
     moving = [one.name for one in case.combinations if one.motion]
     if moving:
         notes.append(f"In prove and reports {', '.join(moving)}: extremes of the motion.")
@@ -129,7 +129,7 @@ def combination_tables(
     else:
         notes.append(beam_note(boom_with_play(case, build_boom(case))))
     notes += [f"{one.name}: there is no static equilibrium." for one in results if not one.extremes]
-    yield Table("Combinations, the largest results", columns, notes, "combinations")
+    yield Table("Largest results of each combination", columns, notes, "combinations")
     if len(results) > 1:
         yield _envelope(results, system)
 

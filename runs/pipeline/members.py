@@ -156,7 +156,7 @@ def measure_predictability(
 
 
 def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
-    """Return trials with increasing time steps, and the smallest number that preserves the peaks.
+    """Return trials with more and more time steps, and the fewest that preserve the peaks.
 
     Args:
         motion: motion of the model, which is integrated up to the last compared peak.

@@ -164,7 +164,7 @@ def _walls(
 
 
 def panel_table(panels: Sequence[PanelBuckling], system: System) -> Table:
-    """Return the table of the wall of each segment that buckles first by panel formulas."""
+    """Return the table of each segment's wall that buckles first by panel formulas."""
     columns = [
         Column("segment", [one.segment for one in panels]),
         Column("wall", [one.wall for one in panels]),

@@ -110,7 +110,12 @@ def measure(results: Results, model: str) -> Quantities:
 
 
 def decay_time(ratio: float, frequency: float | None) -> float | None:
-    """Return the time in s in which a vibration decays to 10 %; None without damping."""
+    """Return the time in s in which a vibration decays to 10 %; None without damping.
+
+    Args:
+        ratio: damping ratio.
+        frequency: frequency in Hz; None if unknown.
+    """
     return (
         log(1.0 / DECAYED_SHARE) / (2.0 * pi * ratio * frequency) if ratio and frequency else None
     )

@@ -35,7 +35,7 @@ class Reaction:
 
 
 class Statics(NamedTuple):
-    """Static states under the loads at t = 0 of beam elements, with and without play.
+    """Static states of beam elements under the loads at t = 0, with and without play.
 
     If no model of the case has play, ``with_play`` has none either.
     """

@@ -258,7 +258,7 @@ class Summary(SummaryTable):
         """Read ``summary.json``.
 
         Raises:
-            OSError, ValidationError: the file cannot be read, or has other content.
+            OSError, ValidationError: the file cannot be read, or is invalid.
         """
         return cls.model_validate_json(path.read_bytes())
 

@@ -72,10 +72,10 @@ class Lines:
         if now - self._last_time < EVERY:
             return
         self._last_time = now
-        state = f"{stage} begins"
+        state = f"{stage} started"
         if part >= 1.0:
             # Some stages report only their end.
-            state = f"{stage} took {passed:.0f} s" if passed >= 1.0 else f"{stage} is done"
+            state = f"{stage} took {passed:.0f} s" if passed >= 1.0 else f"{stage} finished"
         elif part > 0.0:
             state = f"{stage} {100.0 * part:.0f} %"
             # Earlier estimates are unreliable.

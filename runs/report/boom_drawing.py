@@ -47,7 +47,7 @@ MARGIN = 0.06
 MOST, GAP = 8, 0.35
 
 CAPTION = (
-    "The boom in its initial position: to scale, along its axis with its joints, and its sections. "
+    "The boom in its initial position: elevation to scale, side view with its joints, sections. "
     "The legend explains the symbols; overlaps are shaded."
 )
 

@@ -32,7 +32,7 @@ PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
 # Text for each error of the reduction of a shell.
 _REDUCTION_ERRORS = {
     "contact_compliance": "reduction error of the local contact compliance {}",
-    "readings": "of tip and head {}",
+    "readings": "of the deflections of tip and head {}",
     "frequency_limit_in_hz": "natural frequencies accurate up to {} Hz",
 }
 

@@ -149,11 +149,11 @@ def _largest_deflection(run: FigureContext, place: str) -> str:
     reaches = {name: farthest(run.result(name, place)) for name in run.with_play or run.models}
     name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
     most = fixed(reaches[name], 0, TO_MILLI)
-    return f"up to {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
+    return f"largest deflection {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
 
 
 def _members(run: FigureContext, axes: Axes, name: str, place: str) -> None:
-    """Draw band and horizons of the ensemble of a model."""
+    """Draw the band of a model's ensemble, and its horizons of predictability."""
     band = _band(run, name, place)
     if band is None:
         return

@@ -76,7 +76,7 @@ def summary_table(results: Results) -> Table | None:
         Column("Static lateral tip deflection", [one or None for one in aside], ".1f", "mm"),
         Column("Lateral tip deflection, maximum", _each(designs, "lateral deflection"), unit="mm"),
         Column("First natural frequency", hertz, ".3g", "Hz"),
-        Column("Period of the motion (measured)", periods, ".3g", "s"),
+        Column("Period of the motion (time history)", periods, ".3g", "s"),
         Column("Decay time to 10 %", decay_times, ".2g", "s"),
         Column("Governing pad: force, pressure, utilisation", [pads.get(name) for name in names]),
         Column("Contact force, maximum", stations, unit="kN"),
@@ -228,15 +228,16 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         key=lambda model: results.main_models.index(model.name),
     )
     described = (
-        f"{model.name}: {model.kind}, {model.describe()}"
+        f"{model.name}: "
+        + ", ".join(part for part in (model.kind, model.describe()) if part != model.name)
         + (", without play" if model.bonded else "")
         for model in models
     )
     yield f"{'; '.join(described)}."
-    yield "Tip: deflection across the boom from the unloaded straight boom."
+    yield "Tip: deflection perpendicular to the axis of the unloaded boom."
     yield from filter(None, [rigid_wall_note(models, results.boom)])
     if "Tip travel from t = 0, mm" in rows:
-        yield "Tip travel: largest distance of the tip from its position at t = 0."
+        yield "Tip travel: largest displacement of the tip from its position at t = 0."
     if any("×" in cell for cells in rows.values() for cell in cells):
         extended = ", at any extension" if results.case.driven_segments else ""
         yield f"φ (×): maximum in motion over the static value under the maximum load{extended}."
@@ -252,16 +253,16 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
             "Contact force: maximum of the means over an output step; use it to size pads and "
             "walls. The peaks of impacts in the table of models last microseconds."
         )
-    if "Period of the motion (measured), s" in rows:
+    if "Period of the motion (time history), s" in rows:
         yield "Period: mean time between the main peaks of the tip, with the effect of play."
     if "Decay time to 10 %, s" in rows:
         ratio = percent(results.case.damping.modal)
-        yield f"Decay time: the damping ratio {ratio} reduces the amplitude to 10 %."
+        yield f"Decay time: until 10 % of the amplitude is left, with a damping ratio of {ratio}."
     if "Governing pad: force, pressure, utilisation" in rows:
         pads = [pad for joint in results.case.joints for pad in (joint.pad, *joint.pads) if pad]
         bears = _span(pad.allowable_pressure for pad in pads)
         yield (
-            "Pad: one of a pair, under its largest force during the motion; pressure: its mean"
+            "Pad: largest force on one pad of a pair during the motion, and its mean pressure"
             f"{bears and f'; %: of the allowable {bears}'}."
         )
     strengths = _span(one.yield_strength for one in results.boom.segments)
@@ -271,8 +272,8 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
-            f"Single elements beside contact lines have larger stresses ({join_words(most)}). They "
-            "grow with mesh refinement; the table of wall forces gives their places."
+            f"Stresses of single elements beside contact lines are larger ({join_words(most)}) and "
+            "grow with mesh refinement; the table of wall forces has their places."
         )
 
 
@@ -287,7 +288,7 @@ def _span(values: Iterable[float | None]) -> str:
 
 
 def _farthest(results: ModelDesignResults, tip: Array) -> str:
-    """Return the signed maximum tip deflection and its ratio to the value at rest as text."""
+    """Return as text the signed maximum tip deflection and its ratio to the static value."""
     peak = largest_peak(results, "deflection")
     return _milli(farthest(tip)) + (times(peak) if peak else "")
 
@@ -333,7 +334,8 @@ def limit_table(results: Results) -> Table | None:
         Column(name, [check.limit.format(check.values.get(name)) for check in checks])
         for name in results.main_models
     ]
-    notes = [f"{results.main_models[0]} governs; if it has no value, the next model governs."]
+    first = results.main_models[0]
+    notes = [f"The limits apply to {first}, or to the next model if {first} has no value."]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 
 

@@ -227,7 +227,9 @@ def _force(
         sign = AWAY if value > 0.0 else TOWARDS
         return Symbol("loads", index, places, 0.0, sign, f"{size} sideways{how}")
     if value > 0.0:
-        return Symbol("loads", index, places, "bottom", FORCE_UP, f"{size} up across the boom{how}")
+        return Symbol(
+            "loads", index, places, "bottom", FORCE_UP, f"{size} up, perpendicular to the boom{how}"
+        )
     return Symbol(
         "loads", index, places, "top", FORCE_DOWN, f"{size} down, perpendicular to the boom{how}"
     )
@@ -235,7 +237,7 @@ def _force(
 
 def _history(table: HistoryTable) -> str:
     if table.ramp is not None:
-        return f" within {table.ramp:g} s"
+        return f", ramp of {table.ramp:g} s"
     if table.frequency is not None:
         return f", {table.frequency:g} Hz"
     if table.half_sine is not None:

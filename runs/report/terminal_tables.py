@@ -151,7 +151,7 @@ def _model_notes(results: Results) -> Iterator[str]:
         if errors := model.reduction_errors:
             yield (
                 f"{name}: {model.modes} coordinates; reduction error of the local contact "
-                f"compliance {number(errors['contact_compliance'], 1)}, of tip and head "
-                f"{number(errors['readings'], 1)}; mesh error of the local contact compliance "
+                f"compliance {number(errors['contact_compliance'], 1)}, of the deflections of tip "
+                f"and head {number(errors['readings'], 1)}; mesh error of the local compliance "
                 f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}"
             )

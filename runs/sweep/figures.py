@@ -141,7 +141,7 @@ def in_display_units(data: xr.Dataset) -> xr.Dataset:
 
 
 def draw_frequencies(data: xr.Dataset, path: Path) -> None:
-    """Draw frequencies over one key, a panel for each mode.
+    """Draw frequencies over one varied key, a panel for each mode.
 
     Args:
         data: dataset of :func:`runs.sweep.frequencies.gather`.

@@ -65,7 +65,7 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
 
 
 def admissible_speed(curve: VibrationCurve, end: str) -> float | None:
-    """Return the speed in m/s up to which the vibration does not exceed the level of an end.
+    """Return the largest speed in m/s whose vibration is within the level at an end of the travel.
 
     The vibration is interpolated linearly. The result is None if every speed exceeds the level.
 

@@ -154,7 +154,7 @@ class Job:
     masses: Attachments
 
     def shell(self, cell: SymmetryCell) -> Shell:
-        """Return the shell of a cell in this class; its energy is that of the whole segment."""
+        """Return the shell of a cell in this symmetry class, with the energy of the segment."""
         conditions = [
             dirichlet_condition(cell.plates.space, kind, component, partial(on_plane, axis=axis))
             for axis in (COMPONENT[mirror] for mirror in cell.mirrors)

@@ -217,7 +217,7 @@ class ShellStress:
 
 
 def lines_around(spans: Array) -> Array:
-    """Return ascending x in m of mesh lines, which no triangle crosses.
+    """Return the x in m, ascending, that no triangle crosses.
 
     ``spans`` (num_triangles, 2) has the smallest and the largest x of triangles in m.
     """

@@ -35,7 +35,7 @@ OUT, ERR = ".stdout", ".stderr"
 
 
 # What runs/process/progress.py says of what takes long.
-PROGRESS = re.compile(r".+: .+ (begins|is done|took \d+ s|\d+ %, \d+ s left)")
+PROGRESS = re.compile(r".+: .+ (started|finished|took \d+ s|\d+ %, \d+ s left)")
 
 
 @dataclass(frozen=True, slots=True)

@@ -184,7 +184,7 @@ def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     cells = {row[0]: row[1:] for row in envelope.rows}
     assert cells["tip"][2] == governing
     text = printed_check(case, 80)
-    assert "Combinations, the largest results" in text
+    assert "Largest results of each combination" in text
     assert max(map(len, text.splitlines())) <= 80
 
 

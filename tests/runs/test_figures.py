@@ -239,7 +239,7 @@ def test_the_title_follows_the_motion_downwards(results: Results, drawn: Drawn) 
     upwards, downwards = (
         drawn(tip, run_of)[0].title for run_of in (results, replace(results, trajectories=down))
     )
-    assert downwards == upwards.replace("up to ", "up to −")
+    assert downwards == upwards.replace("deflection ", "deflection −")
     assert upwards.partition(" mm in ")[2] in WITH_PLAY
     assert "without" not in upwards
 

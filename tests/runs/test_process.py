@@ -103,9 +103,9 @@ def test_progress_shows_stage_and_remaining_time(monkeypatch: pytest.MonkeyPatch
     assert said == [
         "shell (2 of 2): reduction 40 %, 18 s left",
         "shell (2 of 2): reduction took 30 s",
-        "shell (2 of 2): motion begins",
-        "shell (2 of 2): fields is done",
-        "report: pictures begins",
+        "shell (2 of 2): motion started",
+        "shell (2 of 2): fields finished",
+        "report: pictures started",
     ]
 
 

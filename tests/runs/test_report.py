@@ -312,9 +312,9 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     shell = {"reduction_errors": errors, "mesh_error": 0.26, "seconds": {"reduction": 1.204}}
     page = render(changed(results, name, **shell), Addition(), [], [])
     assert (
-        "reduction 1.20 s, reduction error of the local contact compliance 2.4 × 10⁻⁹, of tip and "
-        "head 0.013, natural frequencies accurate up to 85 Hz, mesh error of the local compliance "
-        "26 %" in page
+        "reduction 1.20 s, reduction error of the local contact compliance 2.4 × 10⁻⁹, of the "
+        "deflections of tip and head 0.013, natural frequencies accurate up to 85 Hz, mesh error "
+        "of the local compliance 26 %" in page
     )
 
 

@@ -81,11 +81,11 @@ def test_summary_table_equals_the_design_results(results: Results) -> None:
 
 def test_period_is_measured_from_the_motion(results: Results) -> None:
     """Reference: analytic, a tip motion 1 − cos. A run without a second peak has no period."""
-    assert "Period of the motion (measured), s" not in cells(summary_table(results))
+    assert "Period of the motion (time history), s" not in cells(summary_table(results))
     tip = results.trajectories["tip"]
     moving = tip * 0.0 + 0.1 * (1.0 - np.cos(2.0 * np.pi / 0.15 * tip["time"]))
     told = replace(results, trajectories=results.trajectories.assign(tip=moving))
-    assert cells(summary_table(told))["Period of the motion (measured), s"][PLAYED] == "0.15"
+    assert cells(summary_table(told))["Period of the motion (time history), s"][PLAYED] == "0.15"
 
 
 def test_play_is_said_in_a_sentence(results: Results) -> None:

@@ -330,7 +330,7 @@ def test_drawing_of_a_lift_labels_every_part() -> None:
     """Reference: the case file."""
     assert legend(drawn("lift")) == [
         "slide pads", "support", "cylinder, 30 MN/m", "payload, 150 kg",
-        "1.595 kN down, perpendicular to the boom within 0.1 s", "play 3 mm",
+        "1.595 kN down, perpendicular to the boom, ramp of 0.1 s", "play 3 mm",
         "self-weight, g = 9.807 m/s²",
     ]  # fmt: skip
 
@@ -363,7 +363,7 @@ def test_a_force_down_points_down() -> None:
     """
     case = shipped("crane")
     acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
-    load_across = acts["24.52 kN down, perpendicular to the boom within 0.5 s"]
+    load_across = acts["24.52 kN down, perpendicular to the boom, ramp of 0.5 s"]
     (_, tail), (_, head) = load_across.rotated(0.0).vertices[:2]
     assert tail > head == 0.0
     (x, z), _ = load_across.rotated(90.0).vertices[:2]
