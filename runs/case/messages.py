@@ -37,6 +37,15 @@ _SYNONYMS = {
     "g": "gravity.acceleration",
 }  # fmt: skip
 
+# Advice on unknown keys of a table.
+_ADVICE = {
+    (
+        "pad",
+        "position",
+    ): "a pad is one of a mirrored pair; give offset, its distance from the corner",
+    ("load", "mass"): "give magnitude, -m g cos(luffing angle) in N, or the table payload",
+}
+
 # Descriptions of valid input by error type, for messages that quote the given value. Limits of the
 # schema replace the braces.
 _VALID_INPUT = {
@@ -193,12 +202,16 @@ def _unknown_key(location: Sequence[int | str]) -> str:
     keys = list(names_of(table))
     if table is AxialTable and key in HistoryTable.model_fields:
         return "an axial force is constant; give it at its largest, or one [[load_case]] per value"
+    heading = next((step for step in reversed(location[:-1]) if isinstance(step, str)), "")
+    if (heading, key) in _ADVICE:
+        return f"unknown key; {_ADVICE[heading, key]}"
     use = _SYNONYMS.get(key.lower(), "")
     if "." in use:
         return f"unknown key; use {use}"
     if use in keys:
         return f"unknown key; use {use}, {describe(fields_of(table)[names_of(table)[use]])}"
-    near = get_close_matches(shorten(key), keys, n=1)
+    near = [one for one in keys if sorted(one.split("_")) == sorted(key.split("_"))]
+    near = near or get_close_matches(shorten(key), keys, n=1)
     if near:
         return f"unknown key; the nearest known one is {near[0]}"
     return f"unknown key; known ones are {', '.join(keys)}"

@@ -11,6 +11,7 @@ FORMS = [
             "time.colour: unknown key; known ones are duration, output_step, step, tolerance",
         "durration = 0.6": "time.durration: unknown key; the nearest known one is duration",
         "duration = 0.6\nangle = 45.0": "time.angle: unknown key; use gravity.angle",
+        "step_output = 0.6": "time.step_output: unknown key; the nearest known one is output_step",
         'duration = "0.6"': "time.duration: must be a number, got '0.6'",
         "duration = true": "time.duration: must be a number, got true",
         '"\\u001b[31m" = 1':
