@@ -19,6 +19,9 @@ from runs.pipeline.section_forces import LoadedModel, round_values
 from runs.pipeline.static_results import StaticResult, place_names
 from runs.pipeline.strength import Fibres, FibreStress, StressHistory, WallStress, largest_stresses
 
+# Fraction of the maximum in motion below which a static value is no reference for a factor.
+LEAST_STATIC = 1.0e-3
+
 
 @dataclass(frozen=True, slots=True)
 class Envelope:
@@ -50,8 +53,9 @@ class Peak:
 
     @property
     def factor(self) -> float | None:
-        """The dynamic factor; None without a static value."""
-        return self.largest / self.at_rest if self.at_rest else None
+        """The dynamic factor; None without a static value of some size."""
+        rest = self.at_rest or 0.0
+        return self.largest / rest if abs(rest) > LEAST_STATIC * abs(self.largest) else None
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,7 @@ from runs.report.figure_context import (
     new_sheet,
     widen_limits,
 )
-from runs.report.formatting import fixed
+from runs.report.formatting import fixed, number
 
 # Number of intervals into which a run is divided; the maximum of each is drawn.
 FORCE_BINS = 100
@@ -141,8 +141,8 @@ def _log_scale(panels: Sequence[Axes], values: Array) -> None:
         labels = labels[(labels >= low) & (labels <= high)]
         if labels.size <= MOST_LABELS:
             break
-    if labels.size < 2:
-        labels = np.unique([finite.min(), finite.max()])
+    if labels.size < 3:
+        labels = np.unique(np.geomspace(finite.min(), finite.max(), 3))
     for axes in panels:
         axes.set_yscale("log")
         axes.set_ylim(low, high)
@@ -283,8 +283,8 @@ def stress_history(run: FigureContext) -> list[Figure]:
         fullest = max(panels, key=lambda axes: len(axes.lines))
         patch = max(max(row.von_mises_patch) for row in rows) * TO_MEGA
         title = (
-            f"{name}: von Mises stress over a patch up to {patch:.3g} MPa, in a triangle up to "
-            f"{stress.von_mises * TO_MEGA:.3g} MPa"
+            f"{name}: von Mises stress over a patch up to {number(patch)} MPa, in a triangle up to "
+            f"{number(stress.von_mises * TO_MEGA)} MPa"
         )
         caption = (
             f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "

@@ -12,6 +12,7 @@ from runs import CASES
 from runs.case.reading import load
 from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import ModelDesignResults
+from runs.pipeline.motion_results import Peak
 from runs.pipeline.run import Run, run_case
 
 
@@ -77,3 +78,11 @@ def test_bonded_rest_is_known_without_a_motion(
     assert left.motion_bonded is None
     assert left.static_bonded == whole.static_bonded != []
     assert left.modes_bonded == whole.modes_bonded != []
+
+
+@pytest.mark.parametrize(("at_rest", "factor"), [(2.0, 1.5), (1e-4, None), (None, None)])
+def test_factor_needs_a_static_value_of_some_size(
+    at_rest: float | None, factor: float | None
+) -> None:
+    """Reference: by hand; a torque of round-off at rest gives no factor of 30000."""
+    assert Peak("torque", "foot", "N m", 3.0, 1.0, at_rest).factor == factor
