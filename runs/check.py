@@ -55,7 +55,6 @@ from runs.pipeline.proportions import (
     proportion_cautions,
     tip_cautions,
 )
-from runs.pipeline.quantities import static_limit_lines
 from runs.pipeline.static_results import bulge_cautions, tilts
 from runs.pipeline.statics import (
     Statics,
@@ -158,9 +157,13 @@ def check_case(declared: CheckedCase) -> Check:
         *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], boom_with_laws)),
         *overload_cautions(extremes, boom, advise),
         *panel_cautions(panels, case.system),
-        *static_limit_lines(case.limits, [e.largest for e in extremes if e.name == "tip"]),
         *stick_slip_cautions(drives, case.system),
     ]
+    if case.limits is not None:
+        # Imported late, since the results of a run take half a second.
+        from runs.pipeline.quantities import static_limit_lines
+
+        lines += static_limit_lines(case.limits, [e.largest for e in extremes if e.name == "tip"])
     lines.append(f"A run may take {run_cost(case, preview)}.")
     return Check(case.title, [table for table in tables if table.rows], lines)
 

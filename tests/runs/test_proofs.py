@@ -298,7 +298,7 @@ def test_the_first_screen_of_the_report(tmp_path: Path) -> None:
     page = render(results, Addition(), [], [])
     sentence = proofs.governing(results.case.system)
     assert sentence.split(". Governing")[0] in page.split("<table")[0]
-    for title in ("Combinations, the largest", "Envelope of the combinations", "Proofs"):
+    for title in ("Largest results of each combination", "Envelope of the combinations", "Proofs"):
         assert title in page
 
 
