@@ -35,7 +35,7 @@ def test_hanging_load_at_rest() -> None:
     """Reference: the same boom under the components of the load across and along it."""
     case = of_beam(shipped("hoist"))
     weight = 5000.0 * 9.80665
-    across = LoadTable(segment="fly", x="head", magnitude=-0.5 * weight)  # type: ignore[arg-type] # read as in a file
+    across = LoadTable(segment="fly", x="head", magnitude=-0.5 * weight)  # type: ignore[arg-type] # pydantic reads "head" as a place
     force = case.axial[0].force
     axial = case.axial[0].model_copy(update={"force": force + np.sqrt(0.75) * weight})
     loaded = case.model_copy(update={"hoist": None, "loads": (across,), "axial": (axial,)})
