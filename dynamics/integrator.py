@@ -42,6 +42,10 @@ _LEAST_RANGE = 1.0e-3
 # Fraction of the tolerance below which the next window has half as many steps.
 _COARSEN_BELOW = 0.125
 
+# Fraction of the error that must not remain after two halvings of the step. In regular motion at
+# most a quarter remains.
+_REMAINS = 0.5
+
 Progress = Callable[[float], None]
 
 
@@ -127,8 +131,9 @@ class AdaptiveStep:
     The error of the window is the difference of observed deflections within the window, and in free
     motion over the next quarter period of the slowest mode. The tolerance limits the sum of these
     errors, which is the attribute ``step_error`` of the trajectory. A window is about a period of
-    that mode, long enough to average over impacts. The step has a lower limit, since no step meets
-    a tolerance in chaotic motion.
+    that mode, long enough to average over impacts. No step meets a tolerance in chaotic motion. So
+    a step that resolves the largest impact is not halved further if two halvings leave more than
+    half of the error. The step also has a lower limit.
 
     >>> motion = AdaptiveStep()(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.data.attrs["step_error"] < 1e-3
@@ -164,22 +169,28 @@ class AdaptiveStep:
         scale = error.scale(pilot.output.states)
         substeps, steps_of_windows, total = min(max(_FIRST, fewest), most), list[int](), 0.0
         for first, last in _windows(motion, window):
-            allowed = self.tolerance * (last - first) / outputs
-            part = run.part(first, last)
+            limit = self.tolerance * (last - first) / outputs * scale
+            part, errors = run.part(first, last), list[float]()
+            previous = _copy(run.state)
+            coarse = run.advance(first, last, substeps // 2, previous)
             while True:
-                state, coarse = (State(*(array.copy() for array in run.state)) for _ in range(2))
+                state = _copy(run.state)
                 run.advance(first, last, substeps, state, part)
-                compared = run.advance(first, last, substeps // 2, coarse)
-                step_error = error(part, compared, state, coarse)
-                limit = allowed * scale
-                if step_error <= limit or substeps >= most:
+                errors.append(error(part, coarse, state, previous))
+                resolved = output_step <= substeps * state.resolving.min(initial=np.inf)
+                chaotic = resolved and len(errors) > 2 and errors[-1] > _REMAINS * errors[-3]
+                if errors[-1] <= limit or chaotic or substeps >= most:
                     break
+                previous, coarse = state, Output(*(array.copy() for array in part))
                 substeps *= 2
             for kept, reached in zip(run.state, state, strict=True):
                 kept[...] = reached
             steps_of_windows.append(substeps)
-            total += step_error
-            if step_error < _COARSEN_BELOW * limit:
+            total += errors[-1]
+            if errors[-1] > limit:
+                # The next window may need fewer halvings than this one.
+                substeps = max(fewest, substeps // 8)
+            elif errors[-1] < _COARSEN_BELOW * limit:
                 substeps = max(fewest, substeps // 2)
             if progress is not None:
                 progress(last / outputs)
@@ -238,6 +249,10 @@ class _WindowError:
     def _read(self, states: Array) -> Array:
         # BLAS is not used, since its last bits depend on addresses in memory.
         return np.asarray(np.einsum("ti,ri->tr", states, self.rows))
+
+
+def _copy(state: State) -> State:
+    return State(*(array.copy() for array in state))
 
 
 def _windows(motion: Motion, length: int) -> Iterator[tuple[int, int]]:

@@ -17,7 +17,7 @@ from dynamics.integrator import AdaptiveStep, FixedStep, Integrator, StepSchedul
 from dynamics.motion import MOST_STEPS, Motion
 from tests.dynamics.reference import runge_kutta, two_modes
 from tests.dynamics.test_time_step import driven, lossy_press, pressed, sliding, telescoping
-from tests.dynamics.two_stops import CHAOTIC, LINEAR
+from tests.dynamics.two_stops import CHAOTIC, LINEAR, RATTLING
 
 OneMass = Callable[..., GapSystem]
 
@@ -129,12 +129,18 @@ def test_half_the_step_leaves_a_quarter_of_the_error() -> None:
     assert found[1] / found[2] == pytest.approx(4.0, abs=0.3)
 
 
-def test_chaos_ends_the_refinement() -> None:
-    """Reference: by hand, the maximum number of steps. Energy is conserved, and the error is
-    reported.
+@pytest.mark.parametrize(
+    ("motion", "fraction"),
+    [(Motion(CHAOTIC, 40.0, 1e-2), 1.1), (Motion(RATTLING, 4.0, 1e-2), 0.2)],
+    ids=["chaotic", "rattling"],
+)
+def test_chaos_ends_the_refinement(motion: Motion, fraction: float) -> None:
+    """Reference: by hand, a fraction of the maximum number of steps. The largest impact is
+    resolved, energy is conserved, and the error is reported.
     """
-    run = AdaptiveStep()(Motion(CHAOTIC, 40.0, 1e-2))
-    assert run.data.attrs["steps"] <= 1.1 * MOST_STEPS
+    run = AdaptiveStep()(motion)
+    assert run.data.attrs["steps"] <= fraction * MOST_STEPS
+    assert run.data.attrs["resolving_step"] == np.inf
     assert run.data.attrs["step_error"] > 1e-3
     assert run.energy_residual < 1e-9
 
