@@ -25,11 +25,13 @@ from shell_model.contact.local_compliance import (
     extrapolated_error,
     full_compliance,
     local_compliance,
-    probe_segment,
+    probe_loads,
+    probe_responses,
 )
 from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
+from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import ReducedSegment, reduce_segment
 from shell_model.reduction.symmetry import result_or_compute
 from shell_model.stages import Stages
@@ -91,12 +93,14 @@ def reduce_boom(
     telescoping = None
     if boom.telescopes:
         fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
-        reduce = partial(_reduce_segment, full, fewer, stages)
+        reduce = partial(_reduce_segment, boom, full, fewer, stages)
         test = options.krylov.tests[0]
         telescoping = TelescopingShell(boom, full, options.mesh_size, reduce, test)
         segments = telescoping.reduced
     else:
-        segments = [_reduce_segment(full, options, stages, n) for n in range(len(full.shells))]
+        segments = [
+            _reduce_segment(boom, full, options, stages, n) for n in range(len(full.shells))
+        ]
     coordinates = BoomCoordinates(full.comm, full.shells, segments, full.ties, full.lines)
     with stages.stage("rows"):
         own_loads = np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
@@ -115,8 +119,6 @@ def reduce_boom(
             coarse = helper.submit(_mesh_compliance, boom, options.coarser)
     with stages.stage("fields"):
         fields = gather_fields(boom, full.shells, segments, coordinates, system)
-    with stages.stage("unit responses"):
-        responses = [probe_segment(boom, number, one) for number, one in enumerate(full.symmetries)]
     with stages.stage("mesh error"):
         local = _contact_local_compliance(whole, full)
         coarse_local = result_or_compute(
@@ -137,7 +139,10 @@ def reduce_boom(
         seconds=stages.seconds,
         meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
         critical_factor=critical_factor(boom, full, segments),
-        probe_responses=responses,
+        probe_responses=[
+            probe_responses(boom, number, segment.probe_compliance, _krylov(options).shifts[0])
+            for number, segment in enumerate(segments)
+        ],
         own_loads=own_loads,
     )
 
@@ -169,21 +174,37 @@ def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> 
     return compliance(apart.omega2, rows.reshape(-1, apart.omega2.size)), lost
 
 
+def _krylov(options: ShellOptions) -> KrylovOptions:
+    """Return the options of the reduction for the contact line."""
+    if options.contact_line != "surface":
+        return options.krylov
+    surface = options.surface
+    return replace(options.krylov, shifts=surface.shifts, moments=surface.moments)
+
+
 def _reduce_segment(
-    full: BoomShell, options: ShellOptions, stages: Stages, number: int, *extra_forces: Array
+    boom: Boom,
+    full: BoomShell,
+    options: ShellOptions,
+    stages: Stages,
+    number: int,
+    *extra_forces: Array,
 ) -> ReducedSegment:
-    """Reduce a segment for its applied forces, ``extra_forces`` and outputs. Collective."""
-    krylov, joined = options.krylov, full.joint_rows(number)
-    at_surface = options.contact_line == "surface"
-    if at_surface:
-        krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
+    """Reduce a segment for its forces, ``extra_forces``, outputs and probes. Collective."""
+    joined = full.joint_rows(number)
     observed = full.columns(number, [seen.operator for seen in full.observed.values()])
     with stages.stage("reduction", number, len(full.shells)) as progress:
         forces = np.hstack([full.forces(number), *extra_forces])
         segment = reduce_segment(
-            full.symmetries[number], forces, krylov, progress, observed, full.helper
+            full.symmetries[number],
+            forces,
+            _krylov(options),
+            progress,
+            observed,
+            probe_loads(boom, number, full.shells[number]),
+            full.helper,
         )
-        if at_surface and joined.size:
+        if options.contact_line == "surface" and joined.size:
             segment = without_stiff_modes(full.comm, segment, joined)
     return segment
 

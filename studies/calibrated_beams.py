@@ -172,7 +172,7 @@ def measure(case: Case, where: str, sizes: Sizes) -> ModelComparison:
     points = Point.each(sizes.plays, sizes.loads)
     moved = move_all(systems, points, sizes.duration)
     reduction = built[SHELL].seconds["reduction"]
-    calibration = built[SHELL].seconds["unit responses"] + built[SPRUNG].seconds["calibration"]
+    calibration = built[SPRUNG].seconds["calibration"]
     return ModelComparison(where, points, systems, moved, (reduction, calibration))
 
 

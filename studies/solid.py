@@ -149,7 +149,7 @@ def shell_parts(
                 if probe.family == job.symmetry_class
             },
         )
-        for job in symmetry.jobs(rows, np.zeros((len(rows), 0)))
+        for job in symmetry.jobs(rows, rows[:, :0], rows[:, :0])
     }
 
 

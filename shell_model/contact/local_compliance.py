@@ -16,7 +16,7 @@ from dynamics.contact import ContactLaw
 from dynamics.gap_builder import LawRow
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses, probe_places
+from geometry.probe_responses import ProbedMotion, ProbeResponses, probe_places
 from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
@@ -102,26 +102,33 @@ def _opposite(
             yield above[k * len(above) // most], below[k * len(below) // most]
 
 
-def probe_segment(boom: Boom, number: int, symmetry: SymmetryReduction) -> ProbeResponses:
-    """Return the probe responses of the unreduced shell of a segment. Collective.
+def probe_loads(boom: Boom, number: int, shell: SegmentShell) -> Array:
+    """Return the load vectors (num_owned, num_probes) of all probes of a segment.
 
     In space they include lateral bending and torsion. The mesh needs mesh lines at all probes.
     """
-    places, shell = probe_places(boom, number), symmetry.shell
-    probes: dict[ProbedMotion, list[Array]] = {
-        direction: [
+    places = probe_places(boom, number)
+    loads = [
+        load
+        for direction in boom.directions
+        for load in (
             *(shell.unit_load_vector(x, direction) for x in places),
             *(shell.moment(x, direction) for x in (places[0], places[-1])),
-        ]
-        for direction in boom.directions
-    }
+        )
+    ]
     if boom.spatial:
-        probes["twist"] = [shell.torque(x) for x in places]
-    whole = shell_compliance(
-        symmetry, np.array([row for rows in probes.values() for row in rows]).T, PROBE_FREQUENCY
-    )
-    responses, first = {}, 0
-    for motion, rows in probes.items():
-        block = slice(first, first + len(rows))
-        responses[motion], first = whole[block, block], block.stop
-    return ProbeResponses(places, responses)
+        loads += [shell.torque(x) for x in places]
+    return np.array(loads).T
+
+
+def probe_responses(boom: Boom, number: int, compliance: Array, frequency: float) -> ProbeResponses:
+    """Return the probe responses of a segment from the compliance of its :func:`probe_loads`.
+
+    The compliance is (num_probes, num_probes), for a shift at a frequency in Hz.
+    """
+    places, responses, first = probe_places(boom, number), {}, 0
+    motions: Sequence[ProbedMotion] = [*boom.directions, "twist"] if boom.spatial else ["z"]
+    for motion in motions:
+        block = slice(first, first + len(places) + (0 if motion == "twist" else 2))
+        responses[motion], first = compliance[block, block], block.stop
+    return ProbeResponses(places, responses, frequency)

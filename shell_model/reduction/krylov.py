@@ -67,6 +67,8 @@ class ClassCoordinates(NamedTuple):
         compliance_error, output_error, lost_compliance: errors as in ``ReducedSegment``.
         accurate: mask (num_modes,) of modes with a natural frequency within 0.1 %.
         geometric: K_G (num_modes, num_modes), to be subtracted from diag(ω²).
+        probe_compliance: compliance (num_probes, num_probes) of the full model to probes, at the
+            first shift.
     """
 
     omega2: Array
@@ -76,12 +78,14 @@ class ClassCoordinates(NamedTuple):
     lost_compliance: Array
     accurate: Mask
     geometric: Array
+    probe_compliance: Array
 
 
 def reduce_class(
     shell: Shell,
     inputs: Array,
     outputs: Array,
+    probes: Array,
     options: KrylovOptions,
     progress: Callable[[float], None],
 ) -> ClassCoordinates:
@@ -91,6 +95,7 @@ def reduce_class(
         shell: the full model.
         inputs: load vectors (num_rows, num_inputs); they may be zero or dependent.
         outputs: rows (num_rows, num_outputs) of outputs.
+        probes: load vectors (num_rows, num_probes) of probes.
         options: options; ``most`` is for this shell.
         progress: callback that receives the completed fraction, 0 to 1.
 
@@ -107,6 +112,9 @@ def reduce_class(
     solve = ShiftedSolver(shell, order[0] if options.tolerance is None else tests[0])
     if options.tolerance is not None:
         full = [_FullResponse.at(frequency, solve, forces, rows) for frequency in tests]
+    solve.move(order[0])
+    probes = probes * shell.free[:, None]
+    probe_compliance = probes.T @ solve(probes)
     for done, frequency in enumerate(order, start=1):
         solve.move(frequency)
         grown = basis.grow(solve)
@@ -139,7 +147,7 @@ def reduce_class(
     geometric = np.zeros((omega2.size, omega2.size))
     if shell.geometric is not None:
         geometric = shapes.T @ times(shell.geometric, shapes)
-    return ClassCoordinates(omega2, shapes, *errors, lost, accurate, geometric)
+    return ClassCoordinates(omega2, shapes, *errors, lost, accurate, geometric, probe_compliance)
 
 
 class _FullResponse(NamedTuple):
@@ -213,7 +221,7 @@ class _Basis:
             shifted = self._stiffness + response.sigma * np.eye(self.size)
             moved = np.linalg.solve(shifted, gains)
             off = np.abs(gains.T @ moved - response.compliance) / response.scale
-            compliance = float(np.maximum(compliance, off.max()))
+            compliance = float(np.maximum(compliance, off.max(initial=0.0)))
             off = np.abs(read.T @ moved - response.transfer) / response.transfer_scale
             transfer = float(np.maximum(transfer, off.max(initial=0.0)))
         return compliance, transfer

@@ -41,6 +41,8 @@ class ReducedSegment:
     lost_compliance: Array
     frequency_limit: float  #: frequency in Hz up to which natural frequencies are accurate to 0.1 %
     geometric: Array  #: K_G (num_modes, num_modes), to be subtracted from diag(ω²)
+    #: compliance (num_probes, num_probes) of the full model to probes, at the first shift
+    probe_compliance: Array
 
 
 def reduce_segment(
@@ -49,6 +51,7 @@ def reduce_segment(
     options: KrylovOptions,
     progress: Callable[[float], None] | None = None,
     outputs: Array | None = None,
+    probes: Array | None = None,
     helper: Executor | None = None,
 ) -> ReducedSegment:
     """Reduce a segment for its inputs and outputs. Collective.
@@ -59,13 +62,17 @@ def reduce_segment(
         options: shifts and moments, or a tolerance.
         progress: callback that receives the completed fraction, 0 to 1.
         outputs: output rows (num_owned, num_outputs), whose error is also measured.
+        probes: load vectors (num_owned, num_probes) of probes.
         helper: second process, which reduces every second symmetry class of this rank.
 
     Raises:
         NumericsError: a compliance is not finite, all inputs are zero, or the tolerance is not met.
     """
     comm = symmetry.shell.comm
-    jobs = symmetry.jobs(inputs, np.zeros((len(inputs), 0)) if outputs is None else outputs)
+    none = np.zeros((len(inputs), 0))
+    jobs = symmetry.jobs(
+        inputs, none if outputs is None else outputs, none if probes is None else probes
+    )
     symmetry_classes = comm.bcast([job.symmetry_class for job in jobs])
     if not symmetry_classes:
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
@@ -122,6 +129,7 @@ def reduce_segment(
         lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),
         frequency_limit=float(limit),
         geometric=block_diag(*(part.geometric for part in parts))[np.ix_(order, order)],
+        probe_compliance=np.sum([part.probe_compliance for part in parts], axis=0),
     )
 
 
@@ -131,4 +139,4 @@ def _reduce_job(
     options: KrylovOptions,
     progress: Callable[[float], None] = lambda _: None,
 ) -> ClassCoordinates:
-    return reduce_class(job.shell(cell), job.forces, job.outputs, options, progress)
+    return reduce_class(job.shell(cell), job.forces, job.outputs, job.probes, options, progress)

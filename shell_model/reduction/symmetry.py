@@ -142,14 +142,15 @@ class Job:
 
     Args:
         symmetry_class: the symmetry class.
-        forces, outputs: load vectors and output rows (num_rows, num_columns) on the cell,
-            sums over all images.
+        forces, outputs, probes: load vectors, output rows and loads of probes
+            (num_rows, num_columns) on the cell, sums over all images.
         springs, masses: springs and masses of the segment on the rows of the cell.
     """
 
     symmetry_class: SymmetryClass
     forces: Array
     outputs: Array
+    probes: Array
     springs: Attachments
     masses: Attachments
 
@@ -205,13 +206,14 @@ class SymmetryReduction:
             self._image_of_row[dofs - first] = image_of(nodes, self._mirrors)[:, None]
             self._component[dofs - first] = _COMPONENTS[part]
 
-    def jobs(self, inputs: Array, outputs: Array) -> list[Job]:
-        """Return a job for each symmetry class that an input excites, on rank 0. Collective.
+    def jobs(self, inputs: Array, outputs: Array, probes: Array) -> list[Job]:
+        """Return a job for each excited symmetry class on rank 0. Collective.
 
-        Inputs and output rows (``outputs``) are (num_owned, num_columns) on the whole segment.
+        Inputs, output rows (``outputs``) and loads of probes are (num_owned, num_columns) on the
+        whole segment. Inputs and probes excite classes.
         """
         shell = self.shell
-        blocks = inputs, outputs, shell.springs.rows, shell.masses.rows
+        blocks = inputs, outputs, probes, shell.springs.rows, shell.masses.rows
         gathered = [self._gather(block) for block in blocks]
         if self._comm.rank != 0:
             return []
@@ -219,11 +221,11 @@ class SymmetryReduction:
         jobs = []
         for symmetry_class in symmetry_classes(self._mirrors):
             signs = symmetry_class.signs[:, self.cell.component]
-            forces, read, springs, masses = (_sum_of_class(image, signs) for image in images)
-            if forces.any():
+            forces, read, probed, springs, masses = (_sum_of_class(one, signs) for one in images)
+            if forces.any() or probed.any():
                 pulled = Attachments(springs, shell.springs.factors)
                 carried = Attachments(masses, shell.masses.factors)
-                jobs.append(Job(symmetry_class, forces, read, pulled, carried))
+                jobs.append(Job(symmetry_class, forces, read, probed, pulled, carried))
         return jobs
 
     def sum_classes(
@@ -234,7 +236,7 @@ class SymmetryReduction:
         ``compute`` returns the result of a class from its index and job; columns
         (num_owned, num_columns) are the forces of jobs.
         """
-        jobs = self.jobs(columns, columns[:, :0])
+        jobs = self.jobs(columns, columns[:, :0], columns[:, :0])
         for root, part in share_jobs(self._comm, jobs, compute):
             total += self._comm.bcast(part, root)
         return total

@@ -14,7 +14,13 @@ from beam_model.wall_compliance import contact_compliance
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Collar, PadSize, Stop, Support
 from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.local_compliance import SLOW, compliance, probe_segment
+from shell_model.contact.local_compliance import (
+    SLOW,
+    compliance,
+    probe_loads,
+    probe_responses,
+    shell_compliance,
+)
 from shell_model.contact.rows import ShellContacts
 from shell_model.contact.surface import SurfaceOptions
 from shell_model.reduction.symmetry import SymmetryReduction
@@ -82,10 +88,11 @@ def test_one_sided_contact_has_no_local_compliance() -> None:
 def stiffness(boom: Boom, contact_tolerance: float | None = None) -> list[Stiffness]:
     options = ShellOptions(0.25, contact_tolerance=contact_tolerance)
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
-    return [
-        effective_stiffness(segment, probe_segment(boom, number, SymmetryReduction(shells[number])))
-        for number, segment in enumerate(boom.segments)
-    ]
+    found = []
+    for number, (segment, shell) in enumerate(zip(boom.segments, shells, strict=True)):
+        moved = shell_compliance(SymmetryReduction(shell), probe_loads(boom, number, shell), 2.0)
+        found.append(effective_stiffness(segment, probe_responses(boom, number, moved, 2.0)))
+    return found
 
 
 @pytest.mark.slow

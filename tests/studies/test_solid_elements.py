@@ -211,7 +211,7 @@ def test_the_shell_of_a_thin_box_is_the_solid_s() -> None:
     shell = assemble_segment(MPI.COMM_SELF, box, add_thickness(box, mesh))
     lift = shell.row(shell.outline(2.0).wall_deflection("z"))
     symmetry = SymmetryReduction(shell)
-    (job,) = symmetry.jobs(lift[:, None], np.zeros((lift.size, 0)))
+    (job,) = symmetry.jobs(lift[:, None], *np.zeros((2, lift.size, 0)))
     assert job.symmetry_class == ALONG_Z
     quarter = job.shell(symmetry.cell)
     solid = assemble_solid(box, mesh_quarter(thin, (0.0, 0.5, 2.0), (0.02, 0.2), 0.05), ALONG_Z)
