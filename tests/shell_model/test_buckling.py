@@ -157,7 +157,7 @@ def test_segments_of_a_boom_buckle_between_their_contacts(boom: Boom) -> None:
     """Reference: analytic. Twice the forces have half the factor; the outer segment buckles
     first.
     """
-    options = ShellOptions(0.25)
+    options = ShellOptions(0.4)
     shell, state = at_rest(boom, options)
     twice = replace(state, forces=[2.0 * one for one in state.forces])
     found, halves = (

@@ -200,9 +200,9 @@ def with_strips(boom: Boom) -> Boom:
 def test_estimated_compliance_follows_the_shell(
     pad: PadSize, change: Callable[[Boom], Boom]
 ) -> None:
-    """Reference: other code, the shell, whose own error of the local compliance is 1 %."""
+    """Reference: other code, the shell, whose own error of the local compliance is 2 %."""
     boom = change(short_boom(pad))
-    shell = reduced(boom, 0.1, contact_tolerance=0.01)
+    shell = reduced(boom, 0.2, contact_tolerance=0.02)
     walls = contact_compliance(boom)
     opening = walls[::2, ::2] + walls[1::2, 1::2] - walls[::2, 1::2] - walls[1::2, ::2]
     estimated = 0.5 * np.diag(opening)
@@ -216,12 +216,13 @@ def test_a_pad_on_the_corners_bends_no_wall() -> None:
     """
 
     def local(boom: Boom) -> float:
-        return float(reduced(boom, 0.1, contact_tolerance=0.05).local_compliance.max())
+        return float(reduced(boom, 0.2, contact_tolerance=0.05).local_compliance.max())
 
     boom = short_boom(PadSize(0.1, 0.06, bears="corner"))
     stations = replace(boom.joints[0], stations=(9.05, 9.95), pad=None, contact_length=0.1)
     on_corners = local(boom)
-    assert on_corners == pytest.approx(local(replace(boom, joints=(stations,))), rel=1.0e-6)
+    of_stations = local(replace(boom, joints=(stations,)))
+    assert on_corners == pytest.approx(of_stations, rel=5.0e-4, abs=0.0)
     wide, narrow = (local(short_boom(PadSize(0.1, width))) for width in (0.06, 0.01))
     assert on_corners < narrow < wide
     assert on_corners < 0.1 * wide

@@ -84,6 +84,17 @@ def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: s
     assert list(tmp_path.iterdir()) == []
 
 
+# The command, which prints every stage.
+TELLING = """
+from protractile.__main__ import main
+from runs.process import progress
+
+if __name__ == "__main__":
+    progress.EVERY = 0.0
+    main()
+"""
+
+
 def tells(stage: str) -> Callable[[subprocess.Popen[str]], bool]:
     """Return whether the next line of progress is of a stage."""
     return lambda process: stage in (process.stderr.readline() if process.stderr else "")
@@ -91,10 +102,9 @@ def tells(stage: str) -> Callable[[subprocess.Popen[str]], bool]:
 
 def test_sigterm_ends_a_run_after_meshing(tmp_path: Path) -> None:
     """Reference: by construction. gmsh resets the handler of SIGTERM."""
-    process = command(
-        tmp_path, "run", COARSE, "--models", "shell", "--no-cache", "--mesh-size", "0.05"
-    )
-    wait_until(tells("shell (1 of 1): "), process)
+    shell = "run", COARSE, "--models", "shell", "--no-cache", "--no-pictures"
+    process = start(tmp_path, "-c", TELLING, *shell, "--out", "out")
+    wait_until(tells("shell (1 of 1): reduction"), process)
     process.terminate()
     out, err = process.communicate(timeout=60)
     assert (out, err.splitlines()[-1]) == ("", "protractile: interrupted")
