@@ -54,6 +54,7 @@ def test_check_returns_the_output_of_the_command(capsys: pytest.CaptureFixture[s
     assert all(f"<b>{title}</b>" in page for title in found.frames)
 
 
+@pytest.mark.usefixtures("in_this_process", "unprinted")
 def test_a_sweep_writes_the_files_of_the_command(tmp_path: Path) -> None:
     """Reference: other code path, to the bit."""
     case = tmp_path / "short.toml"
@@ -121,6 +122,7 @@ def test_without_openpyxl_one_line_says_so(
     assert not (tmp_path / "kept" / "report.html").exists()
 
 
+@pytest.mark.usefixtures("few_figures", "unprinted")
 def test_a_run_in_python_writes_the_folder_of_the_command(tmp_path: Path) -> None:
     """Reference: other code path."""
     case = tmp_path / "short.toml"

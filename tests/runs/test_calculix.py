@@ -16,6 +16,7 @@ from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.case.messages import BadInput
+from runs.folder.cache import Cache
 from runs.pipeline.models import build
 from studies.reference_models.statics import static_response
 
@@ -64,10 +65,11 @@ def test_a_boom_rests_in_calculix_as_here(
     state.
     """
     case = reading.select(shipped(name), "", ["shell"], size)
-    deck = tmp_path / "boom.inp"
-    write(case, "", MPI.COMM_SELF, deck, None)
+    deck, cache = tmp_path / "boom.inp", Cache(tmp_path / "cache")
+    write(case, "", MPI.COMM_SELF, deck, cache)
     found = readings(deck)
-    system = build(case, build_boom(case), case.models[0], BuildContext(MPI.COMM_SELF)).system
+    context = BuildContext(MPI.COMM_SELF, cache=cache)
+    system = build(case, build_boom(case), case.models[0], context).system
     rest = equilibrium_at(system)
     tip = system.observers["tip"].row @ rest
     assert found["tip"] == pytest.approx(tip, rel=tolerance)
@@ -115,8 +117,8 @@ def test_axial_force_softens_a_boom_as_large_displacements_do_in_calculix(tmp_pa
     [
         # A column, which bends in two directions at equal factors.
         (replace(COLUMN, compression=5.0e8), 4, 2, 1e-4),
-        # Walls of a tube, b/t = 100.
-        (replace(BOXES[0], compression=4.0e7), 16, 4, 1e-3),
+        # Two modes of the walls of a tube, b/t = 100.
+        (replace(BOXES[0], compression=4.0e7), 16, 2, 1e-3),
     ],
     ids=["column", "walls"],
 )
