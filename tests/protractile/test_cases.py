@@ -82,6 +82,7 @@ def test_frequencies_of_one_case_and_of_several() -> None:
         pt.frequencies(case, {"joint.ply": [0.0, 1.0]}, BEAM)
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_results_are_saved_reported_and_put_into_a_workbook(
     results: pt.Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -108,6 +109,7 @@ def test_results_are_saved_reported_and_put_into_a_workbook(
         results.save(folder)
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_without_openpyxl_one_line_says_so(
     results: pt.Results, tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     capsys: pytest.CaptureFixture[str],

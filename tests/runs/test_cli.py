@@ -271,6 +271,7 @@ def test_a_contact_without_digits_is_one_line(protractile: Protractile) -> None:
     assert err.endswith(" s; make the contact softer\n")
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_full_disk_is_one_line_and_keeps_old_results(
     protractile: Protractile, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -290,6 +291,7 @@ def test_full_disk_is_one_line_and_keeps_old_results(
     assert sorted(path.name for path in Path.cwd().iterdir()) == ["case.toml", "out"]
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_failed_demand_is_printed_and_sets_the_exit_status(protractile: Protractile) -> None:
     edit("[time]", 'demand = ["S1", "S11"]\n\n[time]')
     for command in (f"run case.toml {SERIES} --out out", "report out"):
@@ -302,6 +304,7 @@ def test_failed_demand_is_printed_and_sets_the_exit_status(protractile: Protract
     assert Path("out/report.html").exists()
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_a_report_is_not_replaced_around_its_reader(
     protractile: Protractile, monkeypatch: pytest.MonkeyPatch
 ) -> None:

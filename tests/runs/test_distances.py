@@ -93,6 +93,7 @@ def shown(data: xr.Dataset, planned: Plan) -> str:
     return captured.get()
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_sweep_reports_the_distances_of_its_models(against: Plan) -> None:
     """Reference: other code path, the tips of both models in one run."""
     data = output.write(against, run(against), Path("out"))
@@ -125,6 +126,7 @@ def test_sweep_reports_the_distances_of_its_models(against: Plan) -> None:
     assert "the time step changes the tip of kantorovich-5 by" in " ".join(table.split())
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_sweep_states_comparison_time_and_step_error(against: Plan) -> None:
     """Reference: analytic: with friction, comparison to the end; other code path: a single run."""
     data = output.write(against, run(against), Path("out"))
@@ -164,6 +166,7 @@ def invented(factor: float, until: float = 0.9) -> Outcome:
     return Outcome({}, {}, {name: {**parts, "tip_off": tip} for name, tip in tips.items()}, until)
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
     """Reference: invented numbers on both sides of the levels. Quantities without values have no
     map.
@@ -183,6 +186,7 @@ def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
     assert labels
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_maps_over_a_third_key_stand_side_by_side(against: Plan, sheets: list[Sheet]) -> None:
     """Reference: invented numbers. Times are written at points with a shorter comparison."""
     keys = ["joint.friction=0.1,0.2", "joint.play=0.008,0.014", "segment.load=20,40"]

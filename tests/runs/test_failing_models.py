@@ -22,7 +22,7 @@ from runs.pipeline.results import Results
 from tests.runs.coarse_case import COARSE
 from tests.system.run_folder import protractile
 
-pytestmark = pytest.mark.usefixtures("few_figures")
+pytestmark = pytest.mark.usefixtures("few_figures", "unprinted")
 
 RUN = "run", "case.toml", "--models", "kantorovich-4,kantorovich-5", "--out", "out"
 # Of kantorovich-4, which would take days.

@@ -27,6 +27,7 @@ def protractile(*arguments: str) -> int | str | None:
     return ended.value.code
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, the length at which q L⁴/(8 E J) is that of 4.321 m."""
     bound = f"tip_at_rest<{static_tip(4.321)}"

@@ -277,6 +277,7 @@ def test_other_sources_are_other_points(
     assert len(ran) == 4
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_failing_model_leaves_a_gap(planned: Planned, ran: list[Case]) -> None:
     """A run with such a short step would take days; a model with its own step is not affected."""
     sweeping = planned("model[1].step=1e-12,1e-5")
