@@ -32,7 +32,7 @@ from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.segment import ReducedSegment, reduce_segment
+from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from shell_model.reduction.symmetry import result_or_compute
 from shell_model.stages import Stages
 from shell_model.stress.fields import gather_fields
@@ -93,14 +93,13 @@ def reduce_boom(
     telescoping = None
     if boom.telescopes:
         fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
-        reduce = partial(_reduce_segment, boom, full, fewer, stages)
+        reduce = partial(_reduce, boom, full, fewer, stages)
         test = options.krylov.tests[0]
         telescoping = TelescopingShell(boom, full, options.mesh_size, reduce, test)
         segments = telescoping.reduced
     else:
-        segments = [
-            _reduce_segment(boom, full, options, stages, n) for n in range(len(full.shells))
-        ]
+        nothing = [np.zeros((shell.free.size, 0)) for shell in full.shells]
+        segments = _reduce(boom, full, options, stages, nothing)
     coordinates = BoomCoordinates(full.comm, full.shells, segments, full.ties, full.lines)
     with stages.stage("rows"):
         own_loads = np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
@@ -182,31 +181,38 @@ def _krylov(options: ShellOptions) -> KrylovOptions:
     return replace(options.krylov, shifts=surface.shifts, moments=surface.moments)
 
 
-def _reduce_segment(
+def _reduce(
     boom: Boom,
     full: BoomShell,
     options: ShellOptions,
     stages: Stages,
-    number: int,
-    *extra_forces: Array,
-) -> ReducedSegment:
-    """Reduce a segment for its forces, ``extra_forces``, outputs and probes. Collective."""
-    joined = full.joint_rows(number)
-    observed = full.columns(number, [seen.operator for seen in full.observed.values()])
-    with stages.stage("reduction", number, len(full.shells)) as progress:
-        forces = np.hstack([full.forces(number), *extra_forces])
-        segment = reduce_segment(
-            full.symmetries[number],
-            forces,
-            _krylov(options),
-            progress,
-            observed,
-            probe_loads(boom, number, full.shells[number]),
-            full.helper,
-        )
-        if options.contact_line == "surface" and joined.size:
-            segment = without_stiff_modes(full.comm, segment, joined)
-    return segment
+    extra_forces: Sequence[Array],
+) -> list[ReducedSegment]:
+    """Reduce all segments for their forces, outputs and probes. Collective.
+
+    ``extra_forces`` are further load vectors (num_owned, num_extra) of each segment.
+    """
+    observed = [seen.operator for seen in full.observed.values()]
+    with stages.stage("reduction") as progress:
+        inputs = [
+            SegmentInputs(
+                symmetry,
+                np.hstack([full.forces(number), extra]),
+                full.columns(number, observed),
+                probe_loads(boom, number, full.shells[number]),
+            )
+            for number, (symmetry, extra) in enumerate(
+                zip(full.symmetries, extra_forces, strict=True)
+            )
+        ]
+        segments = reduce_segments(inputs, _krylov(options), progress, full.helper)
+        if options.contact_line == "surface":
+            joined = [full.joint_rows(number) for number in range(len(segments))]
+            segments = [
+                without_stiff_modes(full.comm, segment, rows) if rows.size else segment
+                for segment, rows in zip(segments, joined, strict=True)
+            ]
+    return segments
 
 
 def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array) -> GapSystem:

@@ -127,8 +127,8 @@ class TelescopingShell:
         boom: boom whose joints have drives.
         full: shells of the boom.
         size: edge length of the meshes in m.
-        reduce: function that reduces a segment, from its index and the forces
-            (num_owned, num_columns) of pads at several extensions.
+        reduce: function that reduces all segments, from the forces (num_owned, num_columns) of
+            pads at several extensions on each.
         test: frequency in Hz at which the error of springs is measured.
 
     Attributes:
@@ -140,15 +140,15 @@ class TelescopingShell:
         boom: Boom,
         full: BoomShell,
         size: float,
-        reduce: Callable[[int, Array], ReducedSegment],
+        reduce: Callable[[Sequence[Array]], list[ReducedSegment]],
         test: float,
     ) -> None:
         self._boom, self._full, self._test = boom, full, test
         self._sampled = _sample_rows(boom, full, size)
         self.reduced: list[ReducedSegment] = []
         self._responses: list[PadResponses] = []
-        for number, symmetry in enumerate(full.symmetries):
-            segment = reduce(number, self._columns(number, _EVERY))
+        segments = reduce([self._columns(number, _EVERY) for number in range(len(full.shells))])
+        for number, (symmetry, segment) in enumerate(zip(full.symmetries, segments, strict=True)):
             columns = self._columns(number)
             self._responses.append(pad_responses(symmetry, columns, test))
             self.reduced.append(self._with_few_modes(number, segment, columns))

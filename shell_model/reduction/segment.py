@@ -12,9 +12,11 @@ full solves at frequencies between the shifts.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import Executor, Future
 from dataclasses import dataclass, replace
+from itertools import islice
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag
@@ -22,6 +24,7 @@ from scipy.linalg import block_diag
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from shell_model.reduction.krylov import ClassCoordinates, KrylovOptions, reduce_class
+from shell_model.reduction.mirror import SymmetryClass
 from shell_model.reduction.symmetry import Job, SymmetryCell, SymmetryReduction, share_jobs
 
 
@@ -45,62 +48,85 @@ class ReducedSegment:
     probe_compliance: Array
 
 
-def reduce_segment(
-    symmetry: SymmetryReduction,
-    inputs: Array,
+class SegmentInputs(NamedTuple):
+    """Data of the reduction of a segment, on the rows of this rank."""
+
+    symmetry: SymmetryReduction  #: symmetry reduction of the full model
+    inputs: Array  #: load vectors (num_owned, num_inputs); they may be zero or dependent
+    outputs: Array  #: output rows (num_owned, num_outputs), whose error is also measured
+    probes: Array  #: load vectors (num_owned, num_probes) of probes
+
+
+def reduce_segments(
+    segments: Sequence[SegmentInputs],
     options: KrylovOptions,
-    progress: Callable[[float], None] | None = None,
-    outputs: Array | None = None,
-    probes: Array | None = None,
+    progress: Callable[[float], None] = lambda _: None,
     helper: Executor | None = None,
-) -> ReducedSegment:
-    """Reduce a segment for its inputs and outputs. Collective.
+) -> list[ReducedSegment]:
+    """Reduce segments for their inputs and outputs. Collective.
 
     Args:
-        symmetry: symmetry reduction of the full model.
-        inputs: load vectors (num_owned, num_inputs); they may be zero or dependent.
+        segments: data of each segment.
         options: shifts and moments, or a tolerance.
         progress: callback that receives the completed fraction, 0 to 1.
-        outputs: output rows (num_owned, num_outputs), whose error is also measured.
-        probes: load vectors (num_owned, num_probes) of probes.
         helper: second process, which reduces every second symmetry class of this rank.
 
     Raises:
-        NumericsError: a compliance is not finite, all inputs are zero, or the tolerance is not met.
+        NumericsError: a compliance is not finite, all inputs of a segment are zero, or the
+            tolerance is not met.
     """
-    comm = symmetry.shell.comm
-    none = np.zeros((len(inputs), 0))
-    jobs = symmetry.jobs(
-        inputs, none if outputs is None else outputs, none if probes is None else probes
-    )
-    symmetry_classes = comm.bcast([job.symmetry_class for job in jobs])
-    if not symmetry_classes:
+    comm = segments[0].symmetry.shell.comm
+    jobs = [one.symmetry.jobs(one.inputs, one.outputs, one.probes) for one in segments]
+    classes = comm.bcast([[job.symmetry_class for job in some] for some in jobs])
+    counts = comm.bcast([[_count_forces(job) for job in some] for some in jobs])
+    if not all(any(some) for some in counts):
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
-    report = progress or (lambda part: None)
+    owners = [one for one, some in zip(segments, counts, strict=True) for _ in some]
     # The maximum number of coordinates of a symmetry class is proportional to the number of its
     # forces.
-    counts = comm.bcast([np.count_nonzero(job.forces.any(axis=0)) for job in jobs])
-
     most = options.most
     class_options = [
-        replace(options, most=most and most * count // sum(counts)) for count in counts
+        replace(options, most=most and most * count // sum(some))
+        for some in counts
+        for count in some
     ]
-    mine = range(comm.rank, len(symmetry_classes), comm.size)
+    mine = range(comm.rank, len(owners), comm.size)
 
     def reduce_here(number: int, job: Job) -> ClassCoordinates:
         done = mine.index(number)
         return _reduce_job(
-            symmetry.cell,
+            owners[number].symmetry.cell,
             job,
             class_options[number],
-            lambda part: report((done + part) / len(mine)),
+            lambda part: progress((done + part) / len(mine)),
         )
 
     def reduce_there(number: int, job: Job) -> Future[ClassCoordinates]:
         assert helper is not None
-        return helper.submit(_reduce_job, symmetry.cell, job, class_options[number])
+        return helper.submit(_reduce_job, owners[number].symmetry.cell, job, class_options[number])
 
-    results = list(share_jobs(comm, jobs, reduce_here, reduce_there if helper else None))
+    every = [job for some in jobs for job in some]
+    results = share_jobs(comm, every, reduce_here, reduce_there if helper else None)
+    return [
+        _join(one.symmetry, some, list(islice(results, len(some))))
+        for one, some in zip(segments, classes, strict=True)
+    ]
+
+
+def _count_forces(job: Job) -> int:
+    return int(np.count_nonzero(job.forces.any(axis=0)))
+
+
+def _join(
+    symmetry: SymmetryReduction,
+    classes: Sequence[SymmetryClass],
+    results: Sequence[tuple[int, ClassCoordinates | None]],
+) -> ReducedSegment:
+    """Return the coordinates of a segment from its symmetry classes. Collective.
+
+    Results are the rank of each class, and its coordinates on that rank.
+    """
+    comm = symmetry.shell.comm
     parts = [
         comm.bcast(None if one is None else one._replace(shapes=np.empty(0)), root)
         for root, one in results
@@ -109,12 +135,11 @@ def reduce_segment(
     accurate = np.concatenate([part.accurate for part in parts])
     order = np.argsort(omega2, kind="stable")
     # The shapes of a class are inserted at once, since a second array of all shapes would be large.
-    shapes = np.empty((len(inputs), omega2.size), order="F")
+    shapes = np.empty((symmetry.shell.free.size, omega2.size), order="F")
     places = np.split(np.argsort(order), np.cumsum([part.omega2.size for part in parts])[:-1])
-    for symmetry_class, (root, one), columns in zip(symmetry_classes, results, places, strict=True):
+    for symmetry_class, (root, one), columns in zip(classes, results, places, strict=True):
         on_cell = None if one is None else one.shapes
         shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
-    report(1.0)
     # The limit is the last frequency before the first inaccurate one.
     accurate = accurate[order]
     first_inaccurate = accurate.size if accurate.all() else int(np.argmin(accurate))

@@ -2,6 +2,7 @@
 """Shells of booms, each reduced once, and their comparison with beams."""
 
 from collections.abc import Sequence
+from concurrent.futures import Executor
 from functools import cache
 from typing import Any
 
@@ -20,7 +21,7 @@ from geometry.contact_places import ContactLine
 from shell_model.boom_shell import ShellOptions
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.segment import reduce_segment
+from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.statics import static_response
@@ -68,6 +69,19 @@ def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
 def bonded_beams(boom: Boom, length: float = 0.25) -> GapSystem:
     """Return bonded Timoshenko elements of a length in m."""
     return gap_system(boom.bonded, finite_element_segments(boom, length, "timoshenko", True))
+
+
+def reduce_segment(
+    symmetry: SymmetryReduction,
+    inputs: Array,
+    options: KrylovOptions,
+    outputs: Array | None = None,
+    helper: Executor | None = None,
+) -> ReducedSegment:
+    """Reduce one segment, without probes."""
+    none = np.zeros((len(inputs), 0))
+    data = SegmentInputs(symmetry, inputs, none if outputs is None else outputs, none)
+    return reduce_segments([data], options, helper=helper)[0]
 
 
 def frequencies_off(shell: SegmentShell, direction: Direction = "z", count: int = 1) -> Array:

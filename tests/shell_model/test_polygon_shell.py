@@ -27,14 +27,18 @@ from geometry.polygon import PolygonSection
 from geometry.section import BoxSection, Section
 from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.segment import reduce_segment
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell
 from studies import sections
 from tests.shell_model.booms import STEEL, flat_boom, two_segments
 from tests.shell_model.conftest import BOX, UNEQUAL
-from tests.shell_model.models import assert_rests_as_beams, frequencies_off, reduced
+from tests.shell_model.models import (
+    assert_rests_as_beams,
+    frequencies_off,
+    reduce_segment,
+    reduced,
+)
 
 Shells = Callable[..., SegmentShell]
 

@@ -15,13 +15,14 @@ from geometry.arrays import Array
 from runs.process.workers import workers
 from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.segment import ReducedSegment, reduce_segment
+from shell_model.reduction.segment import ReducedSegment
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver, times
 from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD
+from tests.shell_model.models import reduce_segment
 
 Shells = Callable[..., SegmentShell]
 

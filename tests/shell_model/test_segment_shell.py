@@ -14,7 +14,6 @@ from geometry.contact_places import ContactInterval
 from geometry.section import BoxSection
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.segment import reduce_segment
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import times
@@ -22,6 +21,7 @@ from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD, STEEL, box_segment
 from tests.shell_model.conftest import BOX, compliance
+from tests.shell_model.models import reduce_segment
 
 Shells = Callable[..., SegmentShell]
 
