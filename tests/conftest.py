@@ -171,6 +171,8 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         # Ranks wait by looking again and again: those that share a core, and yield it, take no
         # other core from the tests of other workers.
         "OMPI_MCA_mpi_yield_when_idle": "1",
+        # A job that fails waits for nothing before it is killed.
+        "OMPI_MCA_odls_base_sigkill_timeout": "0",
     }
 
     def run(ranks: int, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:

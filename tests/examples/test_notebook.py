@@ -16,6 +16,7 @@ FILE = EXAMPLES / "notebook.ipynb"
 
 @pytest.mark.slow
 @pytest.mark.filterwarnings("default")
+@pytest.mark.usefixtures("in_this_process")
 def test_a_notebook_gives_its_outputs_again() -> None:
     """Reference: its own outputs, line by line, and analytic results for what it computes."""
     kept = json.loads(FILE.read_text("utf-8"))

@@ -328,9 +328,7 @@ def test_bad_meshes_are_refused(changes: dict[str, Any], message: str) -> None:
         mesh_quarter(MESHED, **arguments)
 
 
-TINY = Sizes(
-    walls=(0.04,), triangles=(0.2, 0.1, 0.05), splits=(1, 2, 4), along=(0.1, 0.5), around=0.3
-)
+TINY = Sizes(walls=(0.04,), triangles=(0.2, 0.1, 0.05), splits=(1, 2), along=(0.1, 0.5), around=0.3)
 
 
 def comparison(wall: float, error: float) -> Comparison:
