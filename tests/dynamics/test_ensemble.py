@@ -104,22 +104,19 @@ def test_members_make_the_steps_of_the_first() -> None:
     assert ensemble.attrs["integrator"] == "AdaptiveStep(tolerance=0.01)"
 
 
-@pytest.mark.parametrize("integrator", [FixedStep(1e-3), AdaptiveStep(1e-2)])
-def test_other_processes_give_the_same(integrator: Integrator) -> None:
+def test_other_processes_give_the_same() -> None:
     """Reference: other code path. The motion is chaotic, so that any difference of bits would
     grow.
     """
-    found = []
+    motion = Motion(CHAOTIC, 20.0, 1e-2, velocity=THROWN)
     with ProcessPoolExecutor(1, get_context("spawn")) as processes:
         assert processes.submit(os.getpid).result() != os.getpid()
-        for executor in (None, processes):
-            found.append(
-                integrate_ensemble(
-                    Motion(CHAOTIC, 20.0, 1e-2, velocity=THROWN),
-                    5, 1e-6, 3, "load", integrator, executor,
-                )
-            )  # fmt: skip
-    xr.testing.assert_identical(*found)
+        for integrator in (FixedStep(1e-3), AdaptiveStep(1e-2)):
+            one, other = (
+                integrate_ensemble(motion, 5, 1e-6, 3, "load", integrator, executor)
+                for executor in (None, processes)
+            )
+            xr.testing.assert_identical(one, other)
 
 
 OTHER_RANK = """

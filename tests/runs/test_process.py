@@ -43,8 +43,7 @@ def test_a_full_disk_is_one_line() -> None:
 
 
 @pytest.mark.parametrize(
-    "line",
-    ["check >&-", "check 2>&- >/dev/null", "check | head -n 1", "check | true", "schema | true"],
+    "line", ["check >&-", "check 2>&- >/dev/null", "check | true", "schema | true"]
 )
 def test_closed_output_pipe_ends_without_an_error(line: str) -> None:
     """The reader of the long schema closes the pipe early."""
