@@ -69,7 +69,7 @@ class Calibration:
         return with_springs(gap_system(stiff, segments, EACH_SIDE), self.residual)
 
     def spring(self, row: int) -> float | None:
-        """Return the stiffness in N/m in series with a contact row; None if it is rigid."""
+        """Return the stiffness in N/m of a contact row's local compliance; None without any."""
         compliance = float(self.residual[row, row])
         return 1.0 / compliance if compliance > 0.0 else None
 

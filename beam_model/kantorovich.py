@@ -49,7 +49,7 @@ def check_base(boom: Boom, base: Base) -> None:
     """Check that a base admits the supports of the boom.
 
     Raises:
-        BoomError: a boom with clamped or elastic supports or a cylinder needs the complete base.
+        BoomError: clamped or elastic supports, or a cylinder, require the complete basis.
     """
     for segment in boom.segments:
         _check_supports(segment, base)
@@ -85,11 +85,11 @@ def kantorovich_segment(
         segment: segment; with lateral properties the model includes deflection along y in the same
             spaces, and twist.
         terms: number of functions of each component.
-        base: interpretation of (29) and (31); twist always has the complete base.
+        base: basis functions of (29) and (31); twist always uses the complete basis.
         rotary_inertia: whether the mass matrix includes I_p of (3) and (9); (21) neglects it.
 
     Raises:
-        BoomError: clamped or elastic supports need the complete base.
+        BoomError: clamped or elastic supports require the complete basis.
     """
     components: dict[Motion, Component] = {
         "z": kantorovich_bending(segment, terms, base, rotary_inertia)
@@ -189,7 +189,7 @@ def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
     """Return the functions of the deflection in one interpretation of (29)–(31).
 
     Raises:
-        BoomError: clamped or elastic supports need the complete base.
+        BoomError: clamped or elastic supports require the complete basis.
     """
     if base == "complete":
         conditions = [

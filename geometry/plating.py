@@ -86,7 +86,7 @@ def add_thickness(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
 
 
 def plain_thickness(section: Section, mesh: SegmentMesh) -> Array:
-    """Return the thickness (num_triangles,) in m of walls without collars, 0 on diaphragms."""
+    """Return the wall thickness (num_triangles,) in m, without collars; 0 on diaphragms."""
     of_wall = [plate.thickness for plate in section.plates]
     return np.asarray(np.array([*of_wall, 0.0])[np.minimum(mesh.walls, len(of_wall))])
 

@@ -49,7 +49,7 @@ class TelescopingStations:
 
 
 def telescoping_stations(boom: Boom) -> list[TelescopingStations]:
-    """Return the moving stations of each joint with a drive, and of stops."""
+    """Return the stations that drives move, by drives; stops are stations, too."""
     moved: dict[tuple[int, ...], list[int]] = {}
     for station, joints in _driven_stations(boom):
         if joints:
@@ -102,7 +102,7 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
 
 
 def farthest_travel(boom: Boom, segment: int) -> float:
-    """Return the largest outward travel of a segment in m, or inward (negative) without outward."""
+    """Return the largest outward travel of a segment in m, else the inward one as negative."""
     drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
     reaches = [drive.reach for drive in drives if drive is not None]
     return sum(high or low for low, high in reaches)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results of the live page's beam for edited values: static results, then the motion.
+"""Results of the beam on the live page after edits: static results, then the motion.
 
 A shell of the same geometry in the cache calibrates the beam.
 """

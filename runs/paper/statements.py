@@ -37,5 +37,5 @@ class CaseKeys(CaseTable):
     """the statements of the paper that the run must reproduce"""
 
     def without_judgements(self) -> Self:
-        """Return the case without the keys of statements."""
+        """Return the case without ``statements`` and ``demand``."""
         return self.model_copy(update={"statements": (), "demand": ()})

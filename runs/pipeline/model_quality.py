@@ -157,8 +157,8 @@ def quality_notes(
         if (error := model.reduction_errors.get("contact_compliance")) is not None:
             yield QualityNote(
                 "reduction",
-                f"{name}: the reduced shell of {model.modes} coordinates reproduces the local "
-                f"contact compliance within {error:.1g}.",
+                f"{name}: the reduced shell of {model.modes} generalised coordinates reproduces "
+                f"the local contact compliance within {error:.1g}.",
             )
     for name, model in models.items():
         if model.mesh_error is not None:

@@ -71,7 +71,7 @@ def wall_part(beam: BeamStates) -> float | None:
 
 
 def deflection_advice(beam: BeamStates | None) -> str:
-    """Return the advice on a large deflection: pads if walls under them govern it, else units."""
+    """Return advice on a large deflection: on pads if walls under them govern, else on units."""
     governing = beam is not None and (wall_part(beam) or 0.0) > GOVERNING_SHARE
     return "walls under pads cause most of it; change the pads" if governing else CHECK_UNITS
 
@@ -82,8 +82,8 @@ def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
     if not names or not any(joint.padded for joint in boom.joints):
         return ""
     return (
-        f"Walls under pads are rigid in {join_words(names)}. Shells, calibrated beams and the "
-        "estimates of `check` include their compliance."
+        f"Walls under pads are rigid in {join_words(names)}. Shells, calibrated beams and `check` "
+        "include the compliance of these walls."
     )
 
 

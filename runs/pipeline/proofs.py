@@ -31,9 +31,12 @@ from runs.report.tables import Column, Table
 
 # Formula of each proof.
 FORMULAS: Mapping[str, str] = {
-    "yield": "√(σ² + 3 τ²) ≤ f_y(t)/γ; σ of outer fibres, τ mean of the wall (EN 1993-1-1, 6.2.1)",
+    "yield": (
+        "√(σ² + 3 τ²) ≤ f_y(t)/γ; σ of outer fibres, τ mean of the wall of thickness t "
+        "(EN 1993-1-1, 6.2.1)"
+    ),
     "plate": (
-        "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ and χ at √(α_ult/α_cr) of panel formulas "
+        "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ and χ at √(α_ult/α_cr), α_cr by panel formulas "
         "(EN 1993-1-5, 10)"
     ),
     "patch": "σ_v ≤ f_y/γ; mean von Mises stress of the shell over half a wall near a force",
@@ -41,7 +44,7 @@ FORMULAS: Mapping[str, str] = {
         "σ_v ≤ ρ f_y/γ; α_cr is the lowest factor of the shell, ρ the lower of ρ and χ at "
         "√(f_y/(σ_v α_cr)) (EN 1993-1-5, 10)"
     ),
-    "column": "N ≤ N_cr/γ, joints in contact; stresses and tip contain N by second order",
+    "column": "N ≤ N_cr/γ with closed contacts; stresses and tip include second-order effects of N",
     "pad": "F/(length · width) ≤ allowable pressure/γ, for one pad of a pair",
     "cylinder": "F ≤ capacity/γ",
     "pin": "F ≤ 0.6 n A f_up/γ, n shear planes (EN 1993-1-8, table 3.10)",
@@ -325,6 +328,8 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     if steels and requested_proofs & {"yield", "plate"}:
         names = ", ".join(steels)
         yield f"No proof: yield and plate buckling of {names}, without yield strength."
+    if "yield" in requested_proofs and not any(state.walls for state in states):
+        yield "No proof: local plate stress at pads, without a shell."
     pressures = any(one.utilisation is not None for one in beam.rests[0].stations)
     if "pad" in requested_proofs and boom.joints and not pressures:
         yield "No proof: pads, without allowable_pressure."

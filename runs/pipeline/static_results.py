@@ -274,7 +274,7 @@ def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
         for one in rest.stations
         if one.direction == "y" and one.closed > BULGED * plays[one.x]
     ]
-    text = f"caution: {where} walls bulge under vertical pads at rest and close lateral play: "
+    text = f"caution: {where}, static pad forces bulge walls and reduce the lateral play: by "
     return [f"{text}{', '.join(bulges)}; beams with rigid walls do not show this"] if bulges else []
 
 

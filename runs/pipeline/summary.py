@@ -222,7 +222,7 @@ class Comparisons(SummaryTable):
 
 
 class Ensembles(EnsembleTable):
-    """Table ``ensemble`` of the case, with the cut-off ``slow_below`` of the slow motion in Hz."""
+    """Table ``ensemble`` of the case; ``slow_below`` is the low-pass cut-off in Hz."""
 
     slow_below: float | None
 

@@ -87,10 +87,10 @@ def contact_peaks(run: FigureContext) -> list[Figure]:
         f": up to {max(largest_peaks) * TO_KILO:.0f} kN" if largest_peaks else ""
     )
     caption = (
-        f"Largest contact force at each station in every {run.time[-1] / len(bins):.2g} s, "
-        "upwards or downwards, on a logarithmic scale. Forces below "
-        f"{LEAST_FORCE * TO_KILO:g} kN are not plotted. Use the mean contact force to size pads "
-        "and walls." + initial_position_note(run.case)
+        f"Largest contact force at each station in each interval of "
+        f"{run.time[-1] / len(bins):.2g} s, upwards or downwards, on a logarithmic scale. Forces "
+        f"below {LEAST_FORCE * TO_KILO:g} kN are not plotted. Use the mean contact force to size "
+        "pads and walls." + initial_position_note(run.case)
     )
     return [run.finish(sheet, panels[0], "contact-peaks", title, caption)]
 
@@ -288,9 +288,9 @@ def stress_history(run: FigureContext) -> list[Figure]:
         )
         caption = (
             f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "
-            f"each station and support, in every {run.time[-1] / time.size:.2g} s. Beside a "
-            f"contact line the stress of a triangle grows with mesh refinement: use it only for "
-            f"place and time. The mean over a patch of half a wall converges."
+            f"each station and support, in each interval of {run.time[-1] / time.size:.2g} s. "
+            "Beside a contact line the stress of a triangle grows with mesh refinement: use it "
+            "only for place and time. The mean over a patch of half a wall converges."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))
     return figures

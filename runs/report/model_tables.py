@@ -124,8 +124,8 @@ def step_table(results: Results) -> Table:
         Column("contact changes", [model.contact_changes for model in models]),
     ]
     notes = [
-        "Step error: differences of deflections between the step and twice the step, summed over "
-        "windows of the motion. In chaotic motion no step meets a tolerance. Contact changes: "
+        "Step error: difference between the deflections with this step and with twice this step, "
+        "summed over windows of time. In chaotic motion no step size converges. Contact changes: "
         "openings and closings."
     ]
     tried = [model.steps_for_peaks for model in models]
@@ -191,7 +191,7 @@ def lateral_peak_table(results: Results) -> Table | None:
         columns += [
             Column(way, [time for time, _ in first_peaks], ".3f", "s"),
             Column(way, [height for _, height in first_peaks], ".1f", "mm"),
-            Column(f"{way}, off {reference}", differences, ".2g", "%"),
+            Column(f"{way}, difference from {reference}", differences, ".2g", "%"),
         ]
     return Table("First peaks of the tip in space", columns, name="space")
 
@@ -242,8 +242,8 @@ def wall_table(results: Results) -> Table:
     largest = [f"{name}: {_largest(results.boom, stress)}" for name, stress in shells.items()]
     means = (
         "Means over the row of elements at x, on the side of the tip. Axial forces are positive "
-        "in tension; shear forces act on the part before the section, along each wall, upwards "
-        "in steep walls and towards larger y in others; moments about the y-axis are "
+        "in tension. Shear forces act on the part towards the base, upwards in steep walls and "
+        "towards larger y in others; moments about the y-axis are "
         "positive with tension at the top."
     )
     title = "Section forces of walls at the instant of the largest stress"

@@ -184,8 +184,8 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
         if run.regular or run.ensembles is not None:
             return ""
         return (
-            " After the first contacts a curve with play may be one of many possible motions; an "
-            "ensemble shows whether it is."
+            " After the first contacts, motion with play may be chaotic: then a curve is one of "
+            "many possible motions. An ensemble shows whether it is chaotic."
         )
     low, high = BAND
     band = (
@@ -242,7 +242,7 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
 
 
 def horizons(run: FigureContext) -> list[Figure]:
-    """Draw the horizons of each model over the relative change of its data."""
+    """Draw each model's predictability horizon over the relative perturbation of its data."""
     measured = {
         name: horizons_of_model
         for name in run.with_play
@@ -309,7 +309,7 @@ def energies(run: FigureContext) -> list[Figure]:
     hatched = f"; hatched: {losses}" if lost else ""
     more = " and the initial energy" if start else ""
     caption = (
-        f"Strain, kinetic and contact energy of {name} on top of one another{hatched}. Their sum "
+        f"Stacked: strain, kinetic and contact energy of {name}{hatched}. Their sum "
         f"equals the {of}{more}, except for the residual in the next figure."
     )
     title = f"{name}: work of the loads, stored and dissipated energy"

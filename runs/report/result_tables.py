@@ -151,7 +151,8 @@ def mode_table(results: Results) -> Table:
         for name, frequencies in of.items()
     ]
     notes = (
-        "Contacts that are closed in the static state at t = 0 remain closed, other contacts open.",
+        "The modes keep the contacts of the static state at t = 0: closed ones stay closed, open "
+        "ones stay open.",
     )
     return Table("Modes in the static state at t = 0", columns, notes, "modes")
 
@@ -416,7 +417,7 @@ def life_table(results: Results) -> Table:
         columns.append(Column("damage of the life", [one.life_damage for one in lives], ".3g"))
     notes = [
         "Rainflow ranges of the outer fibre's stress where it varies most. Damage-equivalent "
-        "range: one cycle of this range per run causes the same damage at the slope 3."
+        "range: one cycle of this range causes the damage of a run, on an S-N curve of slope 3."
     ]
     if len(columns) > 6:
         notes.append("Runs to failure: number of runs until the damage is 1; empty without damage.")

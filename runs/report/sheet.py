@@ -79,7 +79,7 @@ class Camera:
         return np.asarray(self.centre - distance * self.axes[2])
 
     def project(self, points: npt.ArrayLike) -> Array:
-        """Return the pixels (..., 2) from the lower left corner of points (..., 3) in m."""
+        """Return the pixel coordinates (..., 2) of points (..., 3) in m, from the lower left."""
         right, up, depth = np.moveaxis((np.asarray(points) - self.position) @ self.axes.T, -1, 0)
         magnification = 0.5 * self.pixels[1] / np.tan(np.radians(0.5 * VIEW_ANGLE)) / depth
         middle = 0.5 * np.array(self.pixels)

@@ -118,7 +118,7 @@ def deviation_note(results: Results) -> str:
     if not deviations:
         return ""
     behind = [name for name in results.summary.models if name not in results.main_models]
-    more = f" For {join_words(behind)} see the tables and figures below." if behind else ""
+    more = f" Tables and figures below include {join_words(behind)}." if behind else ""
     return (
         f"Deviation of the static tip deflection (maximum load) from {reference}: "
         f"{', '.join(deviations)}.{more}"
@@ -141,8 +141,8 @@ def play_effect(results: Results) -> str:
     sentences += [f"It hardly changes {join_words(same)}."] if same else []
     frequency = first.get("first frequency")
     if frequency is not None and frequency.bonded and not is_negligible(frequency):
-        both = f"{amount(frequency.with_play, 'Hz')} in place of {amount(frequency.bonded, 'Hz')}"
-        sentences.append(f"The first frequency is {both}.")
+        both = f"from {amount(frequency.bonded, 'Hz')} to {amount(frequency.with_play, 'Hz')}"
+        sentences.append(f"It changes the first frequency {both}.")
     return " ".join(sentences)
 
 

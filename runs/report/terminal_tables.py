@@ -150,8 +150,8 @@ def _model_notes(results: Results) -> Iterator[str]:
     for name, model in results.summary.models.items():
         if errors := model.reduction_errors:
             yield (
-                f"{name}: {model.modes} coordinates; reduction error of the local contact "
-                f"compliance {number(errors['contact_compliance'], 1)}, of the deflections of tip "
-                f"and head {number(errors['readings'], 1)}; mesh error of the local compliance "
+                f"{name}: {model.modes} generalised coordinates. Reduction errors: local contact "
+                f"compliance {number(errors['contact_compliance'], 1)}, deflections of tip and "
+                f"head {number(errors['readings'], 1)}. Mesh error of the local compliance: "
                 f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}"
             )

@@ -99,7 +99,7 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
     told = answering(results, play=[PlayEffect(PLAYED, numbers)])
     assert play_effect(told) == (
         "Play adds 50 mm (+50 %) to the static tip deflection (maximum load) and 20 MPa "
-        "(+20 %) to the maximum bending stress. The first frequency is 1.5 Hz in place of 2 Hz."
+        "(+20 %) to the maximum bending stress. It changes the first frequency from 2 Hz to 1.5 Hz."
     )
     rows = cells(play_table(told))
     assert rows["stress, inner"]["play adds"] == "−10 MPa"
