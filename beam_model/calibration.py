@@ -27,7 +27,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.reduction import with_coordinates
 from geometry.arrays import Array
 from geometry.boom import Boom, Segment
-from geometry.probe_responses import ProbedMotion, ProbeResponses
+from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 
 # Regularisation weight of the logarithms of factors in the least squares. It determines only a
 # stiffness without influence on the responses.
@@ -215,7 +215,7 @@ def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: 
 
     def errors(logarithms: Array) -> Array:
         component, _ = _component(segment, probed, motion, np.exp(logarithms))
-        sigma = (2.0 * np.pi * probed.frequency) ** 2
+        sigma = (2.0 * np.pi * PROBE_FREQUENCY) ** 2
         pushes = _probes(component, probed, motion).T @ balanced
         beam = pushes.T @ np.linalg.solve(component.stiffness + sigma * component.mass, pushes)
         return np.concatenate([((beam - shell) / sizes)[pairs], _PRIOR * logarithms])

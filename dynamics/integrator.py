@@ -209,13 +209,14 @@ class AdaptiveStep:
 
 @dataclass(frozen=True, slots=True)
 class _WindowError:
-    """Difference of observed deflections between a step and twice the step.
+    """Difference between the deflections computed with a step and with twice that step.
 
     Args:
         rows: rows (num_observed, num_modes) of the deflections.
         period: period of the slowest elastic mode in s.
         places, speeds: free response (num_times, num_observed, num_modes) of the deflections to
-            unit coordinates and unit velocities, over a quarter period.
+            a unit initial displacement and a unit initial velocity of each mode, over a quarter of
+            the period.
     """
 
     rows: Array

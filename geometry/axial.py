@@ -153,8 +153,9 @@ def moving_force(
 ) -> MovingForce | None:
     """Return the axial force that moves with a telescoping joint; None if there is none.
 
-    If the lock is fixed to the inner segment, the force moves along the outer segment. If it is
-    fixed to the outer segment, the force moves along the inner segment, except below its tail.
+    The lock is the place where the inner segment transfers its axial force. If it is fixed to the
+    inner segment, the force moves along the outer segment. If it is fixed to the outer segment,
+    the force moves along the inner segment; there is none if the lock is below its tail.
     """
     joint = joints[number]
     inner, force = segments[joint.inner], joint_thrust(segments, joints, number)

@@ -16,6 +16,9 @@ from geometry.boom import Boom
 
 ProbedMotion = Literal["z", "y", "twist"]
 
+# Frequency of probes in Hz, far below all elastic modes.
+PROBE_FREQUENCY = 2.0
+
 
 @dataclass(frozen=True, slots=True)
 class ProbeResponses:
@@ -23,10 +26,9 @@ class ProbeResponses:
 
     #: ascending x in m of forces and torques. Moments act at the first and the last x.
     places: tuple[float, ...]
-    #: matrices (num_probes, num_probes) in m/N, rad/N and rad/(N·m) at the shift of ``frequency``,
-    #: keyed by motion; for bending, forces come before moments
+    #: matrices (num_probes, num_probes) in m/N, rad/N and rad/(N·m) at ``PROBE_FREQUENCY``, keyed
+    #: by motion; for bending, forces come before moments
     compliance: Mapping[ProbedMotion, Array]
-    frequency: float  #: frequency f in Hz of the shift σ = (2π f)², far below all elastic modes
 
 
 def probe_places(boom: Boom, number: int) -> tuple[float, ...]:

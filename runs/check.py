@@ -466,7 +466,7 @@ def _static_lines(
     beam: BeamStates | None,
     advise: Callable[[], str],
 ) -> Iterator[str]:
-    """Yield the static tip deflection, the first frequency, the tilts by play, and cautions."""
+    """Yield static tip deflection, first frequency, joint rotations due to play, and cautions."""
     if static is None or beam is None:
         yield "There is no static equilibrium under the loads at t = 0."
         return

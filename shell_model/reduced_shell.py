@@ -31,7 +31,6 @@ from shell_model.contact.local_compliance import (
 from shell_model.contact.rows import ties
 from shell_model.contact.surface import without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
-from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from shell_model.reduction.symmetry import result_or_compute
 from shell_model.stages import Stages
@@ -139,7 +138,7 @@ def reduce_boom(
         meshes=[shell.mesh for shell in full.shells if shell.mesh is not None],
         critical_factor=critical_factor(boom, full, segments),
         probe_responses=[
-            probe_responses(boom, number, segment.probe_compliance, _krylov(options).shifts[0])
+            probe_responses(boom, number, segment.probe_compliance)
             for number, segment in enumerate(segments)
         ],
         own_loads=own_loads,
@@ -173,14 +172,6 @@ def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> 
     return compliance(apart.omega2, rows.reshape(-1, apart.omega2.size)), lost
 
 
-def _krylov(options: ShellOptions) -> KrylovOptions:
-    """Return the options of the reduction for the contact line."""
-    if options.contact_line != "surface":
-        return options.krylov
-    surface = options.surface
-    return replace(options.krylov, shifts=surface.shifts, moments=surface.moments)
-
-
 def _reduce(
     boom: Boom,
     full: BoomShell,
@@ -192,7 +183,10 @@ def _reduce(
 
     ``extra_forces`` are further load vectors (num_owned, num_extra) of each segment.
     """
-    observed = [seen.operator for seen in full.observed.values()]
+    krylov, observed = options.krylov, [seen.operator for seen in full.observed.values()]
+    at_surface = options.contact_line == "surface"
+    if at_surface:
+        krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
     with stages.stage("reduction") as progress:
         inputs = [
             SegmentInputs(
@@ -205,8 +199,8 @@ def _reduce(
                 zip(full.symmetries, extra_forces, strict=True)
             )
         ]
-        segments = reduce_segments(inputs, _krylov(options), progress, full.helper)
-        if options.contact_line == "surface":
+        segments = reduce_segments(inputs, krylov, progress, full.helper)
+        if at_surface:
             joined = [full.joint_rows(number) for number in range(len(segments))]
             segments = [
                 without_stiff_modes(full.comm, segment, rows) if rows.size else segment

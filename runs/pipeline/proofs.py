@@ -114,7 +114,7 @@ class Proof(NamedTuple):
         place += "" if self.x is None else f" at {system.text(self.x, 'm')}"
         return (
             f"{self.kind}{place}: {demand} {relation} {resistance} "
-            f"({100.0 * self.utilisation:.3g} %) in {self.combination}"
+            f"({100.0 * self.utilisation:.3g} %), combination {self.combination!r}"
         )
 
 

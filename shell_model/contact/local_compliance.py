@@ -121,14 +121,14 @@ def probe_loads(boom: Boom, number: int, shell: SegmentShell) -> Array:
     return np.array(loads).T
 
 
-def probe_responses(boom: Boom, number: int, compliance: Array, frequency: float) -> ProbeResponses:
+def probe_responses(boom: Boom, number: int, compliance: Array) -> ProbeResponses:
     """Return the probe responses of a segment from the compliance of its :func:`probe_loads`.
 
-    The compliance is (num_probes, num_probes), for a shift at a frequency in Hz.
+    The compliance is (num_probes, num_probes), at ``PROBE_FREQUENCY``.
     """
     places, responses, first = probe_places(boom, number), {}, 0
     motions: Sequence[ProbedMotion] = [*boom.directions, "twist"] if boom.spatial else ["z"]
     for motion in motions:
         block = slice(first, first + len(places) + (0 if motion == "twist" else 2))
         responses[motion], first = compliance[block, block], block.stop
-    return ProbeResponses(places, responses, frequency)
+    return ProbeResponses(places, responses)

@@ -14,6 +14,7 @@ from scipy.linalg import eigh
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array, Mask
+from geometry.probe_responses import PROBE_FREQUENCY
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, times
 
@@ -67,8 +68,8 @@ class ClassCoordinates(NamedTuple):
         compliance_error, output_error, lost_compliance: errors as in ``ReducedSegment``.
         accurate: mask (num_modes,) of modes with a natural frequency within 0.1 %.
         geometric: K_G (num_modes, num_modes), to be subtracted from diag(ω²).
-        probe_compliance: compliance (num_probes, num_probes) of the full model to probes, at the
-            first shift.
+        probe_compliance: compliance (num_probes, num_probes) of the full model to probes, at
+            ``PROBE_FREQUENCY``.
     """
 
     omega2: Array
@@ -109,12 +110,11 @@ def reduce_class(
     order, tests = list(options.order), options.tests
     stages = len(order) + len(tests)
     basis = _Basis(shell, forces, options.most)
-    solve = ShiftedSolver(shell, order[0] if options.tolerance is None else tests[0])
-    if options.tolerance is not None:
-        full = [_FullResponse.at(frequency, solve, forces, rows) for frequency in tests]
-    solve.move(order[0])
+    solve = ShiftedSolver(shell, PROBE_FREQUENCY)
     probes = probes * shell.free[:, None]
     probe_compliance = probes.T @ solve(probes)
+    if options.tolerance is not None:
+        full = [_FullResponse.at(frequency, solve, forces, rows) for frequency in tests]
     for done, frequency in enumerate(order, start=1):
         solve.move(frequency)
         grown = basis.grow(solve)

@@ -44,7 +44,7 @@ class ReducedSegment:
     lost_compliance: Array
     frequency_limit: float  #: frequency in Hz up to which natural frequencies are accurate to 0.1 %
     geometric: Array  #: K_G (num_modes, num_modes), to be subtracted from diag(ω²)
-    #: compliance (num_probes, num_probes) of the full model to probes, at the first shift
+    #: compliance (num_probes, num_probes) of the full model to probes, at ``PROBE_FREQUENCY``
     probe_compliance: Array
 
 

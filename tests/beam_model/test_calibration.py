@@ -15,7 +15,7 @@ from beam_model.calibration import (
 )
 from beam_model.finite_element import finite_element_segment
 from geometry.boom import Material, Segment, Support
-from geometry.probe_responses import ProbedMotion, ProbeResponses
+from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 from geometry.section import BoxSection
 from tests.beam_model.test_section_fields import MODES, system
 
@@ -36,11 +36,11 @@ def probed(segment: Segment) -> ProbeResponses:
         rows = [component.at(x) for x in PLACES]
         if motion != "twist":
             rows += [component.rotation_at(x) for x in (PLACES[0], PLACES[-1])]
-        sigma = (2.0 * np.pi * 5.0) ** 2
+        sigma = (2.0 * np.pi * PROBE_FREQUENCY) ** 2
         probes = np.array(rows)
         solved = np.linalg.solve(component.stiffness + sigma * component.mass, probes.T)
         found[motion] = probes @ solved
-    return ProbeResponses(PLACES, found, 5.0)
+    return ProbeResponses(PLACES, found)
 
 
 @pytest.mark.parametrize(

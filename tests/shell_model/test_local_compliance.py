@@ -13,6 +13,7 @@ from beam_model.calibration import Stiffness, effective_stiffness
 from beam_model.wall_compliance import contact_compliance
 from dynamics.contact import PowerContact
 from geometry.boom import Boom, Collar, PadSize, Stop, Support
+from geometry.probe_responses import PROBE_FREQUENCY
 from shell_model.boom_shell import ShellOptions, assemble_segments
 from shell_model.contact.local_compliance import (
     SLOW,
@@ -90,8 +91,10 @@ def stiffness(boom: Boom, contact_tolerance: float | None = None) -> list[Stiffn
     shells = assemble_segments(boom, options, MPI.COMM_WORLD)
     found = []
     for number, (segment, shell) in enumerate(zip(boom.segments, shells, strict=True)):
-        moved = shell_compliance(SymmetryReduction(shell), probe_loads(boom, number, shell), 2.0)
-        found.append(effective_stiffness(segment, probe_responses(boom, number, moved, 2.0)))
+        moved = shell_compliance(
+            SymmetryReduction(shell), probe_loads(boom, number, shell), PROBE_FREQUENCY
+        )
+        found.append(effective_stiffness(segment, probe_responses(boom, number, moved)))
     return found
 
 
