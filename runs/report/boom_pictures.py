@@ -24,7 +24,7 @@ from runs.report.scene import (
     Numbers,
     Scene,
 )
-from runs.report.sheet import MATTE, SHEET, Camera, Sheet, sharp_edges, stage, surface
+from runs.report.sheet import MATTE, SHEET, UNLIT, Camera, Sheet, sharp_edges, stage, surface
 from runs.report.symbols import marker_style
 
 PIXELS = (SHEET[0], 470)
@@ -161,13 +161,13 @@ def draw_boom(
         # The undeformed boom is slightly farther from the camera, so that the deformed boom hides
         # it where both coincide.
         behind = view.edges_at(view.rest.points + np.array([0.0, 0.02, 0.0]))
-        plotter.add_mesh(behind, color=theme.FAINT, line_width=3.0 * part, lighting=False)
+        plotter.add_mesh(behind, color=theme.FAINT, line_width=3.0 * part, **UNLIT)
         boom = view.rest.copy()
         boom["deflection"] = np.zeros(boom.n_points)
         colours = {"cmap": theme.DEFLECTION, "clim": (0.0, view.largest)}
         plotter.add_mesh(boom, scalars="deflection", **colours, **MATTE)
         edges = view.edges_at(boom.points)
-        plotter.add_mesh(edges, color=theme.INK, line_width=2.4 * part, lighting=False)
+        plotter.add_mesh(edges, color=theme.INK, line_width=2.4 * part, **UNLIT)
         displacements = scene.displacements([instant.time for instant in instants])
         for instant, displacement in zip(instants, displacements, strict=True):
             places = view.places(displacement, instant.time)
@@ -253,7 +253,7 @@ def _draw_mode(heading: str, points: Array, triangles: Numbers, shape: Array, pa
             wall, scalars="size", cmap=theme.DEFLECTION, clim=(0.0, 1.0), show_edges=True, **MATTE
         )
         edges = sharp_edges(surface(sides * points, triangles[near]))
-        plotter.add_mesh(edges, color=theme.INK, line_width=2.4, lighting=False)
+        plotter.add_mesh(edges, color=theme.INK, line_width=2.4, **UNLIT)
         sheet.show(camera.render(plotter))
     seen = " and ".join(
         name

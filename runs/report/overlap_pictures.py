@@ -34,6 +34,7 @@ from runs.report.sheet import (
     MATTE,
     MESHED,
     SHEET,
+    UNLIT,
     Camera,
     Sheet,
     sharp_edges,
@@ -194,27 +195,33 @@ class OverlapView:
         mine = self.scene.segment == segment
         return np.asarray(self.scene.triangles[self.behind & mine])
 
-    def draw(self, sheet: Sheet, time: float, places: Array, halves: Sequence[HalfBox]) -> None:
+    def sheet(self, floor: int) -> Sheet:
+        """Return a sheet with the x axis of the view; ``floor`` is its height in pixels."""
+        sheet, half = Sheet(self.pixels, floor), 0.475 * self.width
+        sheet.mark_x(self.camera(self.scene.points), self.midpoint - half, self.midpoint + half)
+        return sheet
+
+    def draw(
+        self, plotter: Any, sheet: Sheet, time: float, places: Array, halves: Sequence[HalfBox]
+    ) -> None:
         """Draw both segments and the forces between them on a sheet.
 
         Args:
+            plotter: stage of the size of the view.
             sheet: sheet of the picture.
             time: time in s.
             places: displayed points at that time.
             halves: outer and inner segment behind the cut.
         """
         camera, wall = self.camera(places), self.scene.wall(self.overlap)
-        with stage(self.pixels) as plotter:
-            for number, half in zip(self.numbers, halves, strict=True):
-                plotter.add_mesh(half.surface, **(MATTE | MESHED | dict(half.look)))
-                for side in (-1, 1):
-                    cut = _band(self.flange(places, number, side), wall)
-                    plotter.add_mesh(cut, color=half.cut, lighting=False)
-                    plotter.add_mesh(
-                        sharp_edges(cut), color=theme.INK, line_width=4.0, lighting=False
-                    )
-            sheet.show(camera.render(plotter))
-        sheet.mark_x(camera, self.midpoint - 0.475 * self.width, self.midpoint + 0.475 * self.width)
+        plotter.clear_actors()
+        for number, half in zip(self.numbers, halves, strict=True):
+            plotter.add_mesh(half.surface, **(MATTE | MESHED | dict(half.look)))
+            for side in (-1, 1):
+                cut = _band(self.flange(places, number, side), wall)
+                plotter.add_mesh(cut, color=half.cut, **UNLIT)
+                plotter.add_mesh(sharp_edges(cut), color=theme.INK, line_width=4.0, **UNLIT)
+        sheet.show(camera.render(plotter))
         strongest = np.abs(self.motion["contact_force"].values).max()
         now = self.motion.sel(time=time, method="nearest")
         forces = np.nan_to_num(now["contact_force"].values)
@@ -252,27 +259,28 @@ def draw_overlap(
     outer, inner = view.names
     labels = {theme.OUTER: outer, theme.INNER: inner, theme.FORCE: f"force of {inner} on {outer}"}
     aside = "seen from above, " if scene.from_above else ""
-    for instant in instants:
-        sheet = Sheet(PIXELS, floor=90)
-        sheet.figure.legend(
-            handles=[Patch(color=color, label=label) for color, label in labels.items()],
-            loc="upper center",
-            bbox_to_anchor=(0.5, 0.86),
-            ncols=3,
-            frameon=False,
-        )
-        places = view.places(instant.time)
-        halves = [
-            HalfBox(surface(places, view.half(number)), {"color": color}, color)
-            for number, color in zip(view.numbers, labels, strict=False)
-        ]
-        view.draw(sheet, instant.time, places, halves)
-        sheet.write(
-            instant.heading(scene),
-            f"{aside}cut open; play and displacements relative to {outer} × {view.scale:g}, "
-            f"walls not to scale\n{view.explain_forces(instant.time)}",
-        )
-        yield sheet.image()
+    sheet = view.sheet(floor=90)
+    sheet.figure.legend(
+        handles=[Patch(color=color, label=label) for color, label in labels.items()],
+        loc="upper center",
+        bbox_to_anchor=(0.5, 0.86),
+        ncols=3,
+        frameon=False,
+    )
+    with stage(PIXELS) as plotter:
+        for instant in instants:
+            places = view.places(instant.time)
+            halves = [
+                HalfBox(surface(places, view.half(number)), {"color": color}, color)
+                for number, color in zip(view.numbers, labels, strict=False)
+            ]
+            view.draw(plotter, sheet, instant.time, places, halves)
+            sheet.write(
+                instant.heading(scene),
+                f"{aside}cut open; play and displacements relative to {outer} × {view.scale:g}, "
+                f"walls not to scale\n{view.explain_forces(instant.time)}",
+            )
+            yield sheet.image()
 
 
 @dataclass(frozen=True, slots=True)
@@ -324,45 +332,56 @@ class StressScale:
 
 
 def draw_stress(
-    scene: Scene, instants: Sequence[Instant], scale: StressScale, overlap: Overlap
-) -> Iterator[Image.Image]:
-    """Draw von Mises stresses of the whole boom, and below it a sectional view of an overlap."""
+    scene: Scene, instants: Sequence[Instant], scale: StressScale, overlaps: Iterable[Overlap]
+) -> Iterator[list[Image.Image]]:
+    """Draw von Mises stresses: for each overlap the whole boom above a sectional view of it."""
+    assert scene.stress is not None
     times = [instant.time for instant in instants]
-    view = OverlapView(scene, overlap, times, STRESS_PIXELS)
+    corners = [
+        smooth_corners(scene.stress, scene.triangles, stress.largest())
+        for stress in scene.stress.instants(times)
+    ]
     whole = BoomView.of(scene, instants, BOOM_PIXELS, BOOM_DISPLACEMENT)
-    aside = "from above; " if scene.from_above else ""
-    for instant in instants:
-        sheet = Sheet(STRESS_PIXELS, floor=85)
-        scale.add_bar(sheet)
-        values = smooth_corners(
-            view.stress, scene.triangles, view.stress.at(instant.time).largest()
-        )
-        places = whole.places(scene.displacement(instant.time), instant.time)
-        with stage(BOOM_PIXELS) as plotter:
+    booms = []
+    with stage(BOOM_PIXELS) as plotter:
+        for time, values in zip(times, corners, strict=True):
+            places = whole.places(scene.displacement(time), time)
+            plotter.clear_actors()
             plotter.add_mesh(_surface_with_values(places, scene.triangles, values), **scale.look)
-            edges = whole.edges_at(places)
-            plotter.add_mesh(edges, color=theme.INK, line_width=2.4, lighting=False)
-            sheet.show(whole.camera.render(plotter), 20, 550)
-        places = view.places(instant.time)
-        halves = [
-            HalfBox(
-                _surface_with_values(
-                    places, view.half(number), values[view.behind & (scene.segment == number)]
-                ),
-                scale.look,
-                color,
-            )
-            for number, color in zip(view.numbers, (CUT_OUTER, CUT_INNER), strict=True)
-        ]
-        view.draw(sheet, instant.time, places, halves)
-        sheet.write(
-            instant.heading(scene),
-            f"{aside}boom: displacements × {whole.scale:g}, sections × {SECTION_DRAWN:g}; "
-            f"overlap: cut open, × {view.scale:g}, cuts white (outer), grey (inner)\n"
-            f"{_ring_largest(sheet, view, places, values)}; {_largest(view, instant.time)}\n"
-            f"{view.explain_forces(instant.time)}{_coarse(view)}",
-        )
-        yield sheet.image()
+            plotter.add_mesh(whole.edges_at(places), color=theme.INK, line_width=2.4, **UNLIT)
+            booms.append(whole.camera.render(plotter))
+    aside = "from above; " if scene.from_above else ""
+    for overlap in overlaps:
+        view = OverlapView(scene, overlap, times, STRESS_PIXELS)
+        sheet, images = view.sheet(floor=85), []
+        scale.add_bar(sheet)
+        with stage(STRESS_PIXELS) as plotter:
+            for instant, values, boom in zip(instants, corners, booms, strict=True):
+                sheet.show(boom, 20, 550)
+                places = view.places(instant.time)
+                halves = [
+                    HalfBox(
+                        _surface_with_values(
+                            places,
+                            view.half(number),
+                            values[view.behind & (scene.segment == number)],
+                        ),
+                        scale.look,
+                        color,
+                    )
+                    for number, color in zip(view.numbers, (CUT_OUTER, CUT_INNER), strict=True)
+                ]
+                view.draw(plotter, sheet, instant.time, places, halves)
+                sheet.write(
+                    instant.heading(scene),
+                    f"{aside}boom: displacements × {whole.scale:g}, sections × {SECTION_DRAWN:g}; "
+                    f"overlap: cut open, × {view.scale:g}, cuts white (outer), grey (inner)\n"
+                    f"{_ring_largest(sheet, view, places, values)}; "
+                    f"{_largest(view, instant.time)}\n"
+                    f"{view.explain_forces(instant.time)}{_coarse(view)}",
+                )
+                images.append(sheet.image())
+        yield images
 
 
 def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> Any:

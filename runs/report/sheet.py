@@ -30,9 +30,16 @@ from runs.report import theme
 Pixels = npt.NDArray[np.uint8]
 
 # Lights: faces differ in brightness; with COLOUR_READ they match the colour bar, too.
-MATTE = {"ambient": 0.35, "diffuse": 0.75, "specular": 0.0, "show_scalar_bar": False}
+MATTE = {
+    "ambient": 0.35,
+    "diffuse": 0.75,
+    "specular": 0.0,
+    "show_scalar_bar": False,
+    "render": False,
+}
 COLOUR_READ = MATTE | {"ambient": 0.75, "diffuse": 0.3}
 MESHED = {"show_edges": True, "edge_color": theme.INK, "line_width": 1.5}
+UNLIT = {"lighting": False, "render": False}
 
 # Width and height of a sheet in pixels, pixels per inch, and oversampling in both directions for
 # smooth edges.
@@ -189,13 +196,14 @@ class Sheet:
         self._passing += artists
 
     def write(self, heading: str, explanation: str) -> None:
-        """Write the heading of this image and the explanation of all images above the picture."""
+        """Write the heading and the explanation of the next image above the picture."""
         centred: dict[str, Any] = {"ha": "center", "va": "top"}
-        self.show_once(self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred))
-        if self._still is None:
-            # Three lines have smaller letters, so that the longest fits the sheet.
-            size = 17 if explanation.count("\n") > 1 else 19
-            self.figure.text(0.5, 0.925, explanation, size=size, **centred)
+        # Three lines have smaller letters, so that the longest fits the sheet.
+        size = 17 if explanation.count("\n") > 1 else 19
+        self.show_once(
+            self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred),
+            self.figure.text(0.5, 0.925, explanation, size=size, **centred),
+        )
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
         """Draw a vertical arrow with a label from a pixel (2,); negative lengths point down."""

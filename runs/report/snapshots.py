@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, nullcontext
@@ -98,18 +98,24 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
             when = _when(seen.motion, times)
             instants = _instants(views, when)
             view = BoomView.of(seen, [*instants, *_film(seen)])
-            pictures = {f"boom{above}": draw_boom(view, instants, end)}
-            for number, overlap in enumerate(seen.overlaps, start=1):
-                if seen.telescopes(overlap):
-                    # The view does not follow the stations of a driven overlap.
-                    continue
+            pictures: dict[str, Iterable[Image.Image]] = {
+                f"boom{above}": draw_boom(view, instants, end)
+            }
+            # The view does not follow the stations of a driven overlap.
+            overlaps = {
+                number: overlap
+                for number, overlap in enumerate(seen.overlaps, start=1)
+                if not seen.telescopes(overlap)
+            }
+            stresses = draw_stress(seen, instants, scale, overlaps.values())
+            for number, overlap in overlaps.items():
                 joint = above if number == 1 else f"{above}-{number}"
                 pictures[f"overlap{joint}"] = draw_overlap(seen, instants, overlap)
-                pictures[f"stress{joint}"] = draw_stress(seen, instants, scale, overlap)
+                pictures[f"stress{joint}"] = next(stresses)
             for kind, several in pictures.items():
                 for name, picture in zip(when, several, strict=True):
                     paths.append(folder / f"{kind}-{name}.png")
-                    picture.save(paths[-1])
+                    picture.save(paths[-1], compress_level=1)
     return paths
 
 
@@ -145,12 +151,17 @@ RENDERED: Sequence[Render] = (render_stills, render_film, render_buckling)
 
 
 def render_files(
-    render: Render, fields: Path, trajectories: Path, case: Case, folder: Path, times: Times
+    renders: Sequence[Render],
+    fields: Path,
+    trajectories: Path,
+    case: Case,
+    folder: Path,
+    times: Times,
 ) -> list[Path]:
     """Draw the pictures of a shell from the files of its fields and of all trajectories."""
     shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
     views = Scene.views(shell, motion.sel(model=shell.attrs["model"]), case)
-    return render(views, folder, times)
+    return [path for render in renders for path in render(views, folder, times)]
 
 
 def _ends(scene: Scene) -> tuple[float, float]:
@@ -270,11 +281,10 @@ def start_rendering(
         for number, path in enumerate(sorted(shells)):
             place = Path(easel) / str(number)
             place.mkdir()
-            for render in RENDERED:
-                future = pool.submit(
-                    render_files, render, path, trajectories, results.case, place, times
-                )
-                futures.append((path.name.removesuffix(FIELDS), future))
+            future = pool.submit(
+                render_files, RENDERED, path, trajectories, results.case, place, times
+            )
+            futures.append((path.name.removesuffix(FIELDS), future))
 
         def gather() -> list[str]:
             pictures = {

@@ -209,7 +209,7 @@ def test_arrows_and_their_numbers_stay_above_the_axis(steep: float) -> None:
     with rc_context(theme.PAGE_RC):
         scale = StressScale.of(shell.stress, [0.5])
         (plain,) = draw_overlap(shell, instants, overlap)
-        (stress,) = draw_stress(shell, instants, scale, overlap)
+        ((stress,),) = draw_stress(shell, instants, scale, [overlap])
     for picture, top, axis in ((plain, 190, 810), (stress, 345, 815)):
         is_force = red(np.asarray(picture, dtype=float))
         assert not is_force[axis:].any()
