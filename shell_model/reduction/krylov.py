@@ -244,6 +244,9 @@ class _Basis:
 
     def modes(self) -> tuple[Array, Array]:
         """Return ω² and shapes of the modes, rigid motions first."""
+        if self._forces.shape[1] == 0:
+            # Only probes excite this class.
+            return np.zeros(0), self._vectors[:, :0]
         rigid, elastic = self._vectors[:, : self._rigid], self._vectors[:, self._rigid :]
         omega2, combination = eigh(self._stiffness[self._rigid :, self._rigid :])
         # Rigid motions that no force excites, such as translation along x, are omitted. The basis

@@ -12,10 +12,12 @@ from mpi4py import MPI
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
+from geometry.probe_responses import PROBE_FREQUENCY
 from runs.process.workers import workers
+from shell_model.contact.local_compliance import shell_compliance
 from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.segment import ReducedSegment
+from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver, times
@@ -156,6 +158,20 @@ def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
     )
     assert few.omega2.size <= 12 < more.omega2.size <= 24
     assert few.compliance_error > 10.0 * more.compliance_error
+
+
+@pytest.mark.parametrize("options", [KrylovOptions(), KrylovOptions(tolerance=1e-2)], ids=str)
+def test_probes_excite_more_classes_than_inputs(box_shell: Shells, options: KrylovOptions) -> None:
+    """Reference: other code path, a solver for the probes alone. No input acts along y."""
+    shell = box_shell(0.5, supports=HELD)
+    symmetry = SymmetryReduction(shell)
+    up, aside = (shell.unit_load_vector(10.0, direction)[:, None] for direction in ("z", "y"))
+    probes = np.hstack([up, aside])
+    (found,) = reduce_segments([SegmentInputs(symmetry, up, up[:, :0], probes)], options)
+    expected = shell_compliance(symmetry, probes, PROBE_FREQUENCY)
+    assert (np.diag(expected) > 0.0).all()
+    assert found.probe_compliance == pytest.approx(expected, rel=1e-9, abs=1e-15)
+    assert np.abs(found.shapes.T @ aside).max() < 1e-9 * np.abs(found.shapes.T @ up).max()
 
 
 def test_missed_tolerance_is_reported(box_shell: Shells) -> None:
