@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Models with bonded contacts, without play.
+"""Models with bonded contacts in place of play.
 
-Contacts that are closed in the static state are bonded without play. At a lateral station, and at
-a station without closed contacts, all contacts are bonded: without lateral play, walls that bulge
-under vertical pads press both lateral pads. Local compliance, for example of a shell's walls,
-remains.
+Contacts that are closed in a static state are bonded. At a station without closed contacts, all
+contacts are bonded. So are those of a lateral station, since walls that bulge under vertical pads
+press on both lateral pads. Local compliance, for example of a shell's walls, remains.
 """
 
 from __future__ import annotations
@@ -23,9 +22,9 @@ _RIGID_FRACTION = 1.0e-6
 
 
 def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
-    """Return the bonded system, and its modes (num_modes, num_bonded_modes) in the old coordinates.
+    """Return the bonded system, and its modes (num_modes, num_bonded_modes) in those of ``system``.
 
-    Only the stations on the ground remain, with their travels.
+    Only the stations on the ground remain.
 
     >>> from runs.pipeline.bonded import bonded_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
@@ -40,14 +39,14 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
         rests: equilibria (num_modes,); contacts that are closed in one of them are bonded.
     """
     on_ground = np.isin(system.station_of_row, system.grounded)
-    pressing = np.zeros(len(system.laws), dtype=bool)
+    closed_contacts = np.zeros(len(system.laws), dtype=bool)
     for rest in rests:
         gaps = system.rows @ rest
-        pressing |= [bool(law.force(y)) for law, y in zip(system.laws, gaps, strict=True)]
-    pressed = np.isin(system.station_of_row, system.station_of_row[pressing])
+        closed_contacts |= [bool(law.force(y)) for law, y in zip(system.laws, gaps, strict=True)]
+    closed_stations = np.isin(system.station_of_row, system.station_of_row[closed_contacts])
     lateral = np.array(system.station_directions)[system.station_of_row] == "y"
-    held = system.rows[~on_ground & (pressing | ~pressed | lateral)]
-    free = null_space(held) if held.size else np.eye(system.num_modes)
+    bonded_rows = system.rows[~on_ground & (closed_contacts | ~closed_stations | lateral)]
+    free = null_space(bonded_rows) if bonded_rows.size else np.eye(system.num_modes)
     omega2, shapes = eigh(free.T @ system.stiffness @ free)
     least = _RIGID_FRACTION * min(system.omega2[system.omega2 > 0.0], default=0.0)
     omega2[np.abs(omega2) <= least] = 0.0

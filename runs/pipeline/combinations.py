@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Statics of all combinations of a case in their load cases, and their envelope.
+"""Static results of all combinations of a case in their load cases, and the envelope.
 
 The boom consists of beam elements with play and axial forces, as in
-:mod:`runs.pipeline.largest_loads`; each combination has a system of its own, since axial forces
-soften it.
+:mod:`runs.pipeline.largest_loads`. Each combination has a system of its own, since its axial forces
+reduce the stiffness.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from runs.report.tables import Column, Table
 # Mark of governing values in a table.
 _GOVERNS = " *"
 
-# Kinds of results with a column: the start of their names, and the heading.
+# Column heading of each kind of result. A key is the start of the names of these results.
 _KINDS = {
     "tip": "tip",
     "tip to the side": "tip to\nthe side",
@@ -42,13 +42,13 @@ _KINDS = {
 
 @dataclass(frozen=True, slots=True)
 class CombinationResult:
-    """Extremes of a combination in a load case; empty without an equilibrium."""
+    """Extreme results of a combination in a load case; empty without an equilibrium."""
 
     name: str
     extremes: list[StaticExtreme]
 
     def largest(self, kind: str) -> StaticExtreme | None:
-        """Return the largest result of a kind, a key of the table's columns."""
+        """Return the result with the largest magnitude among those of a kind of ``_KINDS``."""
         extremes = [one for one in self.extremes if one.name.partition(", ")[0] == kind]
         return max(extremes, key=lambda one: abs(one.largest), default=None)
 
@@ -59,12 +59,12 @@ class CombinationState(NamedTuple):
     combined: CombinedCase  #: the case of the combination
     beam: BeamStates | None  #: the static states; None without an equilibrium
     walls: Sequence[WallStress] = ()  #: largest wall stresses of each segment of a shell
-    #: buckling of the segments of a shell; None if it is not computed
+    #: buckling of the segments of a shell; empty if it is not computed
     buckling: Sequence[WallBuckling] = ()
 
     @property
     def result(self) -> CombinationResult:
-        """The extreme results, with positions in the units of the case."""
+        """The extreme results. Their names give positions in the units of the case."""
         system, beam = self.combined.case.system, self.beam
         extremes = [*beam.extremes(system), *beam.foot_extremes(system)] if beam else []
         return CombinationResult(self.combined.name, extremes)
@@ -75,7 +75,7 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
 
     Args:
         case: a checked case.
-        moving: True to integrate combinations with ``motion``; False for statics alone.
+        moving: True to compute the motion of combinations with ``motion``; False for statics only.
     """
     states = []
     for combined in combined_cases(case):
@@ -93,7 +93,7 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
 
 
 def combination_results(case: Case) -> list[CombinationResult]:
-    """Return the results of combinations at rest; none without load cases and combinations."""
+    """Return the static results of all combinations; empty without load cases and combinations."""
     has_combinations = case.load_cases or case.combinations
     return (
         [one.result for one in combination_states(case, moving=False)] if has_combinations else []
@@ -140,7 +140,7 @@ def _marked(one: StaticExtreme, most: float, system: System) -> str:
 
 
 def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
-    """Return the table of the minimum and maximum of each result, with their combinations."""
+    """Return the table of minimum, maximum and governing combination of each result."""
     of_name: dict[str, list[tuple[StaticExtreme, str]]] = {}
     for result in results:
         for one in result.extremes:

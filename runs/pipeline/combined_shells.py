@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Statics of all combinations of a case by a shell.
+"""Static states of all combinations of a case by a shell.
 
-Combinations with the same geometry share one shell. It is reduced under unit loads of all of them,
-and under the largest axial forces. A combination with other axial forces changes its geometric
-stiffness; the change follows from the deflections of the axes.
+Combinations with the same geometry share one reduced shell. The reduction includes the unit loads
+of all of these combinations and the largest axial forces. For a combination with other axial forces
+the geometric stiffness is corrected, from the deflections of the axes of the segments.
 """
 
 from __future__ import annotations
@@ -36,8 +36,8 @@ from runs.pipeline.wall_buckling import buckle_shell
 def shell_states(case: Case, model: Shell, context: BuildContext) -> list[CombinationState]:
     """Return the static states of all combinations by a shell, on rank 0. Collective.
 
-    With a table ``buckling``, the buckling factors of segments are computed in one state of each
-    geometry: the state with the lowest estimate by panel formulas.
+    With the table ``buckling``, buckling factors are computed in one state of each geometry: the
+    state for which panel formulas give the lowest buckling factor.
 
     Args:
         case: a checked case.
@@ -66,9 +66,9 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
 
 
 def _shared(booms: Sequence[Boom]) -> list[Boom]:
-    """Return a boom with the unit loads of all booms, and the booms with loads in its order.
+    """Return a boom with the unit loads of all booms, then each boom with its loads in this order.
 
-    The booms differ only in loads and axial forces.
+    The given booms differ only in loads and axial forces.
     """
     from shell_model.standard import standard_boom
 
@@ -76,11 +76,11 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
     kinds = {kind: load for loads in of_booms for kind, load in loads.items()}
     unit = [replace(load, magnitude=1.0, history=Step()) for load in kinds.values()]
 
-    def pressed(boom: Boom) -> float:
+    def largest_compression(boom: Boom) -> float:
         ends = [force for one in boom.segments for piece in one.compression.ends for force in piece]
         return max(ends, default=0.0)
 
-    most = max(booms, key=pressed)
+    most = max(booms, key=largest_compression)
     # A segment may have a load in only one of the booms.
     of_segments = (boom.segments for boom in booms)
     heaviest = [
@@ -107,7 +107,7 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
 
 
 def _by_kind(boom: Boom) -> dict[str, Load]:
-    """Return the loads of a boom at rest by place and direction, with numbers for equal ones."""
+    """Return the loads of a boom at rest; a key is a place, a direction and a running number."""
     loads_by_key: dict[str, Load] = {}
     for load in boom.loads:
         if isinstance(load.history, ReleasedLoad | InitialImpulse):
@@ -122,9 +122,9 @@ def _by_kind(boom: Boom) -> dict[str, Load]:
 def _state(
     combined: CombinedCase, boom: Boom, shared: Boom, model: Shell, built: BuiltModel
 ) -> CombinationState:
-    """Return the static states of a combination, on rank 0.
+    """Return the static states and wall stresses of a combination, on rank 0.
 
-    ``shared`` has the axial forces of the reduced shell.
+    ``shared`` is the boom of the reduced shell, with the largest axial forces.
     """
     from shell_model.standard import with_plays_and_loads
     from shell_model.stress.history import stress_near_places
@@ -163,9 +163,9 @@ def _with_buckling(
     built: BuiltModel,
     context: BuildContext,
 ) -> list[CombinationState]:
-    """Return the states, and add the buckling results to the governing state. Collective.
+    """Return the states, with buckling results of the governing one. Collective.
 
-    The governing state has the lowest estimate by panel formulas.
+    The governing state has the lowest buckling factor by panel formulas.
     """
     from shell_model.buckling import StaticState
     from shell_model.standard import with_plays_and_loads

@@ -19,8 +19,8 @@ from runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 class PeakDifferences:
     """Differences (num_peaks,) between the peaks of two slow motions, second minus first.
 
-    A combined spread is the sum of the spreads of both ensembles. If a difference exceeds it, the
-    peak differs between all members of the two models.
+    A combined spread is the sum of the spreads of both ensembles. A difference above it shows that
+    no member of one model has the peak of a member of the other.
     """
 
     scope: ClassVar[str] = (
@@ -52,7 +52,7 @@ class PeakDifferences:
 class Distributions:
     """Distributions of the values of two ensembles after both horizons.
 
-    The statistics of each model are NaN if a model stays predictable.
+    All statistics are NaN if one of the models stays predictable.
     """
 
     scope: ClassVar[str] = (

@@ -101,7 +101,7 @@ class PlayEffect:
 class QualityNote:
     """Note on the accuracy of the results."""
 
-    #: subject, ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``
+    #: subject: ``agreement``, ``horizon``, ``reduction``, ``mesh``, ``energy`` or ``step``
     what: str
     line: str  #: text of the note
 

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 # Upper limit of (R_s − R)/(v √(k m)) in the search for the critical speed.
 _MAX_DROP = 1.0e6
 
-# Fraction of the smallest overlap: with a larger lag the pads of a segment are at other stations.
+# Largest lag without a caution, as a fraction of the smallest overlap.
 MAX_LAG = 0.01
 
 
@@ -90,11 +90,11 @@ def critical_speed(drive: ElasticDrive, friction: float) -> float:
 
 
 def _critical_drop(ratio: float) -> float:
-    """Return the limit of (R_s − R)/(v √(k m)) below which slip continues, for a damping ratio ζ.
+    """Return the limit of D = (R_s − R)/(v √(k m)) below which slip continues, for a ratio ζ < 1.
 
-    A slip begins with ż/v = 1 and the slope −D, in units of 1/ω, and vibrates freely. For all ζ
-    below 1 its next maximum is √(1 − 2ζD + D²) e^{−ζ(θ + π)/√(1 − ζ²)}, θ = arg((ζD − 1)/√(1 − ζ²)
-    + iD). The segment sticks if this maximum is 1. For small damping, D = √(4πζ).
+    At the start of a slip ż/v = 1, with the slope −D over ωt; then the drive vibrates freely. The
+    next maximum of ż/v is √(1 − 2ζD + D²) e^{−ζ(θ + π)/√(1 − ζ²)}, θ = arg((ζD − 1)/√(1 − ζ²)
+    + iD). The segment sticks again if it reaches 1. For small damping, the limit is √(4πζ).
     """
     from scipy.optimize import brentq
 
@@ -155,7 +155,7 @@ def stick_slip_lines(estimates: Iterable[StickSlipEstimate], system: System) -> 
 
 
 def stick_slip_cautions(estimates: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
-    """Yield a caution for each drive with stick-slip over its whole travel."""
+    """Yield a caution for each drive that sticks and slips even at its largest speed."""
     for one in estimates:
         if one.critical_speed <= one.max_speed:
             continue

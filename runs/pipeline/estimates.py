@@ -2,8 +2,8 @@
 """Estimates of the memory and time of a run before it starts.
 
 The memory is an upper bound, at most four times the true value. The time is right within a factor
-of two on an idle AMD EPYC (tests/runs/test_estimates.py). The estimate builds beams; it replaces a
-shell by a beam instead of meshing it.
+of two on an idle AMD EPYC (tests/runs/test_estimates.py). For the estimate a beam replaces each
+shell, so that nothing is meshed.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ _OF_MEMBER, _OF_STEP = 22.0, 24.0
 _RESULTS, _REPORT, _SHELL_REPORT = 1.0, 5.0, 12.0
 # Time in s of a step: constant part, per coordinate, per contact.
 _STEP, _OF_MODE, _OF_ROW = 0.5e-6, 1.0e-8, 0.5e-6
-# With error control: steps per output interval without impacts; with impacts the fraction of the
-# largest number of steps, at this tolerance; computed steps per accepted step.
+# Steps with error control: number per output interval without impacts; with impacts, fraction of
+# the largest number of steps, at the tolerance that follows; computed steps per accepted step.
 _SUBSTEPS, _OF_MOST, _TOLERANCE, _REPEATED = 4.0, 0.5, 1.0e-3, 2.5
 # Number of motions for the horizons of a model.
 _HORIZONS = 24
@@ -74,13 +74,13 @@ class Cost:
 
 @dataclass(frozen=True, slots=True)
 class Preview:
-    """Initial motions of the models of a case, as beams. The cost is estimated from them."""
+    """Motions of beams that replace the models of a case, to estimate the cost of a run."""
 
-    checked: CheckedCase  #: checked case. Each of its models is built once.
+    checked: CheckedCase  #: the checked case; each beam is built once
     _motions: list[tuple[ModelTable, Motion]] = field(default_factory=list, init=False, repr=False)
 
     def motion(self, model: Model) -> Motion:
-        """Return the initial motion of the beam that replaces a model of the case.
+        """Return the motion, before integration, of the beam that replaces a model of the case.
 
         Raises:
             NumericsError: there is no equilibrium to start from.
@@ -96,7 +96,7 @@ class Preview:
 
 
 def run_cost(case: Case, preview: Preview | None = None) -> Cost:
-    """Return the cost of a run of a checked case, from the motions of its preview."""
+    """Return the cost of a run of a checked case, estimated from its preview."""
     shell = any(model.needs_shell for model in case.models)
     report = Cost(0.0, _SHELL_REPORT if shell else _REPORT)
     return models_cost(preview or Preview(CheckedCase(case))) + report

@@ -77,7 +77,7 @@ def with_motion(
     case: Case,
     model: Model,
 ) -> ModelDesignResults:
-    """Return the static results with the results of the motion and the fatigue life."""
+    """Return static results, completed by results of the motion and by fatigue damage."""
     rest_positions = np.array([*equilibria.values()]).reshape(-1, loaded.system.num_modes)
     static, jumps = [*results.static, *results.static_extended], not model.smooth
     motions = MotionAndStatics(loaded, trajectory, rest_positions, static, jumps)
@@ -96,16 +96,16 @@ class ModelEvaluation:
     built: BuiltModel  #: the model before time integration
 
     @cached_property
-    def _played(self) -> LoadedModel:
+    def _model_with_play(self) -> LoadedModel:
         return loaded_model(self.boom, self.model, self.built)
 
     @cached_property
     def _times(self) -> list[float]:
-        return instants(self._played.system, self.case.time.duration)
+        return instants(self._model_with_play.system, self.case.time.duration)
 
     @cached_property
     def _equilibria(self) -> dict[float, Array]:
-        return positions(self._played.system, self._times)
+        return positions(self._model_with_play.system, self._times)
 
     def evaluate(self, trajectory: Trajectory, shell: ShellOutput | None) -> ModelDesignResults:
         """Return the design results with the play of the model.
@@ -114,23 +114,23 @@ class ModelEvaluation:
             trajectory: motion of the model.
             shell: fields and stresses of a shell; None for a beam.
         """
-        played, case = self._played, self.case
-        system, equilibria = played.system, self._equilibria
+        loaded, case = self._model_with_play, self.case
+        system, equilibria = loaded.system, self._equilibria
         extended = extended_positions(system, case.time.duration)
-        results = results_at_rest(played, equilibria, extended)
+        results = results_at_rest(loaded, equilibria, extended)
         rests = equilibria | extended
-        results = with_motion(results, played, rests, trajectory, case, self.model)
+        results = with_motion(results, loaded, rests, trajectory, case, self.model)
         if shell is not None and results.motion is not None:
-            walls = wall_stresses(played.boom, shell.stresses)
+            walls = wall_stresses(loaded.boom, shell.stresses)
             results = replace(results, motion=replace(results.motion, walls=walls))
         if shell is not None and shell.buckling is not None:
             results = replace(results, buckling=shell.buckling.segments)
         if case.buckling is not None and (rest := results.farthest_static) is not None:
-            results = replace(results, panels=weakest_panels(played.boom.segments, rest))
+            results = replace(results, panels=weakest_panels(loaded.boom.segments, rest))
         vibration = residual_vibration(system, trajectory, case, self.model)
-        rope = hoisting(case, self.boom, trajectory)
+        hoist_results = hoisting(case, self.boom, trajectory)
         drives = crane_drives(case, self.boom, trajectory.data)
-        return replace(results, residual_vibration=vibration, hoisting=rope, drives=drives)
+        return replace(results, residual_vibration=vibration, hoisting=hoist_results, drives=drives)
 
     def add_bonded(self, results: ModelDesignResults) -> ModelDesignResults:
         """Add the results of the same model without play, if it has play, to design results."""
@@ -138,7 +138,7 @@ class ModelEvaluation:
         if model.bonded or not boom.joints:
             return results
         try:
-            bonded = _bonded_model(boom, case, model, self._played, self._equilibria)
+            bonded = _bonded_model(boom, case, model, self._model_with_play, self._equilibria)
             equilibria = positions(bonded.system, self._times)
             other = results_at_rest(bonded, equilibria)
         except NUMERICAL_ERRORS:
@@ -165,9 +165,9 @@ class ModelEvaluation:
 
 
 def _bonded_model(
-    boom: Boom, case: Case, model: Model, played: LoadedModel, equilibria: Mapping[float, Array]
+    boom: Boom, case: Case, model: Model, loaded: LoadedModel, equilibria: Mapping[float, Array]
 ) -> LoadedModel:
-    """Return the model with bonded joints in place of play."""
+    """Return the model with all joints bonded, without play."""
     without = boom.bonded
     if (bonded := model.system_without_play(boom)) is not None:
         lines = bonded[1]
@@ -175,10 +175,10 @@ def _bonded_model(
     initial = [
         position for time, position in equilibria.items() if _at_initial_extension(boom, time)
     ]
-    initial_system = played.system.at_time(0.0) if boom.telescopes else played.system
+    initial_system = loaded.system.at_time(0.0) if boom.telescopes else loaded.system
     system, basis = bonded_system(initial_system, initial)
     system = with_initial_slack(system, case)
-    return LoadedModel(without, system, [line.transform(basis) for line in played.lines])
+    return LoadedModel(without, system, [line.transform(basis) for line in loaded.lines])
 
 
 def _at_initial_extension(boom: Boom, time: float) -> bool:

@@ -21,7 +21,7 @@ from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import HAS_RAINFLOW, MEGA, Fibres, count_stress_ranges, endurance
 
-# Number of cross-sections of a segment at which its worst weld may be.
+# Number of cross-sections of a segment at which the worst weld is sought.
 _SECTIONS = 41
 
 # Stresses are taken at this distance in m on both sides of a detail, where forces may jump.
@@ -45,7 +45,7 @@ class Damage(NamedTuple):
 
 
 def details(case: Case, boom: Boom) -> Iterator[Detail]:
-    """Yield the details of a boom: at collars, diaphragms and stations, and the worst weld."""
+    """Yield the weld details: at collars, diaphragms and stations, and along each segment."""
     for number, segment in enumerate(boom.segments):
         name = segment.name
         for collar in segment.collars:
@@ -67,7 +67,7 @@ def details(case: Case, boom: Boom) -> Iterator[Detail]:
 
 
 def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
-    """Return the governing detail of each name, with its damage under all spectra.
+    """Return the detail with the largest damage of each name, with the damage by all spectra.
 
     The result is empty without spectra or without the package ``rainflow``.
 
@@ -118,7 +118,7 @@ def _damage(case: Case, category: float, stress: Mapping[tuple[str, bool], Array
     """Return the damage of the worst fibre of a detail from its stresses in all load cases."""
     shares = []
     for spectrum in case.spectra:
-        # The sequence of all states of the load cases, closed.
+        # The closed sequence of the states of all load cases.
         parts = [stress[name, spectrum.motion] for name in spectrum.load_cases]
         sequence = np.concatenate(parts, axis=1)
         of_fibres = []

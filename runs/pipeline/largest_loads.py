@@ -105,7 +105,7 @@ class BeamStates(NamedTuple):
 
     @classmethod
     def in_motion(cls, case: Case) -> BeamStates:
-        """Return the motion of the first model of beam elements with play, or of Timoshenko's.
+        """Return the motion of the first beam-element model with play, or of a default beam.
 
         Args:
             case: case of a combination.
@@ -126,7 +126,7 @@ class BeamStates(NamedTuple):
     def at_extremes(self) -> BeamStates:
         """Return the states of a motion at which tip, contacts, cylinders or stresses are extreme.
 
-        The results include those of each of these states.
+        Each state has its result in ``rests``.
         """
         states, system = self.positions, self.model.system
         rows = [system.rows, *(one.row[None] for one in system.observers.values())]
@@ -167,8 +167,8 @@ class BeamStates(NamedTuple):
         return extremes
 
     def foot_extremes(self, system: System) -> Iterator[StaticExtreme]:
-        """Yield the extremes of the resultant force on each foot, across and along the boom."""
-        for number_of, (segment, line) in enumerate(
+        """Yield the extremes of the resultant force on each foot."""
+        for index, (segment, line) in enumerate(
             zip(self.boom.segments, self.model.lines, strict=True)
         ):
             if segment.foot is None or "shear" not in line.rows:
@@ -179,7 +179,7 @@ class BeamStates(NamedTuple):
                 for name in ("shear", "lateral_shear", "normal")
                 if name in line.rows
             ]
-            thrust = foot_thrust(self.boom.segments, self.boom.joints, number_of)
+            thrust = foot_thrust(self.boom.segments, self.boom.joints, index)
             along = parts.pop() if "normal" in line.rows else np.zeros(len(self.rests))
             whole = np.linalg.norm([*parts, thrust + along], axis=0)
             name = f"foot, {segment.name}"
@@ -194,14 +194,14 @@ class BeamStates(NamedTuple):
             if not joint.bonded
             for number, _ in enumerate(joint.stations, start=1)
         ]
-        for number_of, station in enumerate(rests[0].stations):
-            loads = [rest.stations[number_of] for rest in rests]
+        for index, station in enumerate(rests[0].stations):
+            loads = [rest.stations[index] for rest in rests]
             to_side = " to the side" if station.direction == "y" else ""
             where = f"{system.text(station.x, 'm', 5)}{to_side}"
             # Stops come after the stations of joints.
             name, part = where, ""
-            if number_of < len(boom.directions) * len(stations):
-                inner, number = stations[number_of % len(stations)]
+            if index < len(boom.directions) * len(stations):
+                inner, number = stations[index % len(stations)]
                 part = boom.segments[inner].name
                 name = f"{part}, station {number}{to_side}"
             if station.pressure is None:

@@ -37,7 +37,7 @@ class _Row(NamedTuple):
 
 
 def load_table(case: Case, boom: Boom) -> Table:
-    """Return the table of all loads from t = 0 on, in the units of the case.
+    """Return the table of all loads of a case, in the units of the case.
 
     Args:
         case: a checked case.
@@ -100,22 +100,22 @@ def _place(boom: Boom, load: Load, system: System) -> str:
 def _history_row(
     key: str, place: str, direction: str, table: HistoryTable, duration: float
 ) -> _Row:
-    """Return the row of a load with a history, for a run of a duration in s."""
-    unit, full = table.declared_units(table.amount)[0], getattr(table, table.amount)
+    """Return the row of a load with a time history, in a run of the given duration in s."""
+    unit, amplitude = table.declared_units(table.amount)[0], getattr(table, table.amount)
     history = build_history(key, table)
     times = resolving_times([history], duration)
     values = history(times)
     step = int(np.abs(values).argmax())
     time = float(times[step]) if np.ptp(values) else None
-    said = _CONSTANT
+    description = _CONSTANT
     if isinstance(table, LoadTable) and table.released:
-        said = "until t = 0"
+        description = "until t = 0"
     elif table.ramp is not None:
-        said = f"ramp of {table.ramp:g} s"
+        description = f"ramp of {table.ramp:g} s"
     elif table.frequency is not None:
-        said = f"sine of {table.frequency:g} Hz"
+        description = f"sine of {table.frequency:g} Hz"
     elif table.half_sine is not None:
-        said = f"half sine of {table.half_sine:g} s"
+        description = f"half sine of {table.half_sine:g} s"
     elif table.table is not None:
-        said = f"{len(table.table)} values"
-    return _Row(key, place, direction, said, full * float(values[step]), unit, time)
+        description = f"{len(table.table)} values"
+    return _Row(key, place, direction, description, amplitude * float(values[step]), unit, time)

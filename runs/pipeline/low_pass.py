@@ -13,7 +13,7 @@ from pydantic import BeforeValidator, PlainSerializer, PlainValidator
 from dynamics.arrays import Array
 from dynamics.trajectory import prominent_peaks
 
-# Types of arrays and numbers; JSON has neither NaN nor infinity, and gets null.
+# Types of arrays and numbers. In JSON, null replaces NaN and infinity.
 Numbers = Annotated[
     Array, PlainValidator(np.asarray), PlainSerializer(lambda values: np.asarray(values).tolist())
 ]
@@ -23,8 +23,8 @@ Number = Annotated[
     PlainSerializer(lambda value: value if math.isfinite(value) else None),
 ]
 
-# Cut-off over the first frequency with closed contacts. Play makes the boom slower than this
-# frequency; the vibrations that impacts excite are faster.
+# Ratio of the cut-off to the first frequency with closed contacts. The slow motion of a boom with
+# play has a lower frequency; vibrations that impacts excite have higher ones.
 CUTOFF_SHARE = 0.8
 # Order of the filter, which runs forwards and backwards.
 ORDER = 4
@@ -44,7 +44,7 @@ def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
         cutoff: cut-off in Hz, below half the sampling rate.
 
     Raises:
-        ValueError: the cut-off cannot be sampled, or the signal is shorter than its period.
+        ValueError: the cut-off is too high, or the signal is not longer than its period.
     """
     times = signal.shape[-1]
     if not 0.0 < cutoff < 0.5 / output_step:
@@ -110,13 +110,13 @@ class SlowPeaks:
 
     @classmethod
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
-        """Return the first peaks of an ensemble, before any peak that a member lacks.
+        """Return the peaks of an ensemble up to the first peak that a member lacks.
 
         Peaks of two members match if they are nearer than half a period of the cut-off, since two
         peaks of one filtered motion are farther apart.
 
         Args:
-            members: curves (num_members, num_times).
+            members: motions (num_members, num_times).
             time: (num_times,) in s.
             cutoff: cut-off in Hz.
         """

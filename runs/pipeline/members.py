@@ -40,12 +40,12 @@ PLACES = ("tip", "head")
 CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
 # Number of compared peaks. At later peaks the spread of the ensemble exceeds the differences.
 PEAKS = 3
-# Permitted difference of a peak from the ensemble, in addition to the spread: as a fraction of the
-# period for its time, and of its height.
+# Permitted difference of a peak from the ensemble mean, in addition to the spread. The time of a
+# peak may differ by this fraction of the period, its height by this fraction of itself.
 PEAK_TOLERANCE = 0.01
 
-# The first step is the output step times 2 to this power. The last step is below this fraction of a
-# period of the cut-off, so that the filter can resolve it.
+# The shortest trial step is the output step times 2 to this power. The longest is below this
+# fraction of the period of the cut-off, so that the filter can resolve the slow motion.
 _FIRST_POWER, _MAX_STEP_SHARE = -4, 0.25
 
 
@@ -53,7 +53,7 @@ _FIRST_POWER, _MAX_STEP_SHARE = -4, 0.25
 def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
     """Yield an executor that uses all ranks but the first. Collective.
 
-    It yields None if there is one rank only. On other ranks it yields None after their work.
+    It yields None if there is only one rank. Other ranks first do their work, then get None.
     """
     if comm is None or comm.size == 1:
         yield None
@@ -65,9 +65,9 @@ def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
 
 
 def slow_cutoff(boom: Boom, time: TimeTable) -> float | None:
-    """Return the cut-off of the slow motion in Hz, a fraction of the first frequency without play.
+    """Return the low-pass cut-off in Hz, a fraction of the first frequency without play.
 
-    Return None if the run is too short, its output too coarse, or the boom has no such frequency.
+    The result is None if the run is too short, its output too coarse, or this frequency is missing.
     """
     try:
         with np.errstate(all="ignore"):
@@ -125,13 +125,13 @@ def measure_predictability(
     executor: Executor | None,
     progress: Callable[[float], None],
 ) -> Predictability:
-    """Return horizons and growth rates of changes of several sizes, and of a changed time step.
+    """Return the horizons for small changes of the data and of the time step, with growth rates.
 
     Args:
         motion: motion of the model.
         integrator: integrator of the motion.
         vary: data to change: ``load`` or ``clearance``.
-        unchanged: trajectory without change.
+        unchanged: trajectory for the unchanged data.
         executor: executor of the runs; None for threads of this process.
         progress: callback that receives the completed fraction.
     """
@@ -156,7 +156,7 @@ def measure_predictability(
 
 
 def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
-    """Return trials with more and more time steps, and the fewest that preserve the peaks.
+    """Return motions with longer and longer time steps, and the fewest steps that keep the peaks.
 
     Args:
         motion: motion of the model, which is integrated up to the last compared peak.
@@ -168,7 +168,7 @@ def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsFor
     """
     if peaks.time.size < PEAKS:
         return None
-    # The filter needs half of its own period after the last peak.
+    # The motion ends one period of the cut-off after the last peak: the filter is inexact there.
     lasting = peaks.time[PEAKS - 1] + 1.0 / cutoff
     # Every output interval has at least one step.
     steps = motion.output_step * 2.0 ** np.arange(_FIRST_POWER, 64)

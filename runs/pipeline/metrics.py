@@ -17,7 +17,7 @@ from typing import ClassVar, get_args, get_type_hints
 class Metric:
     """Name, unit and display format of a result, as an annotation of its field."""
 
-    name: str  #: name in the files of sweeps, "." for the field's; empty to omit the result there
+    name: str  #: name in files of sweeps; "." for the name of the field; empty to omit the result
     unit: str  #: SI unit in files
     title: str  #: a lower-case phrase for display
     factor: float  #: conversion factor from the SI unit to the displayed unit
@@ -34,7 +34,7 @@ class Metric:
 
 
 class Record:
-    """Results of one model, one row of a table in reports."""
+    """Results of one model, which are one row of a table in reports."""
 
     __slots__ = ()
     title: ClassVar[str]
@@ -53,7 +53,7 @@ def metrics(kind: type) -> dict[str, Metric]:
 
 
 def records(kind: type) -> dict[str, type[Record]]:
-    """Return the :class:`Record` classes among the types of a class's fields, by field name."""
+    """Return the :class:`Record` class of each field of a class that may hold a record."""
     return {
         name: one
         for name, hint in get_type_hints(kind).items()

@@ -38,22 +38,21 @@ FRAMES = 61
 
 @dataclass(frozen=True, slots=True)
 class ShellOutput:
-    """Output of a shell, which has files of its own."""
+    """Motion, stresses and meshes of a shell, which are written to files."""
 
-    #: points, triangles, segment, modes and stresses of the mesh, ``state`` (time, mode), and
-    #: ``contact_mode_shape`` (contact_mode in Hz, mode) of the boom with closed contacts
+    #: mesh with modes and their stresses; ``state`` (time, mode), the coordinates of the motion;
+    #: ``contact_mode_shape`` (contact_mode in Hz, mode), the modes with closed contacts
     fields: xr.Dataset
     stresses: xr.Dataset  #: von Mises stresses near stations and supports over time
-    #: largest of these stresses, with the section forces of the walls at that time
+    #: largest of these stresses, and the forces in the walls at the time of this stress
     largest: StressSummary
     meshes: dict[str, PlatedMesh]  #: mesh of each segment, by name
-    #: buckling of the walls; its shapes are in ``fields``, too. None without the table
-    #: ``buckling``.
+    #: buckling of the walls, with shapes in ``fields``; None without the table ``buckling``
     buckling: BuckledShell | None = None
 
     @property
     def modes(self) -> xr.Dataset | None:
-        """The fields of the modes with closed contacts, by frequency in Hz; None without modes."""
+        """The modes with closed contacts as ``state``, their frequencies in Hz as ``time``."""
         if "contact_mode" not in self.fields.dims:
             return None
         return self.fields.drop_vars(["state", "time"]).assign(
@@ -118,7 +117,7 @@ class ShellOutput:
 
 
 class SegmentMotion(NamedTuple):
-    """Quantities (num_frames, num_places) of a segment at ascending x (num_places,) in m."""
+    """Deflections and section forces (num_frames, num_places) of a segment at x (num_places,)."""
 
     x: Array
     read: Mapping[Quantity, Array]
@@ -132,7 +131,7 @@ class BeamOutput(NamedTuple):
 
     @classmethod
     def of(cls, lines: Sequence[Line], trajectory: Trajectory) -> BeamOutput:
-        """Return the output of a beam after its motion; at a jump, the value nearer the tip."""
+        """Return the output of a beam; at a jump of a section force, the value on the tip side."""
         steps = frame_indices(trajectory.time.size)
         moved = []
         for line in lines:
@@ -157,7 +156,7 @@ def force_places(boom: Boom) -> list[float]:
 
 
 def _modes(reduced: ReducedShell) -> dict[str, Any]:
-    """Return the modes of the boom with closed contacts, scaled to a maximum of 1 m."""
+    """Return dataset variables of the modes with closed contacts, scaled to a maximum of 1 m."""
     assert reduced.fields is not None
     system = reduced.system.gather_loads()
     rest = positions(system)

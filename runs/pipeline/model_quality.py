@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Accuracy of the results of a run: comparison of models, notes on accuracy, cautions.
 
-All models are compared with one reference: chaotic motions by ensembles at three levels, motions
-that friction makes regular over the whole run.
+All models are compared with one reference model. Chaotic motions are compared by ensembles, at
+three levels. Motions that friction makes regular are compared over the whole run.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ MAX_RELATIVE_ERROR = 0.01
 # Fraction of the length of the boom above which a displacement is not small.
 LARGE_DISPLACEMENT = 0.1
 
-# Differences are given up to this time in s, and over the whole run.
+# Regular motions are compared up to this time in s, and over the whole run.
 HALFWAY = 5.0
 # Scope of each level of comparison.
 SCOPES: Mapping[str, str] = {
@@ -61,7 +61,7 @@ SCOPES: Mapping[str, str] = {
 
 
 def reference_of(models: Iterable[Model]) -> str | None:
-    """Return the reference model: the last shell, else the last model with play."""
+    """Return the name of the reference model: the last shell, else the last model with play."""
     with_play = [model for model in models if not model.bonded]
     shells = [model for model in with_play if model.meshed]
     candidates = shells or with_play
@@ -69,9 +69,9 @@ def reference_of(models: Iterable[Model]) -> str | None:
 
 
 def main_models(case: Case, models: Sequence[str]) -> set[str]:
-    """Return the main models: the last shell, the last with play, and the first without play.
+    """Return the names of the main models: the last shell, the last beam, the first without play.
 
-    With three or fewer models, all are main.
+    With three or fewer models, all of them are main models. The last beam is one with play.
     """
     if len(models) <= 3:
         return set(models)
@@ -167,7 +167,7 @@ def quality_notes(
                 f"{name}: the mesh error of the local contact compliance is "
                 f"{_percent(model.mesh_error)}, by extrapolation to an infinitely fine mesh.",
             )
-    name, worst = max(models.items(), key=lambda moving_force: moving_force[1].energy_residual)
+    name, worst = max(models.items(), key=lambda item: item[1].energy_residual)
     yield QualityNote(
         "energy",
         f"The energy balance holds within {worst.energy_residual:.1g} of the work in every "
@@ -176,7 +176,7 @@ def quality_notes(
 
 
 def _percent(part: float) -> str:
-    """Return a fraction in % with two decimals, or more up to the first nonzero digit."""
+    """Return a fraction as a percentage with two significant digits."""
     return f"{TO_PERCENT * part:.2g} %"
 
 
@@ -185,7 +185,7 @@ def _signed_percent(part: float) -> str:
 
 
 def _agreement(design: DesignResults) -> Iterator[str]:
-    """Yield the differences between the reference and the other models with play."""
+    """Yield a sentence on the deviations of each other model with play from the reference."""
     if design.modes is None:
         return
     reference = design.modes.reference
@@ -208,7 +208,7 @@ def _agreement(design: DesignResults) -> Iterator[str]:
 
 
 def static_deviation(results: ModelDesignResults, other: ModelDesignResults) -> float | None:
-    """Return the relative difference of the largest static tip deflections, or None."""
+    """Return the relative deviation of another model's largest static tip deflection, or None."""
     tips = [
         max((rest.tip for rest in one.static), key=abs, default=None) for one in (results, other)
     ]
@@ -224,9 +224,9 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
         for name, model in summary.models.items()
         if model.ensemble is not None
     }
-    parted = {name: time for name, time in times.items() if time is not None}
-    if parted:
-        which = join_words([f"{name} {time:.2f} s" for name, time in parted.items()])
+    diverged = {name: time for name, time in times.items() if time is not None}
+    if diverged:
+        which = join_words([f"{name} {time:.2f} s" for name, time in diverged.items()])
         yield (
             "The motion is chaotic: runs with immeasurably different data differ by "
             f"{_percent(_DIVERGED)} of the tip's range after these times: {which}. A later "
@@ -267,7 +267,7 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
 
 
 def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
-    """Yield cautions on axial forces, the static deflection and the duration."""
+    """Yield cautions on axial forces, static deflection, duration and Coriolis forces."""
     for name, model in summary.models.items():
         yield from buckling_cautions(name, model.critical_factor)
         advise = partial(_advice, case, boom, name)
@@ -303,7 +303,7 @@ def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
 
 
 def _advice(case: Case, boom: Boom, name: str) -> str:
-    """Return the advice on a large deflection of a model."""
+    """Return the advice on a large deflection of the named model."""
     if any(model.name == name and model.needs_shell for model in case.models):
         with suppress(*NUMERICAL_ERRORS):
             return deflection_advice(BeamStates.of(case, boom_with_play(case, boom)))

@@ -125,16 +125,16 @@ def run_model(
     with members.rank_executor(comm if case.ensemble else None) as executor:
         if not context.first_rank:
             return None
-        alone = case.without_judgements().model_copy(update={"models": (model,), "title": ""})
+        single_case = case.without_judgements().model_copy(update={"models": (model,), "title": ""})
         system, store = built.system, context.motions
-        content = toml.digest(alone), system.omega2, system.load, system.rows, cutoff
+        content = toml.digest(single_case), system.omega2, system.load, system.rows, cutoff
         name = key([*content])
         motion = store.load(name, CompletedMotion) if store else None
         if motion is None:
-            moving = Stages(stages.progress)
-            motion = _integrate(built, model, case, cutoff, executor, moving)
+            motion_stages = Stages(stages.progress)
+            motion = _integrate(built, model, case, cutoff, executor, motion_stages)
             # The first model of a process compiles the time loop for the others.
-            begin += moving.seconds["compilation"]
+            begin += motion_stages.seconds["compilation"]
             if store is not None:
                 store.try_to_store(name, motion)
     summary, reduced = motion.summary, built.shell

@@ -27,7 +27,7 @@ from runs.case.schema import Case, Model
 if TYPE_CHECKING:
     from dynamics.integrator import AdaptiveStep, FixedStep
 
-# Minimum stiffness of a direction, as a fraction of the smallest stiffness of the segments' modes.
+# Minimum stiffness of a coordinate, as a fraction of the smallest stiffness of an elastic mode.
 _LEAST_STIFFNESS = 1.0e-6
 
 # Maximum number of steps: more would take days, and are an input error.
@@ -64,9 +64,9 @@ def build_on(
 
 
 def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[Line]) -> GapSystem:
-    """Return the system of a model with elastic drives, changing axial forces and hoisted load.
+    """Return a system, completed by elastic drives, changes of axial forces and a hoisted load.
 
-    ``lines`` are the lines along the segments, for the changes of axial forces.
+    ``lines`` are the lines along the segments, which changes of axial forces need.
     """
     system = with_elastic_drives(system, case, boom)
     system = replace(system, travels=[*system.travels, *axial_travels(system, boom, lines)])
@@ -74,7 +74,7 @@ def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[L
 
 
 def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Iterator[Travel]:
-    """Yield changes of axial forces, as travels without moving rows."""
+    """Yield a travel for each change of axial forces, which moves no contact."""
     deflections = [dict(line.deflections) for line in lines]
     # Contacts count as stiff as the softest segment, so that no direction lacks stiffness.
     least = min(system.omega2[system.omega2 > 0.0], default=1.0)
@@ -89,7 +89,7 @@ def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Itera
 
 
 def initial_motion(system: GapSystem, case: Case) -> Motion:
-    """Return the motion of a system by the initial state and times of a case, before integration.
+    """Return the motion of a system before integration, from initial state and times of a case.
 
     Raises:
         NumericsError: there is no equilibrium to start from.
@@ -153,7 +153,7 @@ class MotionPlan:
         return trajectory if self.load is None else self.load.separate_rope(trajectory)
 
     def step_error(self, trajectory: Trajectory, progress: Callable[[float], None]) -> float:
-        """Return the change of the tip by a doubled fixed step, as a fraction of its range."""
+        """Return the largest change of the tip by a doubled step, as a fraction of its range."""
         from dynamics.integrator import FixedStep
 
         coarser = FixedStep(2.0 * trajectory.data.attrs["step"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Modes of the boom, linearised in the static state: each closed contact is a spring."""
+"""Vibration modes of the boom about a static state, with each closed contact as a spring."""
 
 from __future__ import annotations
 
@@ -33,11 +33,11 @@ MIN_ASSURANCE = 0.5
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """Mode shape of a segment at x in m: ``deflection``, in space ``lateral`` and ``twist``."""
+    """Mode shape of a segment."""
 
-    segment: str
-    x: list[float]
-    curves: dict[str, list[float]]
+    segment: str  #: name of the segment
+    x: list[float]  #: positions (num_places) in m
+    curves: dict[str, list[float]]  #: ``deflection``; in space also ``lateral`` and ``twist``
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +122,7 @@ def modes(model: LoadedModel, rest: Array) -> list[Mode]:
 
 
 def inertia(segment: Segment, motion: Quantity) -> float:
-    """Return the mass per length in kg/m, or for a twist its polar moment of inertia in kg·m."""
+    """Return the mass per length in kg/m, or for twist the rotary inertia per length in kg·m."""
     if motion != "twist":
         return segment.mass_per_length
     assert segment.lateral is not None
@@ -132,8 +132,8 @@ def inertia(segment: Segment, motion: Quantity) -> float:
 def match_modes(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) -> list[Match | None]:
     """Return the best match in another model for each mode of the reference; None without a match.
 
-    Each mode matches once. The criterion is the modal assurance criterion of the deflections and
-    twists along the segments, weighted by inertia (Allemang 2003).
+    No mode matches twice. The criterion is the modal assurance criterion (Allemang 2003) of the
+    deflections and twists along the segments, weighted by inertia.
 
     Args:
         boom: boom of both models.
@@ -161,7 +161,7 @@ def match_modes(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) ->
 
 
 def _weighted_shape(boom: Boom, mode: Mode) -> Array:
-    """Return the mass-weighted shape in √kg·m."""
+    """Return the mass-weighted mode shape (num_values,) in √kg·m."""
     parts = [
         np.sqrt(inertia(segment, name) * segment.length / _PLACES) * np.array(shape.curves[name])
         for segment, shape in zip(boom.segments, mode.shapes, strict=True)

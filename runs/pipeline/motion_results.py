@@ -19,7 +19,7 @@ from runs.pipeline.section_forces import LoadedModel, round_values
 from runs.pipeline.static_results import StaticResult, place_names
 from runs.pipeline.strength import Fibres, FibreStress, StressHistory, WallStress, largest_stresses
 
-# Fraction of the maximum in motion below which a static value is no reference for a factor.
+# Smallest static value for which a dynamic factor is given, as a fraction of the maximum in motion.
 LEAST_STATIC = 1.0e-3
 
 
@@ -53,7 +53,7 @@ class Peak:
 
     @property
     def factor(self) -> float | None:
-        """The dynamic factor; None without a static value of some size."""
+        """The dynamic factor; None without a static value, or if it is close to zero."""
         rest = self.at_rest or 0.0
         return self.largest / rest if abs(rest) > LEAST_STATIC * abs(self.largest) else None
 
@@ -134,7 +134,7 @@ def _peak(
     values: Array,
     rest_values: Sequence[float] | Array,
 ) -> Peak:
-    """Return the peaks of values (num_times,) in motion and of static values (num_rests,)."""
+    """Return the peak of values (num_times,) in motion, with that of static ones (num_rests,)."""
     step = int(np.abs(values).argmax())
     at_rest = max((float(abs(value)) for value in rest_values), default=None)
     return Peak(what, where, unit, float(abs(values[step])), float(time[step]), at_rest)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tip deflection by the compliance of walls under slide pads, and remedies."""
+"""Share of the tip deflection that walls under slide pads cause by bending, and remedies."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.proportions import CHECK_UNITS
 from runs.report.formatting import milli
 
-# Remedies are given above this share of the tip deflection, if they reduce the tip deflection to
-# this fraction.
+# Share of the tip deflection above which remedies are listed, and fraction to which a listed
+# remedy reduces the tip deflection at least.
 LARGE_SHARE, HELPFUL = 0.1, 0.98
 # Share of the tip deflection above which walls under pads govern it.
 GOVERNING_SHARE = 0.5
 
 
 def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
-    """Yield lines on the part of the largest static tip deflection due to walls under pads.
+    """Yield sentences on the share of the static tip deflection that walls under pads cause.
 
-    Remedies follow if the part is large.
+    If the share is large, a list of remedies follows.
 
     Args:
-        beam: static states of the boom with the contact laws of the first model with play.
+        beam: static states of a boom with the contact laws of the first model with play.
 
     Raises:
-        NumericsError: a boom with remedies has no equilibrium.
+        NumericsError: the boom has no equilibrium after a change that a remedy makes.
     """
     boom, rest = beam.boom, max(beam.rests, key=lambda one: abs(one.tip))
     tip, time, part = rest.tip, rest.time, wall_part(beam)
@@ -58,9 +58,9 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
 
 
 def wall_part(beam: BeamStates) -> float | None:
-    """Return the part of the largest static tip deflection due to walls under pads.
+    """Return the share of the largest static tip deflection that walls under pads cause.
 
-    The result is None without pads, or without the sections of all segments.
+    The share is 1 if walls cause all of it; None without pads, or if a section is unknown.
     """
     boom, rest = beam.boom, max(beam.rests, key=lambda one: abs(one.tip))
     padded = any(joint.padded for joint in boom.joints)
@@ -71,13 +71,13 @@ def wall_part(beam: BeamStates) -> float | None:
 
 
 def deflection_advice(beam: BeamStates | None) -> str:
-    """Return advice on a large deflection: on pads if walls under them govern, else on units."""
+    """Return advice on a large deflection: to change pads if their walls govern, or check units."""
     governing = beam is not None and (wall_part(beam) or 0.0) > GOVERNING_SHARE
     return "walls under pads cause most of it; change the pads" if governing else CHECK_UNITS
 
 
 def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
-    """Return a sentence on the beams with rigid walls under pads; empty without such beams."""
+    """Return a sentence that names the beams with rigid walls under pads; empty if none has."""
     names = [model.name for model in models if not (model.bonded or model.needs_shell)]
     if not names or not any(joint.padded for joint in boom.joints):
         return ""
@@ -88,7 +88,7 @@ def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
 
 
 def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
-    """Yield booms with stiffer walls under pads, each with a description of the change."""
+    """Yield changes that stiffen the walls under pads: a description and the changed boom."""
 
     def longer(pad: PadSize, longest: float) -> dict[str, Any]:
         return {"length": max(min(2.0 * pad.length, longest), pad.length)}
@@ -122,7 +122,7 @@ def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) 
 
     Args:
         boom: boom with pads.
-        changes: function of a pad and half the overlap in m that returns the changed fields.
+        changes: function that takes a pad and half the overlap in m, and returns changed fields.
     """
     joints = []
     for joint in boom.joints:

@@ -58,11 +58,11 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
         return
     with_play = (model for model in case.models if not model.bonded)
     for model in (model for model in with_play if model.name in data["model"].values):
-        seen = model.model_boom(boom).boom
+        boom_of_model = model.model_boom(boom).boom
         station, peak_forces = count(), data["contact_force_peak"].sel(model=model.name)
         ends = np.stack([peak_forces.min("time").values, peak_forces.max("time").values], axis=1)
         for direction in boom.directions:
-            for table, joint in zip(case.joints, seen.joints, strict=True):
+            for table, joint in zip(case.joints, boom_of_model.joints, strict=True):
                 law = joint.law(direction)
                 for x in () if joint.bonded else joint.stations:
                     largest_pushes = ends[next(station)]
@@ -86,7 +86,7 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
 def _pad_load(
     model: Model, joint: JointTable, pad: PadSize, x: float, side: str, both: float
 ) -> PadLoad:
-    """Return the load of a pad, which carries half of the force ``both`` in N on its pair."""
+    """Return the load of one pad of a pair; ``both`` is the force on the pair in N."""
     force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
     pressure = force / pad.area
     return PadLoad(
@@ -143,12 +143,12 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Ar
 def loaded_pads(
     joint: Joint, direction: Direction, sides: Sequence[float]
 ) -> list[tuple[PadSize, float]]:
-    """Return the pads of a station with given sizes, and the force on each in N.
+    """Return the pads of known size at a station, each with its force in N.
 
     Args:
         joint: the joint of the station.
         direction: direction of the forces.
-        sides: forces on both sides in N, not negative.
+        sides: forces on the two sides in N, in the order of ``SIGNS``, not negative.
     """
     loads = []
     for side, force in zip(SIGNS, sides, strict=True) if joint.padded else ():
@@ -158,8 +158,8 @@ def loaded_pads(
         stiffnesses = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
         stiffness = PADS_OF_SIDE * sum(stiffnesses) or 1.0
         # Each pair that closes reduces the compression of the pairs that closed before.
-        ways = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
-        forces = stiffness * (shares * np.maximum(ways.min() + shims, 0.0)) / PADS_OF_SIDE
+        compressions = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
+        forces = stiffness * (shares * np.maximum(compressions.min() + shims, 0.0)) / PADS_OF_SIDE
         loads += [(pair[0], float(one)) for pair, one in zip(pairs, forces, strict=True)]
     return [(pad, force) for pad, force in loads if pad is not None]
 

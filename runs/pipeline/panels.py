@@ -46,7 +46,7 @@ class WallStresses(NamedTuple):
     x: Array  #: (num_places,) x of the cross-sections in m
     #: (2, num_places) axial stress at the ends of the mid-line in Pa, positive in tension
     edges: Array
-    fibres: Array  #: (2, num_places) axial stress at the outer corners
+    fibres: Array  #: (2, num_places) axial stress at the outer corners in Pa
     shear: Array  #: (num_places,) mean shear stress in Pa, not negative
 
     @property
@@ -98,16 +98,16 @@ def panel_factor(
     """
     young, nu, edges = material.youngs_modulus, material.poissons_ratio, np.asarray(edges)
     unit = np.pi**2 * young / (12.0 * (1.0 - nu**2) * slenderness**2)
-    sheared = np.abs(shear) / (SHEAR * unit)
+    shear_ratio = np.abs(shear) / (SHEAR * unit)
     ratio = stress_ratio(edges)
-    pressed = np.maximum(-edges.min(axis=0), 0.0) / (normal_coefficient(ratio) * unit)
-    mean = 0.25 * (1.0 + ratio) * pressed
-    part = mean + np.sqrt(mean**2 + 0.5 * (1.0 - ratio) * pressed**2 + sheared**2)
+    compression = np.maximum(-edges.min(axis=0), 0.0) / (normal_coefficient(ratio) * unit)
+    mean = 0.25 * (1.0 + ratio) * compression
+    part = mean + np.sqrt(mean**2 + 0.5 * (1.0 - ratio) * compression**2 + shear_ratio**2)
     return np.asarray(np.divide(1.0, part, out=np.full_like(part, np.inf), where=part > 0.0))
 
 
 def weakest_panels(segments: Sequence[Segment], *rests: StaticResult) -> list[PanelBuckling]:
-    """Return the first wall to buckle in static states, for each segment with a known section."""
+    """Return the wall that buckles first in the states, of each segment with a known section."""
     weakest: dict[str, PanelBuckling] = {}
     for wall in chain.from_iterable(nominal_wall_stresses(segments, rest) for rest in rests):
         name = wall.segment.name
@@ -122,7 +122,7 @@ def weakest_panels(segments: Sequence[Segment], *rests: StaticResult) -> list[Pa
 def nominal_wall_stresses(
     segments: Sequence[Segment], rest: StaticResult
 ) -> Iterator[WallStresses]:
-    """Yield the stresses of each wall of the segments with known sections in a static state."""
+    """Yield the stresses of each wall in a static state, for segments with known sections."""
     for segment, diagram in zip(segments, rest.diagrams, strict=True):
         if segment.section is None or "moment" not in diagram.curves:
             continue
@@ -139,7 +139,7 @@ def nominal_wall_stresses(
 def _walls(
     segment: Segment, section: Section, diagram: Diagram, part: slice, x: Array
 ) -> Iterator[WallStresses]:
-    """Yield the walls of a section at the places x (num_places,) of a part of a diagram."""
+    """Yield the stresses of each wall of a section at x (num_places,), a part of a diagram."""
     names = ("moment", "lateral_moment", "shear", "lateral_shear", "torque")
     moment, lateral, shear, aside, torque = (
         np.array(diagram.curves[name][part]) if name in diagram.curves else np.zeros(x.size)
@@ -164,7 +164,7 @@ def _walls(
 
 
 def panel_table(panels: Sequence[PanelBuckling], system: System) -> Table:
-    """Return the table of each segment's wall that buckles first by panel formulas."""
+    """Return the table of the wall of each segment that buckles first by panel formulas."""
     columns = [
         Column("segment", [one.segment for one in panels]),
         Column("wall", [one.wall for one in panels]),

@@ -76,7 +76,7 @@ class Proof(NamedTuple):
         part: the part of the boom.
         place: name of the part and of its governing wall or detail.
         x: position of the governing cross-section in m; None for other parts.
-        demand, resistance: both in the unit; the resistance is divided by its factor.
+        demand, resistance: in ``unit``; the resistance is divided by its partial factor.
         unit: SI unit.
         combination: governing combination and load case, or governing spectrum.
     """
@@ -139,7 +139,7 @@ class Proofs(NamedTuple):
 
 
 def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
-    """Return the governing proofs of all combinations, as beam elements.
+    """Return the governing proof of each part of the boom over all combinations.
 
     Args:
         case: a checked case.
@@ -204,11 +204,11 @@ def reduced_stress(
     Args:
         wall: stresses of a wall.
         strength: yield strength in Pa.
-        curve: pairs of slenderness and reduction for both; :func:`winter` and
-            :func:`shear_reduction` unless given.
+        curve: pairs of slenderness and reduction factor, for ρ and χ; if empty, :func:`winter` and
+            :func:`shear_reduction` apply.
     """
-    pressed = np.maximum(-wall.edges.min(axis=0), 0.0)
-    equivalent = np.sqrt(pressed**2 + 3.0 * wall.shear**2)
+    largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
+    equivalent = np.sqrt(largest_compression**2 + 3.0 * wall.shear**2)
     critical = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
     with np.errstate(divide="ignore"):
         # Without stress the factor is infinite, and the slenderness zero.
@@ -217,14 +217,14 @@ def reduced_stress(
         along = across = np.interp(slenderness, *np.transpose(curve))
     else:
         along, across = winter(slenderness, stress_ratio(wall.edges)), shear_reduction(slenderness)
-    return np.asarray(np.hypot(pressed / along, np.sqrt(3.0) * wall.shear / across))
+    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * wall.shear / across))
 
 
 def winter(slenderness: float | Array, ratio: float | Array = 1.0) -> Array:
-    """Return the reduction ρ of an internal wall (Winter 1947; EN 1993-1-5, (4.2)).
+    """Return the reduction factor ρ of an internal wall (Winter 1947; EN 1993-1-5, (4.2)).
 
     Args:
-        slenderness: λ̄, the root of strength over critical stress.
+        slenderness: λ̄, the square root of strength over critical stress.
         ratio: ψ, the stress at the other edge over the largest compression.
     """
     slenderness, ratio = np.asarray(slenderness, dtype=float), np.maximum(ratio, -3.0)
@@ -234,12 +234,12 @@ def winter(slenderness: float | Array, ratio: float | Array = 1.0) -> Array:
 
 
 def shear_reduction(slenderness: float | Array) -> Array:
-    """Return the reduction χ of a wall in shear, 0.83/λ̄ ≤ 1 (EN 1993-1-5, table 5.1, η = 1)."""
+    """Return the factor χ of a wall in shear, 0.83/λ̄ ≤ 1 (EN 1993-1-5, table 5.1, η = 1)."""
     return np.asarray(0.83 / np.maximum(slenderness, 0.83))
 
 
 def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
-    """Yield the proofs by wall stresses and buckling factors of a shell."""
+    """Yield the proofs that use wall stresses and buckling factors of a shell."""
     beam, factors = state.beam, state.combined.combination.resistance
     assert beam is not None
     segments = {segment.name: segment for segment in beam.boom.segments}
@@ -273,7 +273,7 @@ def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
         yield Proof("buckling", one.segment, place, one.x[0], stress, resistance, "Pa")
 
 
-# Proofs of shells, with the name in a combination that demands them.
+# Kinds of proofs by a shell, and the name by which a combination requests each.
 _OF_SHELLS = {"patch": "yield", "buckling": "plate"}
 
 

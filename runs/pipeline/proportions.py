@@ -40,8 +40,8 @@ CHECK_UNITS = "check units and loads"
 # Fractions of the weight of the boom: smaller loads have no effect, larger ones no boom can carry.
 MIN_LOAD, MAX_LOAD = 1.0e-3, 1.0e2
 
-# Force at the tip in N, and its largest fraction of the weight of the boom, that may be a mass in
-# kg.
+# Range of forces at the tip in N that may be masses in kg by mistake, and the largest fraction of
+# the weight of the boom for such a force.
 USUAL_LOAD, SMALL_LOAD = (20.0, 500.0), 0.1
 
 # Fraction of the mass of the boom: no boom is built for a smaller payload.
@@ -64,8 +64,8 @@ MANY_PERIODS = 1000.0
 MATERIALS = {"steel": (2.1e11, 7850.0), "aluminium": (7.0e10, 2700.0)}
 SAME_MODULUS, LEAST_DENSITY, MOST_DENSITY = 0.06, 0.9, 2.0
 
-# Relative differences up to which a force is a weight, with a gravity of 10 m/s², too, and up to
-# which a force in N is a mass in kg.
+# Relative difference up to which a force equals a weight, also with 10 m/s² for gravity; relative
+# difference up to which the number of a force in N equals that of a mass in kg.
 SAME_LOAD, SAME_WEIGHT = 0.025, 0.05
 
 
@@ -131,7 +131,7 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
 
 
 def _materials(case: Case) -> Iterator[str]:
-    """Yield a caution for each material whose density does not belong to its modulus."""
+    """Yield a caution for each material whose density does not match its Young's modulus."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
         if table is None:
@@ -187,7 +187,7 @@ def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _joints(case: Case) -> Iterator[str]:
-    """Yield a caution for each joint with an outer segment that another joint has, too."""
+    """Yield a caution for each outer segment that holds more than one inner segment."""
     held: dict[str, str] = {}
     for number, joint in enumerate(case.joints, start=1):
         outer, inner = str(joint.outer), str(joint.inner)
@@ -200,7 +200,7 @@ def _joints(case: Case) -> Iterator[str]:
 
 
 def _gaps(boom: Boom) -> Iterator[str]:
-    """Yield a caution for each pad that is thicker than the gap between its boxes."""
+    """Yield a caution for each pad that is thicker than the gap between its segments."""
     for number, joint in enumerate(boom.joints, start=1):
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         if outer.section is None or inner.section is None:
@@ -331,7 +331,7 @@ def _constant_loads(boom: Boom) -> Iterator[tuple[float, float]]:
 
 
 def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield cautions on loads that repeat a load or a weight, and on masses in place of forces."""
+    """Yield cautions on loads that repeat a load or weight, and on masses given as forces."""
     loads_of_case = boom.loads[: len(case.loads)]
     repeatable: tuple[tuple[str, Sequence[Any]], ...] = (
         ("load", loads_of_case),

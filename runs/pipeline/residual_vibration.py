@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Residual vibration of the tip in telescoping, compared with vibration at constant extension.
+"""Residual vibration of the tip by telescoping, compared with vibration at constant extension.
 
-The amplitude is the largest distance of the tip from its equilibrium at the current extension and
-under the current loads.
+The amplitude is the largest distance of the tip from its static position, at the current extension
+and under the current loads.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from runs.case.schema import Case, Model
 from runs.pipeline.metrics import Metric, Record
 from runs.pipeline.models import MotionPlan
 
-# Number of equilibria over all changes and between two reversals; maximum number of reversals.
+# Number of equilibria in a motion and between two reversals; maximum number of reversals.
 _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
@@ -45,7 +45,7 @@ class ResidualVibration(Record):
         "the current loads. Last columns: the same distance for the boom without telescoping.",
     )
 
-    #: largest distance of the tip from equilibrium in m
+    #: largest distance of the tip from its static position in m
     tip: Annotated[
         float,
         _metres("residual_vibration", title="residual vibration", heading="residual\nvibration"),
@@ -69,7 +69,7 @@ class ResidualVibration(Record):
             heading="at initial\nextension",
         ),
     ]
-    #: largest distance in m at constant final extension, likewise
+    #: largest distance in m at constant final extension; None if it cannot be computed
     final: Annotated[
         float | None,
         _level(
@@ -100,12 +100,12 @@ def residual_vibration(
         tip, time = farthest_from_rest(system, trajectory)
     except NUMERICAL_ERRORS:
         return None
-    stands = [
+    at_constant_extension = [
         _vibration_at_constant_extension(system.at_time(when).in_own_modes(), case, model)
         for when in (0.0, max(ends))
     ]
     speed = max(_speed(travel) for travel in travels)
-    return ResidualVibration(tip, time, speed, *stands)
+    return ResidualVibration(tip, time, speed, *at_constant_extension)
 
 
 def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float, float]:
@@ -122,44 +122,44 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
     changes = [x.history for x in system.excitations] + [x.history for x in system.travels]
     times = resolving_times(changes, float(time[-1]))
     values = np.array([change(times) for change in changes]).reshape(len(changes), times.size)
-    # The accumulated relative change of all values.
+    # The sum of the relative changes of all values since t = 0.
     sizes = np.abs(values).max(axis=1, keepdims=True)
-    ways = np.abs(np.diff(values, axis=1)) / np.where(sizes > 0.0, sizes, 1.0)
-    passed = np.concatenate([[0.0], np.cumsum(ways.sum(axis=0))])
-    steps = _equilibrium_steps(values, passed)
+    increments = np.abs(np.diff(values, axis=1)) / np.where(sizes > 0.0, sizes, 1.0)
+    total = np.concatenate([[0.0], np.cumsum(increments.sum(axis=0))])
+    steps = _equilibrium_steps(values, total)
     rests = [equilibrium_at(system, t) for t in times[steps].tolist()]
     off = np.zeros(time.size)
     for name in _TIP:
         if name in system.observers:
             deflections_at_rest = np.array(rests) @ system.observers[name].row
-            there = np.interp(np.interp(time, times, passed), passed[steps], deflections_at_rest)
+            there = np.interp(np.interp(time, times, total), total[steps], deflections_at_rest)
             off = np.hypot(off, trajectory.data[name].values - there)
     step = int(off.argmax())
     return float(off[step]), float(time[step])
 
 
-def _equilibrium_steps(values: Array, passed: Array) -> Indices:
+def _equilibrium_steps(values: Array, total: Array) -> Indices:
     """Return the ascending output steps (num_rests,) at which equilibria are computed.
 
-    They divide the accumulated change ``passed`` (num_times,) evenly, and so divide each interval
+    They divide the accumulated change (num_times,) into equal parts, and likewise each interval
     between two reversals of the values (num_changes, num_times).
     """
     turns = sorted({step for change in values for step in _reversals(change).tolist()})
     if len(turns) > _MOST_TURNS:
         raise NumericsError(f"loads and drives reverse {len(turns)} times, more than {_MOST_TURNS}")
-    ends = passed[[0, *turns, -1]]
+    ends = total[[0, *turns, -1]]
     parts = np.arange(_BETWEEN_TURNS) / _BETWEEN_TURNS
     between = ends[:-1, None] + np.diff(ends)[:, None] * parts
-    even = np.linspace(0.0, passed[-1], _RESTS)
-    steps = np.searchsorted(passed, np.union1d(even, between))
+    even = np.linspace(0.0, total[-1], _RESTS)
+    steps = np.searchsorted(total, np.union1d(even, between))
     return np.unique(np.array([*turns, *steps], dtype=np.int64))
 
 
 def _reversals(values: Array) -> Indices:
     """Return the steps (num_turns,) at which values (num_times,) reverse or become constant."""
-    ways = np.diff(values)
-    moves = np.flatnonzero(ways)
-    back = ways[moves[:-1]] * ways[moves[1:]] < 0.0
+    increments = np.diff(values)
+    moves = np.flatnonzero(increments)
+    back = increments[moves[:-1]] * increments[moves[1:]] < 0.0
     return np.union1d(moves[:-1][back] + 1, moves[1:][back])
 
 
@@ -168,12 +168,12 @@ def _speed(travel: Travel) -> float:
     if travel.suffix is None:
         return 0.0
     times = resolving_times([travel.history], max(travel.history.kinks))
-    ways = np.abs(np.diff(travel.history(times)))
-    return float(ways.sum() / np.diff(times)[ways > 0.0].sum())
+    increments = np.abs(np.diff(travel.history(times)))
+    return float(increments.sum() / np.diff(times)[increments > 0.0].sum())
 
 
 def _vibration_at_constant_extension(system: GapSystem, case: Case, model: Model) -> float | None:
-    """Return the largest distance of the tip from equilibrium in m at the extension of a system."""
+    """Return the largest distance of the tip from its static position in m, without telescoping."""
     try:
         plan = MotionPlan.of(system, case, model)
         changes = system.excitations or system.released_load.any() or plan.motion.velocity.any()

@@ -171,7 +171,7 @@ class Results:
 
     @property
     def quantities(self) -> pd.DataFrame:
-        """The quantities of sweeps: a row for each, with its SI unit and a column per model."""
+        """A table with a row for each quantity of sweeps: its SI unit and a column per model."""
         import pandas as pd
 
         from runs.pipeline.quantities import QUANTITIES, measure
@@ -201,7 +201,7 @@ class Results:
 
     @property
     def motions(self) -> dict[str, MotionResult]:
-        """The extreme values of the motions of the main models."""
+        """The extreme values of the motion of each main model, by name."""
         designs = self.summary.design.models
         return {
             name: moved
@@ -211,7 +211,7 @@ class Results:
 
 
 def prepare(out: str, file: str) -> Path:
-    """Return the path of the folder for a run; it may contain an earlier run.
+    """Return the path of the folder for a run, which may contain an earlier run.
 
     Args:
         out: folder as the user gave it.

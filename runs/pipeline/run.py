@@ -59,7 +59,7 @@ class Run:
     def evaluate(self) -> None:
         """Add the design results and the cautions to the summary.
 
-        A model without design results becomes one of the ``failures``.
+        A model whose design results cannot be computed is added to ``failures``.
 
         Raises:
             NumericsError: a comparison of the models is not finite.
@@ -71,7 +71,7 @@ class Run:
         check_finite(summary)
 
     def evaluate_with_play(self) -> None:
-        """Add pad forces and design results to the summary, but no results without play."""
+        """Add pad forces and the design results with play to the summary."""
         results, summary = self.results, self.results.summary
         summary.design = DesignResults(models=self._evaluate_models(lambda _, design: design))
         summary.pads = list(pad_loads(results.case, results.boom, results.trajectories))
@@ -196,7 +196,7 @@ def _attempt_all(
     if not alone or not any(model.needs_shell for model in models):
         return {model.name: attempt(model) for model in models}
     with ThreadPoolExecutor(1) as thread:
-        moving = {m.name: thread.submit(attempt, m) for m in models if not m.needs_shell}
+        beams = {m.name: thread.submit(attempt, m) for m in models if not m.needs_shell}
         try:
             shell_runs = {model.name: attempt(model) for model in models if model.needs_shell}
         except BaseException:
@@ -204,5 +204,5 @@ def _attempt_all(
             thread.shutdown(cancel_futures=True)
             raise
         return {
-            m.name: shell_runs[m.name] if m.needs_shell else moving[m.name].result() for m in models
+            m.name: shell_runs[m.name] if m.needs_shell else beams[m.name].result() for m in models
         }

@@ -20,7 +20,7 @@ from geometry.axial import axial_force
 from geometry.boom import Boom
 from geometry.cylinder import force_name
 
-# Distance of the two positions at a jump from the jump, as a fraction of the distance from start.
+# Distance by which both positions at a jump are moved away from it, as a fraction of the length.
 _ASIDE = 1.0e-9
 
 _ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
@@ -47,7 +47,7 @@ class LoadedModel(NamedTuple):
 
     @classmethod
     def of(cls, boom: Boom, system: GapSystem, lines: Sequence[Line]) -> Self:
-        """Return a model from any system and from lines without cylinder forces."""
+        """Return the model under all constant loads; lines get the normal forces of cylinders."""
         extended = list(lines)
         for number, cylinder in enumerate(boom.cylinders, start=1):
             line, foot = extended[cylinder.segment], boom.segments[cylinder.segment].foot
@@ -76,18 +76,18 @@ def section_forces(
         time: times (...) of the states in s.
     """
     read = line.read(states)
-    # The two positions at a jump are moved slightly apart.
+    # Both positions at a jump are moved slightly apart.
     jump = np.diff(line.x) == 0.0
     aside = _ASIDE * max(1.0, float(np.ptp(line.x)))
     x = line.x + aside * (np.append(False, jump).astype(float) - np.append(jump, False))
-    pressed = axial_force(boom.segments, boom.joints, number, x, time, boom.axial_changes)
+    thrust = axial_force(boom.segments, boom.joints, number, x, time, boom.axial_changes)
     if boom.telescopes or boom.axial_changes:
         # Lines already include the shear force at the start due to axial forces.
-        more = pressed - boom.segments[number].compression(x)
+        extra = thrust - boom.segments[number].compression(x)
         for deflection, shear in _ACROSS:
             if shear in read:
-                read[shear] -= more * _slopes(line, read[deflection])
-    return {**read, "normal": -pressed + read.get("normal", np.zeros((*states.shape[:-1], 1)))}
+                read[shear] -= extra * _slopes(line, read[deflection])
+    return {**read, "normal": -thrust + read.get("normal", np.zeros((*states.shape[:-1], 1)))}
 
 
 def _slopes(line: Line, deflection: Array) -> Array:

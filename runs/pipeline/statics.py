@@ -18,7 +18,7 @@ from geometry.cylinder import force_name
 from runs.case.schema import Case
 from runs.pipeline.static_results import station_loads
 
-# Fraction of the other reactions below which a reaction counts as zero.
+# Fraction of the largest reaction below which a reaction counts as zero.
 ROUND_OFF = 1.0e-9
 
 
@@ -37,7 +37,7 @@ class Reaction:
 class Statics(NamedTuple):
     """Static states of beam elements under the loads at t = 0, with and without play.
 
-    If no model of the case has play, ``with_play`` has none either.
+    If no model of the case has play, both states are those without play.
     """
 
     with_play: StaticState
@@ -73,7 +73,7 @@ def reactions(state: StaticState) -> list[Reaction]:
 
 
 def _joint_contacts(boom: Boom) -> set[tuple[int, float]]:
-    """Return inner segment and x in m of all contacts of joints."""
+    """Return the contacts of all joints, as index of the inner segment and x in m."""
     return {
         (joint.inner, x)
         for joint in boom.joints
@@ -83,7 +83,7 @@ def _joint_contacts(boom: Boom) -> set[tuple[int, float]]:
 
 
 def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float], Reaction]:
-    """Return support reactions and contact forces by segment and x in m; round-off is set to 0."""
+    """Return reactions and contact forces by segment index and x in m; round-off is set to 0."""
     boom, depths, along = state.boom, _depths(state), _axial_forces(state)
     places = _joint_contacts(boom)
     places |= {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
@@ -107,7 +107,7 @@ def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float],
 
 
 def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
-    """Return the axial forces of feet and cylinders in N, by segment and x in m."""
+    """Return the axial forces on feet and cylinder lugs in N, by segment index and x in m."""
     boom = state.boom
     forces: dict[tuple[int, float], float] = defaultdict(float)
     for number, segment in enumerate(boom.segments):
@@ -123,7 +123,7 @@ def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
 
 
 def _depths(state: StaticState) -> dict[tuple[int, float], float]:
-    """Return the compression in m of stations and stops along z, by segment and x in m."""
+    """Return the compression in m of contacts along z, by segment index and x in m."""
     boom = state.boom
     joints = [joint for joint in boom.joints if not joint.bonded]
     inner = [

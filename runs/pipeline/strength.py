@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Stresses in outer fibres and in walls of shells, their fatigue damage, and all utilisations.
+"""Stresses of outer fibres and of shell walls, fatigue damage, and utilisations.
 
 σ = N/A + M_y z/J + M_z y/J_z (Navier 1826). Section forces of a shell are integrals of its wall
 stresses, so that beams and shells give the same nominal stress.
@@ -162,8 +162,8 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
 def outer_corners(section: Section) -> tuple[Array, Array]:
     """Return y and z (num_corners,) in m of the outer corners of the plates, from the centroid.
 
-    A corner is half a thickness outside the mid-lines, along y and along z. The plate with the
-    normal nearer to the direction gives the thickness.
+    Along y and z, a corner lies half a thickness outside the intersection of two mid-lines. The
+    thickness is that of the plate with the larger component of its normal in this direction.
     """
     places, beyond = [], []
     for before, after in zip(
@@ -293,14 +293,14 @@ def endurance(sizes: Array, category: float) -> Array:
     return np.asarray(np.where(sizes >= cut_off, cycles, np.inf))
 
 
-def life(varying: StressHistory, table: LifeTable) -> Life:
+def life(stress_history: StressHistory, table: LifeTable) -> Life:
     """Return the fatigue damage of a segment at the fibre with the largest stress variation.
 
     Args:
-        varying: stress history of the fibre.
+        stress_history: stress history of the fibre.
         table: table ``life`` of the case.
     """
-    sizes, counts = count_stress_ranges(varying.stress)
+    sizes, counts = count_stress_ranges(stress_history.stress)
     damage = None
     if table.detail_category is not None:
         raised = table.partial_factor * sizes
@@ -308,8 +308,8 @@ def life(varying: StressHistory, table: LifeTable) -> Life:
     largest = float(sizes.max(initial=0.0))
     kept, edges = np.histogram(sizes, _CLASSES, (0.0, largest or 1.0), weights=counts)
     return Life(
-        varying.segment,
-        *varying.at,
+        stress_history.segment,
+        *stress_history.at,
         cycles=float(counts.sum()),
         largest=largest,
         equivalent=float((counts @ sizes**STEEP) ** (1.0 / STEEP)),
@@ -340,7 +340,7 @@ class Utilisation(NamedTuple):
 
 
 def utilisations(results: Results, model: str) -> dict[str, Utilisation]:
-    """Return the part of each kind with the largest utilisation, or load without strengths."""
+    """Return the part with the largest utilisation of each kind; without strengths, by load."""
     governing: dict[str, Utilisation] = {}
     for one in _loads(results, model):
         other = governing.setdefault(one.part, one)

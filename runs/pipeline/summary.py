@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Content of ``summary.json``: results of a run and of each model, in SI units.
 
-Fields are the keys of the file, in this order. The file has no key of a field that is not set. None
-becomes null.
+The fields are the keys of the file, in this order. A field that is not set has no key in the file;
+None becomes null.
 """
 
 from __future__ import annotations
@@ -49,8 +49,8 @@ class FirstPeak(NamedTuple):
 class EnsembleSummary(SummaryTable):
     """Summary of the ensemble of a model.
 
-    ``horizons`` has, for each share of the range, the time in s at which the tips of members differ
-    by this share. ``energy_residual`` is the maximum over the members.
+    ``horizons`` has the times in s at which the tips of the members differ by shares of the range
+    of the tip; the shares are the keys. ``energy_residual`` is the maximum over the members.
     """
 
     horizons: dict[str, FiniteNumber]
@@ -63,11 +63,11 @@ class EnsembleSummary(SummaryTable):
 
 
 class Predictability(SummaryTable):
-    """Times until small changes of the data grow to shares of the range of the tip.
+    """Times until small changes of a motion grow to shares of the range of the tip.
 
-    ``times`` (relatives, shares) in s for relative changes of the data and ``of_step`` (shares)
-    in s for a change of the time step; growth ``rate`` (shares) in 1/s; ``limits`` (shares) as in
-    :class:`dynamics.predictability.horizon.Horizons`.
+    ``times`` (num_relatives, num_shares) in s belong to relative changes of the data, ``of_step``
+    (num_shares,) in s to a finer time step. ``rate`` (num_shares,) is the growth rate in 1/s. The
+    other fields are those of :class:`dynamics.predictability.horizon.Horizons`.
     """
 
     relatives: list[float]
@@ -80,7 +80,7 @@ class Predictability(SummaryTable):
 
 
 class Trial(SummaryTable):
-    """Motion with longer steps of ``step`` s; ``holds`` is true if it preserves the slow peaks."""
+    """Motion with a step of ``step`` in s; ``holds`` is true if it preserves the slow peaks."""
 
     step: float
     steps: int
@@ -89,9 +89,9 @@ class Trial(SummaryTable):
 
 
 class StepsForPeaks(SummaryTable):
-    """Fewest steps that preserve the first slow peaks ``within`` a tolerance.
+    """Fewest steps of a motion that preserve the first slow peaks within the tolerance ``within``.
 
-    ``duration`` in s is the time of the last peak; ``fewest`` is None if no trial preserves them.
+    ``duration`` in s is that of the trials. ``fewest`` is None if no trial preserves the peaks.
     """
 
     peaks: int
@@ -104,9 +104,9 @@ class StepsForPeaks(SummaryTable):
 class BeamStiffness(SummaryTable):
     """Beam stiffness of a segment, determined from its shell.
 
-    ``bending`` is E I in N·m² and ``shear`` is G A_s in N, along z and in space along y;
-    ``torsion`` is G J_t in N·m² in space. Fields with ``part`` are ratios to the stiffness of the
-    section.
+    ``bending`` is E I in N·m² and ``shear`` is G A_s in N, along z and in space also along y.
+    ``torsion`` is G J_t in N·m² in space. Fields that end in ``part`` are ratios to the stiffness
+    of the section.
     """
 
     segment: str
@@ -119,7 +119,7 @@ class BeamStiffness(SummaryTable):
 
 
 class StationSpring(SummaryTable):
-    """Spring of a station in series with its contact: the local compliance of walls.
+    """Spring in series with the contact of a station, for the local compliance of walls.
 
     ``x`` is the position of the station in m, ``side`` the loaded wall of the outer segment, and
     ``stiffness`` in N/m is None for rigid walls.
@@ -213,7 +213,7 @@ class WholeRun(SummaryTable):
 class Comparisons(SummaryTable):
     """Comparisons of models with the reference, by model name.
 
-    ``ensembles`` has chaotic motions, ``whole`` motions that friction makes regular.
+    ``ensembles`` compares chaotic motions, ``whole`` motions that friction makes regular.
     """
 
     reference: str

@@ -34,7 +34,7 @@ _SLOW = 0.05
 # The angle of a pendulum is not small above this ratio of its swing to its length.
 _SMALL = 0.2
 
-# Number of modes that shapers suppress, and minimum part of the deflection of each of them.
+# Number of modes that a shaper suppresses, and smallest share of the deflection of such a mode.
 _SHAPED, _SHARE = 2, 0.05
 
 
@@ -42,7 +42,7 @@ _metres = partial(Metric, unit="m", factor=1.0, shown_unit="m", form=".3g")
 
 
 def _kilo(unit: str, title: str, heading: str) -> Metric:
-    """Return the metric of a result in an SI unit, which is displayed in thousands of it."""
+    """Return the metric of a result that is displayed in thousands of its SI unit."""
     return Metric(".", unit, title, TO_KILO, f"k{unit}", heading=heading, form=".3g")
 
 
@@ -153,12 +153,12 @@ def turning_lines(case: Case) -> Iterator[str]:
 
 
 def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[str]:
-    """Yield the shapers against vibration of the modes that slewing and luffing excite most.
+    """Yield the input shapers that suppress the modes which slewing and luffing excite most.
 
     Args:
         case: a checked case.
         system: gap system of a model, whose ``load`` includes all constant loads.
-        rest: equilibrium (num_modes,) under these loads; None for another start.
+        rest: equilibrium (num_modes,) under these loads; None if the motion starts elsewhere.
     """
     omega, shapes = closed_contact_modes(system, rest)
     frequencies, ratios = closed_contact_damping(system, rest)
@@ -182,8 +182,8 @@ def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[
 def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[Array, Array]]:
     """Return moment (num_times,) in N·m and power in W of slewing and of luffing, by key.
 
-    The result is empty without slewing and luffing. The boom counts as rigid. A load on a rope acts
-    by the computed rope force and swing.
+    The result is empty without slewing and luffing. The boom is taken as rigid. The force of a load
+    on a rope follows from the computed rope force and swing.
 
     Args:
         case: a checked case.
@@ -217,7 +217,7 @@ def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[A
 
 
 def crane_drives(case: Case, boom: Boom, data: xr.Dataset) -> CraneDrives | None:
-    """Return the demand on the drives of a crane in a motion; None without such drives.
+    """Return moments, powers and work of a crane's drives in a motion; None without such drives.
 
     Arguments as in :func:`drive_moments`.
     """
@@ -225,7 +225,7 @@ def crane_drives(case: Case, boom: Boom, data: xr.Dataset) -> CraneDrives | None
     steps = np.diff(data["time"].values)
     load = hanging_load(case, boom)
     if load is not None and load.hoist is not None:
-        # The force is the mean over the interval that ends at the time.
+        # A rope force is the mean over the output interval that ends at its time.
         works = data["rope_force"].values[1:] * np.diff(load.hoist(data["time"].values))
         results |= {"winch_power": (works / steps).max(), "winch_work": works.sum()}
     for key, (moment, power) in drive_moments(case, boom, data).items():

@@ -17,7 +17,7 @@ from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.pipeline.static_results import extended_positions, instants, positions
 
-# Relative difference below which displacements of a mode are equal; its residual is smaller.
+# Relative difference below which two displacements of a mode count as equal.
 _MIRRORED = 1.0e-3
 
 if TYPE_CHECKING:
@@ -45,10 +45,10 @@ class BuckledShell:
     """Buckling of the segments of a shell."""
 
     segments: list[WallBuckling]  #: buckling factors of each segment
-    #: first mode of each segment with a factor, by ``buckling_points`` (buckling_point, component)
-    #: in m and their ``buckling_shape``, whose largest magnitude in a segment is about 1;
-    #: ``buckling_triangles`` (buckling_triangle, corner) with their ``buckling_segment``;
-    #: ``buckling_factor`` (buckled). None if no segment has a factor.
+    #: first mode of each segment with a factor: mesh points ``buckling_points`` in m, displacements
+    #: ``buckling_shape`` (buckling_point, component) with a maximum of about 1 in each segment,
+    #: ``buckling_triangles`` (buckling_triangle, corner) with segment index ``buckling_segment``,
+    #: and ``buckling_factor`` (buckled). None if no segment has a factor.
     shapes: xr.Dataset | None
 
 
@@ -91,7 +91,7 @@ def buckle_shell(
 def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | None:
     """Return the static state with the largest tip deflection, None without an equilibrium.
 
-    Of a boom in space both directions count.
+    In space, the tip deflection is the resultant of both directions.
 
     Args:
         boom: boom with the contacts of the model.
@@ -108,9 +108,10 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | N
     names = [name for name in ("tip", "tip_lateral") if name in system.observers]
     tips = np.array([system.observers[name].row for name in names])
     time = max(equilibria, key=lambda time: float(np.linalg.norm(tips @ equilibria[time])))
-    ways = [travel(boom, number, time) for number in range(len(boom.segments))]
+    distances = [travel(boom, number, time) for number in range(len(boom.segments))]
     extensions = {
-        number: ways[joint.inner] - ways[joint.outer] for number, joint in enumerate(boom.joints)
+        number: distances[joint.inner] - distances[joint.outer]
+        for number, joint in enumerate(boom.joints)
     }
     assert built.shell is not None
     assert built.shell.fields is not None
@@ -120,13 +121,13 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | N
 
 
 def with_locations(name: str, buckling: SegmentBuckling) -> WallBuckling:
-    """Return the factors of a segment and the location of the largest displacement of each mode."""
+    """Return the buckling factors of a segment, and where each mode displaces most."""
     mesh, shapes = buckling.mesh, buckling.shapes
     assert mesh is not None
     assert shapes is not None
     walls, places = [], []
     for shape in shapes:
-        # Mirror images have equal displacements: take the first one, whatever the round-off.
+        # Mirror images have equal displacements up to round-off; take the first one.
         sizes = np.linalg.norm(shape, axis=1)
         point = int(np.argmax(sizes > (1.0 - _MIRRORED) * sizes.max()))
         # A point on a fold belongs to two walls.
