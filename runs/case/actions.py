@@ -34,8 +34,8 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
     Released loads and impulses determine the state at t = 0.
 
     Raises:
-        BoomError: a segment is unknown, a history is invalid, or a payload has its own gravity
-            although the table ``gravity`` is given.
+        BoomError: a segment is unknown, a history is invalid, or both the payload and the table
+            ``gravity`` give an acceleration of gravity.
     """
     if case.gravity is not None and case.payload is not None and case.payload.gravity is not None:
         raise BoomError(
@@ -75,8 +75,8 @@ def _initial_momentum(
     impulses: list[Load] = []
     for direction, speed, turn in planes:
         if speed or turn:
-            there = (speed - turn * x0) * segment.mass_per_length
-            impulses.append(Load(index, direction, there, None, InitialImpulse(), inertial=True))
+            momentum = (speed - turn * x0) * segment.mass_per_length
+            impulses.append(Load(index, direction, momentum, None, InitialImpulse(), inertial=True))
             impulses += [
                 Load(index, direction, (speed + turn * (p.x - x0)) * p.mass, p.x, InitialImpulse())
                 for p in segment.masses
@@ -89,7 +89,7 @@ def _initial_momentum(
 def _inertia_loads(
     acceleration: float, direction: Direction, history: History, segments: Sequence[Segment]
 ) -> list[Load]:
-    """Return the inertia loads of all masses under a ground acceleration in m/s²."""
+    """Return loads on all masses, each the mass times an acceleration in m/s²."""
     return [
         load
         for index, segment in enumerate(segments)
@@ -142,14 +142,14 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
         BoomError: a segment is unknown, a point is outside its segment, a rope has no payload, or a
             force is given twice or not at all.
     """
-    resolved = []
+    results = []
     for where, table in ((f"axial[{i}]", one) for i, one in enumerate(case.axial, start=1)):
         name: Any = segments[-1].name if table.segment is None else table.segment
         place: Any = Distance(head=0.0) if table.x is None else table.x
         thrust = Thrust(name, place, axial_force(where, table, case))
-        resolved.append(resolve_segments(thrust, where, segments))
-        segments[resolved[-1].segment].check_place(f"{where}.x", resolved[-1].x)
-    return tuple(resolved)
+        results.append(resolve_segments(thrust, where, segments))
+        segments[results[-1].segment].check_place(f"{where}.x", results[-1].x)
+    return tuple(results)
 
 
 def axial_force(where: str, table: AxialTable, case: Case) -> float:
@@ -198,19 +198,19 @@ def _load(where: str, table: LoadTable) -> Load:
             "a load that is let go has acted for ever, without a history; leave one of them out",
         )
     history = ReleasedLoad() if table.released else history
-    acts = table.segment, table.direction, table.magnitude, table.x, history
+    arguments = table.segment, table.direction, table.magnitude, table.x, history
     if table.moment and table.x is None:
         raise BoomError(f"{where}.x", "missing; it is the x in m at which the moment acts")
     for key, bound in (("from", table.start), ("to", table.end)):
         if bound is not None and table.x is not None:
             raise BoomError(f"{where}.{key}", "x is given; leave one of them out")
     if table.moment:
-        return Moment(*acts)
+        return Moment(*arguments)
     if table.start is None and table.end is None:
-        return Load(*acts)
+        return Load(*arguments)
     start: Any = Distance(tail=0.0) if table.start is None else table.start
     end: Any = Distance(head=0.0) if table.end is None else table.end
-    return PartialLoad(*acts, span=(start, end))
+    return PartialLoad(*arguments, span=(start, end))
 
 
 def stops(case: Case) -> tuple[Stop, ...]:
@@ -238,17 +238,17 @@ def stops(case: Case) -> tuple[Stop, ...]:
 def series_notes(case: Case) -> list[str]:
     """Return a note on each tabulated history that is shorter or longer than the run."""
     duration = case.time.duration
-    tabled = [(f"load[{i}]", load.table) for i, load in enumerate(case.loads, start=1)]
-    tabled += [(f"base[{i}]", base.table) for i, base in enumerate(case.base, start=1)]
+    tables = [(f"load[{i}]", load.table) for i, load in enumerate(case.loads, start=1)]
+    tables += [(f"base[{i}]", base.table) for i, base in enumerate(case.base, start=1)]
     notes = []
-    for key, table in tabled:
+    for key, table in tables:
         if table is None:
             continue
-        (first, early), (last, late) = table[0], table[-1]
+        (first, first_value), (last, last_value) = table[0], table[-1]
         remarks = [
-            *([f"its first value, {early:g}, is held before"] if first > 0.0 else []),
+            *([f"its first value, {first_value:g}, is held before"] if first > 0.0 else []),
             *(["what is before t = 0 is left out"] if first < 0.0 else []),
-            *([f"its last value, {late:g}, is held afterwards"] if last < duration else []),
+            *([f"its last value, {last_value:g}, is held afterwards"] if last < duration else []),
             *(["what comes after the run is left out"] if last > duration else []),
         ]
         if remarks:
@@ -258,7 +258,7 @@ def series_notes(case: Case) -> list[str]:
 
 
 def field_values(table: Any, part: type) -> dict[str, Any]:
-    """Return the values of a table of the case for the fields of a dataclass."""
+    """Return the values of a dataclass's fields by name, from a table of the case."""
     return {field.name: getattr(table, field.name) for field in fields(part)}
 
 

@@ -45,7 +45,7 @@ _OUTPUT_NAMES = {
     "model",
 }
 
-# Permitted relative difference between given beam properties and the properties of the plates: data
+# Permitted relative difference between the beam properties of a case and those of its plates: data
 # sheets give rounded numbers.
 SECTION_TOLERANCE = 0.01
 
@@ -104,8 +104,8 @@ def check_ensemble_data(case: Case, boom: Boom) -> None:
     if case.ensemble is None or all(model.bonded for model in case.models):
         return
     vary = case.ensemble.vary
-    passing = ReleasedLoad | InitialImpulse
-    amounts = [load.magnitude for load in boom.loads if not isinstance(load.history, passing)]
+    initial = ReleasedLoad | InitialImpulse
+    amounts = [load.magnitude for load in boom.loads if not isinstance(load.history, initial)]
     for segment in boom.segments:
         amounts += [segment.load, segment.lateral.load if segment.lateral else 0.0]
     if vary == "load" and not any(amounts):
@@ -126,13 +126,13 @@ def check_ensemble_data(case: Case, boom: Boom) -> None:
 def _check_observations(case: Case) -> None:
     """Check that the names of observations are unique."""
     check_names("observe", [table.name for table in case.observe])
-    of_drives = {
+    drive_names = {
         name + suffix
         for suffix in case.driven_segments
         for name in (*DRIVE_VARIABLES, *ELASTIC_DRIVE_VARIABLES)
     }
     for number, table in enumerate(case.observe, start=1):
-        if table.name in _OUTPUT_NAMES | of_drives:
+        if table.name in _OUTPUT_NAMES | drive_names:
             raise BoomError(
                 f"observe[{number}].name",
                 f"{table.name!r} is the name of another output already; give it its own",
@@ -190,7 +190,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         )
     forces = table.normal_forces
     if table.drive is not None and table.friction > 0.0 and not _is_spatial(case):
-        # The contacts press against sliding along the boom; nothing presses from the sides.
+        # Friction follows from the contact forces of each station, without given normal forces.
         forces = forces or (0.0,) * len(table.stations)
     changed = {"outer": outer, "inner": inner, "normal_forces": forces}
     joint = Joint(
@@ -203,16 +203,16 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
 
 
 def _check_plays(where: str, table: JointTable) -> None:
-    """Check that a side's play is within the whole play, and that interference has no play."""
-    for key, of, pressed in (
+    """Check that play on one side is at most the whole play, and that shims leave no play."""
+    for key, whole, shims in (
         ("play_above", "play", "interference"),
         ("lateral_play_right", "lateral_play", "lateral_interference"),
     ):
-        part, play = getattr(table, key), getattr(table, of)
+        part, play = getattr(table, key), getattr(table, whole)
         if part is not None and not part <= (play or 0.0):
-            raise BoomError(f"{where}.{key}", f"must be a part of {of}, got {part:g} m")
-        if getattr(table, pressed) > 0.0 and play != 0.0:
-            raise BoomError(f"{where}.{pressed}", f"shims leave no play; give {of} = 0")
+            raise BoomError(f"{where}.{key}", f"must be a part of {whole}, got {part:g} m")
+        if getattr(table, shims) > 0.0 and play != 0.0:
+            raise BoomError(f"{where}.{shims}", f"shims leave no play; give {whole} = 0")
 
 
 def _segment(case: Case, index: int, section: Section | None, ends: tuple[float, float]) -> Segment:
@@ -315,7 +315,7 @@ def _beam_properties(case: Case, index: int) -> tuple[float, float]:
 
 
 def _check_plates(case: Case, index: int, section: Section) -> None:
-    """Check that a section is given only once and agrees with given mass and second moment."""
+    """Check that the section has one definition, and the mass and second moment of the case."""
     table = case.segments[index]
     where = f"segment[{index + 1}]"
     if table.height_to_width is not None:
@@ -323,14 +323,14 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
     if not any(model.needs_shell for model in case.models):
         return
     density = material_of(case, index).density
-    for key, from_keys, of_plates in (
+    for key, case_value, plate_value in (
         ("mass_per_length", table.mass_per_length, section.mass_per_length(density)),
         ("second_moment_of_area", table.second_moment_of_area, section.second_moment_of_area),
     ):
-        if from_keys is not None and abs(from_keys / of_plates - 1.0) > SECTION_TOLERANCE:
+        if case_value is not None and abs(case_value / plate_value - 1.0) > SECTION_TOLERANCE:
             raise BoomError(
                 f"{where}.{key}",
-                f"{from_keys:g} is not the section's own {of_plates:.6g}, and beams and shell "
+                f"{case_value:g} is not the section's own {plate_value:.6g}, and beams and shell "
                 "would be different booms; leave it out, or change the section",
             )
 
@@ -387,11 +387,11 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
         for joint in joints:
             outer = sections[joint.outer]
             if sections[joint.inner] is None and outer is not None:
-                around = case.segments[joint.outer]
-                if around.head_section is not None:
+                outer_table = case.segments[joint.outer]
+                if outer_table.head_section is not None:
                     raise BoomError(
                         f"segment[{joint.inner + 1}].section",
-                        f"missing, and none is inferred within {around.name!r}, which tapers; "
+                        f"missing, and none is inferred within {outer_table.name!r}, which tapers; "
                         "give it",
                     )
                 sections[joint.inner] = _infer_section(case, joint.inner, (outer, 0.5 * joint.play))
@@ -399,12 +399,15 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
 
 
 def _infer_section(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:
-    """Infer a section from mass, second moment and a hint; None if none exists or is needed.
+    """Return a section with the mass and second moment of a segment; None if none exists.
 
     Args:
         case: the case.
         index: index of the segment.
         hint: height-to-width ratio, or the outer section and the clearance to it in m.
+
+    Raises:
+        BoomError: no section exists, and a model needs it.
     """
     mass, second_moment = _beam_properties(case, index)
     area = mass / material_of(case, index).density
@@ -421,7 +424,7 @@ def _infer_section(case: Case, index: int, hint: float | tuple[Section, float]) 
 def _spans(
     segments: Sequence[SegmentTable], joints: Sequence[JointTable]
 ) -> list[tuple[float, float]]:
-    """Return the x of the ends of each segment in m.
+    """Return the x in m of the start and the end of each segment.
 
     Args:
         segments: segments; the first one starts at x = 0 if it has a length only.
@@ -432,27 +435,27 @@ def _spans(
     """
     lengths = {segment.name: segment.length for segment in segments}
     ends = {segment.name: segment.span for segment in segments if segment.span is not None}
-    telescoped = [
+    with_extension = [
         (f"joint[{i}].extension", j) for i, j in enumerate(joints, 1) if j.extension is not None
     ]
-    for number, (where, joint) in enumerate(telescoped):
+    for number, (where, joint) in enumerate(with_extension):
         if lengths[joint.inner] is None:
             raise BoomError(
                 where,
                 f"{joint.inner!r} has a span, which says how far it is out; give it by its length, "
                 "or leave extension out",
             )
-        for other, before in telescoped[:number]:
-            if before.inner == joint.inner:
+        for other, earlier in with_extension[:number]:
+            if earlier.inner == joint.inner:
                 raise BoomError(
                     where, f"{joint.inner!r} has its place by {other}; leave one of them out"
                 )
     first = segments[0]
-    if first.length is not None and first.name not in {joint.inner for _, joint in telescoped}:
+    if first.length is not None and first.name not in {joint.inner for _, joint in with_extension}:
         ends[first.name] = 0.0, first.length
     # One pass per joint places the segments, in any order of the joints.
-    for _ in telescoped:
-        for where, joint in telescoped:
+    for _ in with_extension:
+        for where, joint in with_extension:
             if joint.outer in ends and joint.inner not in ends:
                 length = lengths[joint.inner]
                 assert length is not None
@@ -470,7 +473,7 @@ def _spans(
 def _inner_span(
     where: str, joint: JointTable, outer: tuple[float, float], length: float
 ) -> tuple[float, float]:
-    """Return the x of the ends of an inner segment in m, by its extension."""
+    """Return the x in m of the start and the end of an inner segment, from its extension."""
     start, end = outer
     assert joint.extension is not None
     least = max(0.0, length - (end - start))

@@ -39,7 +39,7 @@ class Column:
 
     name: str  #: name of the column in messages
     unit: str  #: unit of the numbers, if the heading gives no other
-    factor: bool = False  #: True if numbers without a unit are dimensionless factors
+    factor: bool = False  #: True if numbers without a unit in the heading are dimensionless
 
     def __str__(self) -> str:
         return self.name if self.factor else f"{self.name} in {self.unit}"
@@ -67,7 +67,7 @@ class Pairs:
     """Pairs of numbers from two columns, in the columns' units."""
 
     values: tuple[tuple[float, float], ...]  #: the first numbers of the pairs increase
-    measured: bool  #: True if the second column has a unit, so that its numbers are no factors
+    has_unit: bool  #: True if the second column has a unit, so that its numbers are no factors
 
 
 def read_pairs(
@@ -95,7 +95,7 @@ def read_pairs(
         if len(rows) > MOST_TIMES:
             raise _FileError(f"has {len(rows)} lines", f"give {MOST_TIMES} at most")
         headings = [rows.pop(0) for _ in range(2) if rows and not rows[0].has_number]
-        chosen, scales, measured = _choose_columns(headings, names, columns)
+        chosen, scales, has_unit = _choose_columns(headings, names, columns)
         for row in rows:
             row.check_columns(chosen, names)
         pairs = np.array([[row.number(i) for i in chosen] for row in rows])
@@ -110,18 +110,18 @@ def read_pairs(
     except OSError as error:
         what = f"'{shorten(str(place))}' cannot be read ({error.strerror}); {remedy}"
         raise BadInput(path, key, what) from None
-    except _FileError as unfit:
-        what = f"{name} {unfit.what}; {unfit.remedy or remedy}"
+    except _FileError as content_error:
+        what = f"{name} {content_error.what}; {content_error.remedy or remedy}"
         raise BadInput(path, key, what) from None
     except (ValueError, csv.Error):
         raise BadInput(path, key, f"{name} is no text; {remedy}") from None
-    return Pairs(tuple((float(x), float(y)) for x, y in pairs * scales), measured)
+    return Pairs(tuple((float(x), float(y)) for x, y in pairs * scales), has_unit)
 
 
 class _FileError(Exception):
     """Error in the content of a file. The message does not quote the content.
 
-    The user may have given the path of another file, whose content must stay private.
+    A wrong path may name a file whose content must stay private.
 
     Args:
         what: description of the error.
@@ -145,7 +145,7 @@ class _Row:
         return any(map(_is_number, self.cells))
 
     def check_columns(self, chosen: Sequence[int], names: Sequence[str] | None) -> None:
-        """Check that the chosen columns exist, and that a file without headings has no others."""
+        """Check that the line has the chosen columns, and no others unless columns are named."""
         count = len(self.cells)
         if count <= max(chosen) or (names is None and count != len(chosen)):
             columns = "1 column" if count == 1 else f"{count} columns"
@@ -195,10 +195,10 @@ def _is_number(cell: str) -> bool:
 def _choose_columns(
     headings: Sequence[_Row], names: Sequence[str] | None, columns: Sequence[Column]
 ) -> tuple[list[int], list[float], bool]:
-    """Return indices, unit factors and ``measured`` (see :class:`Pairs`) of the two columns.
+    """Return indices, unit factors and ``has_unit`` (see :class:`Pairs`) of the two columns.
 
     Raises:
-        _FileError: a missing name, too many columns, an incompatible unit.
+        _FileError: a name is missing, a unit does not fit, or there are too many columns.
     """
     if not headings:
         if names is not None:
@@ -232,8 +232,8 @@ def _choose_columns(
                 f"has a unit in line {of_units.line}, column {i + 1} that is {error}",
                 f"give {column.unit} or another unit of the kind",
             ) from None
-    measured = columns[1].factor and any(Unit.of(units[1] or "1").dimension)
-    return chosen, scales, measured
+    has_unit = columns[1].factor and any(Unit.of(units[1] or "1").dimension)
+    return chosen, scales, has_unit
 
 
 def _split_heading(cell: str) -> tuple[str, str | None]:

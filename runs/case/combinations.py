@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Load cases and combinations: static cases with changed keys and with factors on loads.
 
-The case of a combination has the masses of its load case. If the factor of a payload differs from
-the factor of the dead weight, a force at the tip, across and along the boom, adds the difference.
+The case of a combination has the masses of its load case. If the payload and the dead weight have
+different factors, a force at the tip, across and along the boom, adds the difference in weight.
 """
 
 from __future__ import annotations
@@ -39,17 +39,17 @@ _PLAIN = LoadCaseTable.model_validate({"name": "case"})
 class CombinedCase(NamedTuple):
     """The case of a combination in a load case, with the names of both."""
 
-    name: str  #: names of combination and load case, as far as the case gives them; else ``case``
+    name: str  #: names of the combination and the load case, if any; otherwise ``case``
     case: Case  #: the case with the loads of the combination
     combination: CombinationTable  #: the combination; a default one if the case gives none
 
 
 def combined_cases(case: Case) -> Iterator[CombinedCase]:
     """Yield the case of each combination in each of its load cases."""
-    alone = CombinationTable.model_validate({"name": "case", "factors": {}})
-    for combination in case.combinations or (alone,):
+    default = CombinationTable.model_validate({"name": "case", "factors": {}})
+    for combination in case.combinations or (default,):
         factors = UNIT
-        if combination is not alone:
+        if combination is not default:
             factors = {group: combination.factors.of(group) or 0.0 for group in UNIT}
         names = [combination.name] if case.combinations else []
         if not case.load_cases:
@@ -61,7 +61,7 @@ def combined_cases(case: Case) -> Iterator[CombinedCase]:
 
 
 def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) -> Case:
-    """Return the case with the keys of a load case and with factors on its loads.
+    """Return the case with the keys of a load case, and with factors on its loads.
 
     Raises:
         BoomError: an angle needs gravity, an extension has no joint, or the load of a hoist is not
@@ -80,7 +80,7 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
         key: getattr(case if getattr(table, key) is None else table, key)
         for key in ("loads", "axial", "base")
     }
-    plain = case.model_copy(
+    combined = case.model_copy(
         update={
             **replacements,
             "gravity": gravity,
@@ -98,23 +98,23 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
     dead = factors["dead"]
     segments = tuple(
         one.model_copy(update={"load": dead * one.load, "lateral_load": dead * one.lateral_load})
-        for one in plain.segments
+        for one in combined.segments
     )
     loads = [
         one.model_copy(update={"magnitude": factors[one.group] * one.magnitude})
-        for one in plain.loads
+        for one in combined.loads
     ]
     axial = [
         AxialTable(
             segment=one.segment,
             x=one.x,
-            force=factors[one.group] * axial_force(f"axial[{number}]", one, plain),
+            force=factors[one.group] * axial_force(f"axial[{number}]", one, combined),
         )
-        for number, one in enumerate(plain.axial, start=1)
+        for number, one in enumerate(combined.axial, start=1)
     ]
     base = [
         one.model_copy(update={"acceleration": factors[one.group] * one.acceleration})
-        for one in plain.base
+        for one in combined.base
     ]
     # Factor by which the model already multiplies the weight of the mass at the tip.
     weight_factor = 0.0
@@ -128,14 +128,14 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
     masses: list[tuple[Group, float]] = [("payload", table.payload or 0.0)]
     if case.payload is not None:
         masses.append((case.payload.group, case.payload.mass))
-    missing = acceleration * sum((factors[group] - weight_factor) * mass for group, mass in masses)
-    if missing:
+    extra = acceleration * sum((factors[group] - weight_factor) * mass for group, mass in masses)
+    if extra:
         angle = radians(0.0 if gravity is None else gravity.angle)
-        last = plain.segments[-1].name
-        tip = {"segment": last, "x": "head", "magnitude": -missing * cos(angle)}
+        last = combined.segments[-1].name
+        tip = {"segment": last, "x": "head", "magnitude": -extra * cos(angle)}
         loads.append(LoadTable.model_validate(tip))
-        axial.append(AxialTable(force=missing * sin(angle)))
-    return plain.model_copy(
+        axial.append(AxialTable(force=extra * sin(angle)))
+    return combined.model_copy(
         update={
             "segments": segments,
             "loads": tuple(loads),
@@ -162,7 +162,7 @@ def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:
 
 
 def _luffed_cylinders(case: Case, table: LoadCaseTable) -> Iterator[Cylinder]:
-    """Yield the cylinders in coordinates of the luffed boom, in which their ground rotates."""
+    """Yield the cylinders, whose ground points rotate about the foot relative to a luffed boom."""
     turn = 0.0
     if table.angle is not None and case.gravity is not None:
         turn = radians(table.angle - case.gravity.angle)

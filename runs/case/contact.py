@@ -38,7 +38,7 @@ _POWER_LAW_KEYS = ("stiffness", "stiffness_below", "exponent")
 
 
 def table_law(points: Sequence[tuple[float, float]], damping: float = 0.0) -> TableContact:
-    """Return the contact law of tabulated pairs of penetration in m and force in N.
+    """Return the contact law of a table of penetrations in m and forces in N.
 
     Raises:
         ValueError: the law is invalid.
@@ -57,14 +57,12 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
     return points
 
 
-def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
-    """Check that power laws have a stiffness, and other laws have none.
-
-    Other laws are tables, and pads with a thickness.
+def _check_law(table: ContactTable, power_keys: Sequence[str]) -> None:
+    """Check that a power law has a stiffness, and a table or an elastic pad has none.
 
     Args:
         table: the table of a contact or a joint.
-        of_power: keys that only power laws may have.
+        power_keys: keys that only power laws may have.
 
     Raises:
         ValidationError: a key is missing or superfluous.
@@ -80,7 +78,7 @@ def _check_law(table: ContactTable, of_power: Sequence[str]) -> None:
             raise error_at(table, "missing", "stiffness")
         return
     others = tables if pad else tables[1:]
-    keys = others + [key for key in of_power if getattr(table, key) is not None]
+    keys = others + [key for key in power_keys if getattr(table, key) is not None]
     if keys:
         raise superfluous_error(table, superfluous_key, *keys)
 
@@ -104,7 +102,7 @@ class RestitutionTable(CaseTable):
 
 @dataclass(frozen=True, config=PART, kw_only=True)
 class ContactTable:
-    """Contact law of one model, which replaces the laws of all joints."""
+    """Contact law of one model, in place of the laws of all joints."""
 
     force_table: Forces | None = None
     """pairs of a penetration in m and a force in N, linear between them and from 0 on, instead of
@@ -130,7 +128,7 @@ class ContactTable:
         return self
 
     def exponent_of(self, key: str) -> float | None:
-        """Return the exponent of the power law of a stiffness key; None if it is not given."""
+        """Return the exponent of the power law of a stiffness key; None if the case has none."""
         return self.exponent or 2.0
 
     def law(self, direction: Direction) -> ContactLaw | None:
@@ -156,7 +154,7 @@ class JointTable(ContactTable, BareJoint):
 
     @property
     def elastic_pads_key(self) -> str | None:
-        """The key of pads whose thickness determines the contact stiffness; None without one."""
+        """The key of pads whose thickness determines the contact stiffness; None without such."""
         if self.pads:
             return "pads"
         return "pad.thickness" if self.pad is not None and self.pad.thickness else None
@@ -208,8 +206,8 @@ def _law(
 ) -> ContactLaw:
     from dynamics.contact import PowerContact, restitution_damping
 
-    blow = table.restitution
-    damping = 0.0 if blow is None else restitution_damping(blow.coefficient, blow.speed)
+    impact = table.restitution
+    damping = 0.0 if impact is None else restitution_damping(impact.coefficient, impact.speed)
     if table.force_table is not None and stiffness is None:
         return table_law(table.force_table, damping=damping)
     assert stiffness is not None

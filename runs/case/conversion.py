@@ -49,7 +49,7 @@ def convert_to_si(case: Case) -> Case:
 
 
 def _convert_value(value: Any, sizes: Sequence[Fraction]) -> Any:
-    """Return a value in SI units. Of several sizes, each converts one number of a tuple."""
+    """Return a value in SI units; of several unit sizes, each converts one item of a tuple."""
     if isinstance(value, dict):
         return {key: _convert_value(item, sizes) for key, item in value.items()}
     if isinstance(value, tuple) and len(sizes) == len(value) > 1 and isinstance(value[0], float):

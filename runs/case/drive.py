@@ -24,7 +24,7 @@ _TIMES, _PER_PERIOD, _MOST_TIMES = 2001, 100, 1_000_001
 # Two times closer than this fraction of the duration count as one.
 _SAME_TIME = 1.0e-9
 
-# Keys of which one defines the history of the extension.
+# Keys that define the history of the extension; a drive has one of them.
 _HISTORY_KEYS = ("time", "speed", "table")
 
 Ratio = Annotated[float, Field(strict=True, ge=0.0, lt=1.0)]
@@ -61,12 +61,12 @@ class TravelTable(CaseTable):
     """pairs of the frequency in Hz and the damping ratio of a mode of which no vibration shall
     remain; check offers them for slewing and luffing"""
 
-    # Unit of the travel, and history through the points of a table.
+    # Unit of the travel, and class of the history that interpolates a table.
     unit: ClassVar[str] = "m"
     interpolation: ClassVar[type[PiecewiseLinear] | type[Spline]] = PiecewiseLinear
 
     def history(self, where: str) -> MotionLaw:
-        """Return the history of the extension in m, with its shapers.
+        """Return the history of the travel in ``unit``, after input shaping.
 
         Arguments and errors as in :meth:`unshaped`.
         """
@@ -76,7 +76,7 @@ class TravelTable(CaseTable):
         return law
 
     def unshaped(self, where: str) -> MotionLaw:
-        """Return the history of the extension in m without shapers.
+        """Return the history of the travel in ``unit``, before input shaping.
 
         Args:
             where: key of the drive.
@@ -168,12 +168,12 @@ class DriveTable(TravelTable):
             inner: name of the inner segment, and the x of its tail in m.
 
         Raises:
-            BoomError: as :meth:`history`, or a station is on no segment.
+            BoomError: see :meth:`history`; or a station is on no segment.
         """
         history = self.history(f"{where}.drive")
         name, tail = inner
-        goes = f"{where}.stations", "the station", name
-        carriers = tuple(_carrier(place, *goes) for place in stations)
+        context = f"{where}.stations", "the station", name
+        carriers = tuple(_carrier(place, *context) for place in stations)
         locked: Carrier = "inner"
         if isinstance(locked_at, float) and locked_at < tail:
             # A cylinder, fixed at locked_at on the outer segment, pushes the tail.
@@ -186,7 +186,7 @@ class DriveTable(TravelTable):
 
 
 def max_speed(history: History) -> float:
-    """Return the largest speed in m/s of a travel in m over time."""
+    """Return the largest speed in m/s of a history of travel in m."""
     times = resolving_times([history], max(history.kinks))
     return float(np.abs(np.diff(history(times)) / np.diff(times)).max())
 
@@ -200,12 +200,12 @@ def resolving_times(histories: Sequence[History], duration: float) -> Array:
     """
     times = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
     kinks = np.unique(np.array(times))
-    swings = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
-    number = int(np.clip(np.ceil(_PER_PERIOD * swings) + 1.0, _TIMES, _MOST_TIMES))
-    even = np.linspace(0.0, duration, number)
-    nearest = np.clip(np.rint(kinks / even[1]), 1, number - 2).astype(np.int64)
-    same = np.abs(even[nearest] - kinks) <= _SAME_TIME * duration
-    return np.union1d(np.delete(even, nearest[same]), kinks)
+    cycles = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
+    number = int(np.clip(np.ceil(_PER_PERIOD * cycles) + 1.0, _TIMES, _MOST_TIMES))
+    uniform_times = np.linspace(0.0, duration, number)
+    nearest = np.clip(np.rint(kinks / uniform_times[1]), 1, number - 2).astype(np.int64)
+    same = np.abs(uniform_times[nearest] - kinks) <= _SAME_TIME * duration
+    return np.union1d(np.delete(uniform_times, nearest[same]), kinks)
 
 
 def _carrier(place: float | Distance, where: str, what: str, inner: str) -> Carrier:

@@ -15,7 +15,7 @@ from runs.case.contact import JointTable
 from runs.case.drive import DriveTable
 from runs.case.schema import Case
 
-# Largest natural frequency or decay rate of an elastic drive in Hz; a stiffer one counts as rigid.
+# Largest natural frequency or decay rate of an elastic drive in Hz; stiffer drives must be rigid.
 _MAX_RATE = 1.0e3
 
 
@@ -34,9 +34,9 @@ def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
             1.0 if drive.static_friction is None else drive.static_friction / joint.friction,
             boom.segments[boom.joints[number].inner].compression.transferred,
             tuple(
-                (_moved_mass(boom, number, other), beside.drive.history)
-                for other, beside in enumerate(boom.joints)
-                if other != number and beside.drive is not None
+                (_moved_mass(boom, number, other), neighbour.drive.history)
+                for other, neighbour in enumerate(boom.joints)
+                if other != number and neighbour.drive is not None
             ),
         )
         for number, joint, drive in _drives(case)
@@ -114,7 +114,7 @@ def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:
 
 
 def _moved_mass(boom: Boom, *joints: int) -> float:
-    """Return the mass in kg of the segments that the drives of all these joints move."""
+    """Return the mass in kg of the segments that move with each of these joints' drives."""
     return sum(
         segment.mass
         for number, segment in enumerate(boom.segments)

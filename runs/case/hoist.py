@@ -132,8 +132,8 @@ def check_hoist(case: Case, spatial: bool) -> None:
                 f"hoist.wind[{number}].direction",
                 "the boom is flat, and nothing moves along 'y'; give the joints lateral_play",
             )
-    of_rope = {key: getattr(table, key) for key in ("area", "modulus", "length")}
-    for key, value in of_rope.items():
+    rope_data = {key: getattr(table, key) for key in ("area", "modulus", "length")}
+    for key, value in rope_data.items():
         if table.stiffness is None and value is None:
             raise BoomError(f"hoist.{key}", "missing; give it, or the stiffness of the rope")
         if table.stiffness is not None and value is not None:
@@ -181,19 +181,19 @@ def _pendulum(case: Case, boom: Boom, length: float, winds: Sequence[WindTable])
 def hoist_changes(
     case: Case, segments: Sequence[Segment], joints: Sequence[Joint]
 ) -> Iterator[AxialChange]:
-    """Yield the change of axial forces by a load that the rope lifts from the ground."""
+    """Yield the change of axial forces while the rope lifts a load from the ground."""
     table = case.hoist
     if table is None or case.gravity is None or table.hanging or not case.gravity.along:
         return
     rope = Thrust(len(segments) - 1, segments[-1].end, table.mass * case.gravity.along)
-    pressed = with_compression(segments, joints, [rope])
+    loaded_segments = with_compression(segments, joints, [rope])
     stretch = table.mass * case.gravity.acceleration / table.rope_stiffness
     force = RopeForce(table.history("hoist"), stretch, table.slack)
-    yield AxialChange(force, [segment.compression for segment in pressed])
+    yield AxialChange(force, [segment.compression for segment in loaded_segments])
 
 
 def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
-    """Return a model's system with the hoisted load of its case, if there is one.
+    """Return a model's gap system with the hoisted load of its case, if any.
 
     Raises:
         NumericsError: see :func:`with_initial_slack`.
@@ -208,10 +208,10 @@ def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
 
 
 def with_initial_slack(system: GapSystem, case: Case) -> GapSystem:
-    """Return the system with initial slack of the rope if the load lies on the ground.
+    """Return the gap system with initial slack of the rope if the load lies on the ground.
 
-    The slack of the case counts from the tip in its initial position. The last contacts of the
-    system are rope and ground.
+    The case gives the slack relative to the initial position of the tip. The last two contacts of
+    the system are the rope and the ground.
 
     Raises:
         NumericsError: the boom has no equilibrium from which to start.
@@ -220,7 +220,7 @@ def with_initial_slack(system: GapSystem, case: Case) -> GapSystem:
         return system
     *laws, rope, ground = system.laws
     assert isinstance(rope, Gap)
-    slack = replace(system, laws=[*laws, replace(rope, above=_SLACK), ground])
-    rest = initial_state(slack, case.start.at_rest)[1]
-    straight = replace(rope, above=case.hoist.slack + float(system.rows[-2] @ rest))
-    return replace(system, laws=[*laws, straight, ground])
+    free_system = replace(system, laws=[*laws, replace(rope, above=_SLACK), ground])
+    start = initial_state(free_system, case.start.at_rest)[1]
+    taut_rope = replace(rope, above=case.hoist.slack + float(system.rows[-2] @ start))
+    return replace(system, laws=[*laws, taut_rope, ground])

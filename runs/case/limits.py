@@ -15,7 +15,7 @@ from geometry.fields import PART, In, declared_units, fields_of, names_of
 
 
 class CaseTable(BaseModel):
-    """A table of the case file, immutable, without unknown keys."""
+    """An immutable table of the case file. Unknown keys are errors."""
 
     model_config = ConfigDict(**PART, frozen=True)
 
@@ -30,11 +30,11 @@ def is_table(value: Any) -> bool:
 
 
 def map_tables(table: Any, change: Callable[[str, Any], Mapping[str, Any]], key: str = "") -> Any:
-    """Return a table with changed values in it and in all tables within it.
+    """Return a copy of a table with changed values, also in all tables within it.
 
     Args:
         table: a table of a case, or a part of a boom.
-        change: function of a key and its table that returns changed values by the names of fields.
+        change: function that returns changed values by field name, from the key and its table.
         key: key of the table, empty for a case.
     """
 
@@ -59,7 +59,7 @@ def map_tables(table: Any, change: Callable[[str, Any], Mapping[str, Any]], key:
 
 
 def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
-    """Return the units of the numbers of a key; empty for other values.
+    """Return the units of the numbers of a key; an empty tuple for other values.
 
     Args:
         table: table with the key.
@@ -107,7 +107,7 @@ Text = Annotated[str, Field(pattern=PRINTABLE, max_length=200)]
 
 # The run stores the whole tip history of each member.
 MOST_MEMBERS = 10_000
-# More plates are an input error, and would take too long to draw.
+# Larger numbers are input errors, and would take too long to draw.
 MOST_SEGMENTS, MOST_MODELS, MOST_FACETS = 20, 50, 20
 # This suffices for one minute of measured accelerations at 1 kHz.
 MOST_TIMES = 100_000
@@ -128,7 +128,7 @@ Modes = Annotated[
 ]
 
 
-# A mesh with shorter edges is too fine for one machine.
+# With a smaller tolerance the mesh is too fine for one machine.
 LEAST_CONTACT_TOLERANCE = 1.0e-3
 
 

@@ -21,10 +21,10 @@ from runs.case.load_tables import AxialTable
 from runs.case.sections import SHAPES
 from runs.process.terminal import shorten
 
-# Key of each attribute of a boom.
+# Key of the case file for each attribute of a boom.
 _PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}
 _PARTS["observations"] = "observe"
-# The key for names that engineers use elsewhere, in tables that have it, or everywhere with a dot.
+# Keys for other names that engineers use. A key without a dot applies where the table has it.
 _SYNONYMS = {
     "overlap": "extension", "clearance": "play", "gap": "play", "angle": "gravity.angle",
     "luffing_angle": "gravity.angle", "e": "youngs_modulus", "e_modulus": "youngs_modulus",
@@ -76,7 +76,7 @@ _MESSAGES = {
 
 
 class BadInput(Exception):
-    """An input error: file, key, and the error with the valid input."""
+    """An input error, with its file, its key and a message that tells the valid input."""
 
     def __init__(self, file: str, key: str, what: str) -> None:
         super().__init__(" ".join(f"{shorten(file)}: {shorten(key)}: {what}".split()))
@@ -88,7 +88,7 @@ class BadInput(Exception):
     def from_validation(cls, file: str, error: ValidationError) -> BadInput:
         """Return the most informative error of a validation.
 
-        A misspelled key causes two errors, for an unknown and a missing key. The first one counts.
+        If a misspelled key causes two errors, this is the unknown key, not the missing one.
         """
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] in _UNKNOWN), faults[0])
@@ -96,7 +96,7 @@ class BadInput(Exception):
 
     @classmethod
     def from_boom(cls, file: str, error: BoomError) -> BadInput:
-        """Return the error at a key of the file: ``segment[2].span``, not ``segments[1].start``."""
+        """Return the error at its key: ``segment[2].span`` for attribute ``segments[1].start``."""
         part = re.split(r"\W", error.where)[0]
         if part not in _PARTS:
             return cls(file, error.where, error.what)
@@ -205,11 +205,11 @@ def _unknown_key(location: Sequence[int | str]) -> str:
     heading = next((step for step in reversed(location[:-1]) if isinstance(step, str)), "")
     if (heading, key) in _ADVICE:
         return f"unknown key; {_ADVICE[heading, key]}"
-    use = _SYNONYMS.get(key.lower(), "")
-    if "." in use:
-        return f"unknown key; use {use}"
-    if use in keys:
-        return f"unknown key; use {use}, {describe(fields_of(table)[names_of(table)[use]])}"
+    known = _SYNONYMS.get(key.lower(), "")
+    if "." in known:
+        return f"unknown key; use {known}"
+    if known in keys:
+        return f"unknown key; use {known}, {describe(fields_of(table)[names_of(table)[known]])}"
     near = [one for one in keys if sorted(one.split("_")) == sorted(key.split("_"))]
     near = near or get_close_matches(shorten(key), keys, n=1)
     if near:

@@ -62,7 +62,7 @@ def load_checked(path: str) -> CheckedCase:
 
 
 def load_spreads(path: str) -> list[Spread]:
-    """Return the distributions of a case file; raise the errors of :func:`load`."""
+    """Return the normal distributions of a case file's numbers, or raise as :func:`load`."""
     return take_means(_read(path), path)[1]
 
 
@@ -177,7 +177,7 @@ def select(
 def _with_shells(
     models: Sequence[Model], path: str, option: str, update: Mapping[str, object]
 ) -> tuple[Model, ...]:
-    """Set an option of the command line in the shells of models."""
+    """Return the models with keys of their shells changed by a command-line option."""
     if not any(model.needs_shell for model in models):
         raise BadInput(path, option, "no shell is to be run; leave it out")
     return tuple(model.with_shells(update) for model in models)
@@ -261,10 +261,10 @@ def _history(path: str, key: str, table: HistoryTable, system: System) -> dict[s
     (unit,) = units_of(table, table.amount)
     wanted = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
     read = read_pairs(path, f"{key}.file", table.file, table.columns, wanted)
-    if not read.measured and table.amount not in table.model_fields_set:
+    if not read.has_unit and table.amount not in table.model_fields_set:
         what = describe(type(table).model_fields[table.amount])
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
-    # Without this the default value would be in SI units, not in the units of the case file.
+    # Values that are set are in the units of the case file; defaults would be in SI units.
     amount = {table.amount: getattr(table, table.amount)}
     return {"file": None, "columns": None, "table": read.values, **amount}
 

@@ -60,9 +60,9 @@ class UsualRange(NamedTuple):
         displayed = system.of(self.value, self.unit)
         text = f"{self.what} is {displayed:.5g}{label}, usual is {' '.join(limits)}{label}"
         for name in _LIKELY_UNITS.get(self.unit, ()):
-            meant = displayed * Unit.of(name).factor
-            if self.least <= meant <= self.most:
-                return f"{text}; if it is in {name}, give {system.of(meant, self.unit):.5g}{label}"
+            likely = displayed * Unit.of(name).factor
+            if self.least <= likely <= self.most:
+                return f"{text}; if it is in {name}, give {system.of(likely, self.unit):.5g}{label}"
         return f"{text}; check the number and its unit"
 
 
@@ -105,7 +105,7 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
 
 
 def _category_range(where: str, category: float, least: float) -> UsualRange:
-    """Return the range of a detail category; ``least`` applies to steel or to any metal."""
+    """Return the range of a detail category, from the lowest category of the metal."""
     what = "the detail category after EN 1993-1-9, in N/mm^2,"
     return UsualRange(f"{where}.detail_category", what, category, "1", least, 160.0, 10.0)
 
@@ -143,10 +143,10 @@ def _section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
         f"{where}.section", what, wall.thickness, "m", wall.length / 1e3, np.inf, 100.0
     )
     if segment.head_section is None:
-        of_plates, from_key = section.second_moment_of_area, segment.second_moment_of_area
+        plate_value, case_value = section.second_moment_of_area, segment.second_moment_of_area
         where, what = f"{where}.second_moment_of_area", "the second moment of area"
         what = f"{what} beside the plates of {name}"
-        yield UsualRange(where, what, from_key, "m^4", 0.5 * of_plates, 2.0 * of_plates, 50.0)
+        yield UsualRange(where, what, case_value, "m^4", 0.5 * plate_value, 2.0 * plate_value, 50.0)
 
 
 def _joint_ranges(case: Case, boom: Boom, number: int) -> Iterator[UsualRange]:

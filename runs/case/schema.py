@@ -144,7 +144,7 @@ Velocity = Annotated[
 ]
 
 
-# Key of the table that a plain number in place of the table sets.
+# Key that a plain number sets if it stands in place of the table.
 PLAIN_NUMBER_KEYS = {Support: "x", VelocityTable: "z"}
 
 
@@ -344,7 +344,7 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def regular(self) -> bool:
-        """True if dry friction makes the motion regular, so that runs do not diverge.
+        """True if runs with slightly different data stay close, because of dry friction.
 
         This needs friction under given normal forces at each station, and no stops. Friction
         under the contact forces alone does not suffice.
@@ -356,7 +356,7 @@ class Case(CaseKeys, CaseHeading):
 
     @property
     def driven_segments(self) -> dict[str, str]:
-        """The name of the inner segment of each drive, by the suffix of the drive's results."""
+        """The name of the segment that each drive moves, by the suffix of the drive's results."""
         return {
             "" if number == 1 else f"-{number}": joint.inner
             for number, joint in enumerate(self.joints, start=1)

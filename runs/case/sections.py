@@ -20,7 +20,7 @@ from runs.case.limits import MOST_FACETS, CaseTable
 class ShapeTable(CaseTable):
     """Keys of every shape of a section."""
 
-    # Function that returns the section of the other keys.
+    # Function that returns the section from all keys except ``shape``.
     make: ClassVar[Callable[..., Section]]
     shape: str
 

@@ -26,25 +26,25 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
     """
     spreads: list[Spread] = []
 
-    def taken(here: object, steps: tuple[str | int, ...]) -> object:
-        if isinstance(here, list):
-            return [taken(value, (*steps, i)) for i, value in enumerate(here)]
-        if not isinstance(here, Mapping):
-            return here
-        if here.keys() != {"mean", "sd"}:
-            return {key: taken(value, (*steps, key)) for key, value in here.items()}
-        mean, sd = here["mean"], here["sd"]
-        if not (_finite(mean) and _finite(sd) and sd > 0.0):
+    def replace_by_means(item: object, steps: tuple[str | int, ...]) -> object:
+        if isinstance(item, list):
+            return [replace_by_means(value, (*steps, i)) for i, value in enumerate(item)]
+        if not isinstance(item, Mapping):
+            return item
+        if item.keys() != {"mean", "sd"}:
+            return {key: replace_by_means(value, (*steps, key)) for key, value in item.items()}
+        mean, sd = item["mean"], item["sd"]
+        if not (_is_finite(mean) and _is_finite(sd) and sd > 0.0):
             key = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{s}" for s in steps)[1:]
             what = f"must have a finite mean and an sd above 0, got {mean!r} and {sd!r}"
             raise BadInput(file, key, what)
         spreads.append(Spread(steps, float(mean), float(sd)))
         return mean
 
-    return {key: taken(value, (key,)) for key, value in tables.items()}, spreads
+    return {key: replace_by_means(value, (key,)) for key, value in tables.items()}, spreads
 
 
-def _finite(value: object) -> TypeGuard[float]:
+def _is_finite(value: object) -> TypeGuard[float]:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return math.isfinite(value)

@@ -21,7 +21,7 @@ def dumps(case: Case) -> str:
 
 
 def digest(case: Case) -> str:
-    """Return the SHA-256 of the case as TOML."""
+    """Return the SHA-256 of the case's TOML text, in hexadecimal digits."""
     return hashlib.sha256(dumps(case).encode()).hexdigest()
 
 

@@ -89,7 +89,7 @@ def check_turning(case: Case, spatial: bool) -> None:
 
 
 def frame_motion(case: Case, segments: Sequence[Segment]) -> FrameMotion:
-    """Return slewing and luffing of a checked case."""
+    """Return the motion of the boom's frame by slewing and luffing, of a checked case."""
     histories = {
         key: table.history(key)
         for key, table in (("slew", case.slew), ("luff", case.luff))
@@ -108,7 +108,7 @@ def frame_motion(case: Case, segments: Sequence[Segment]) -> FrameMotion:
 def turning_loads(
     frame: FrameMotion, segments: Sequence[Segment], joints: Sequence[Joint]
 ) -> Iterator[Load]:
-    """Yield inertia loads across the boom by slewing and luffing, and changes of its weight."""
+    """Yield the inertia loads and weight changes across the boom due to slewing and luffing."""
     if not (frame.slew.kinks or frame.luff.kinks):
         return
     directions: tuple[Direction, ...] = ("z", "y")
@@ -116,13 +116,13 @@ def turning_loads(
         extension = HistorySum(tuple(drive.history for drive in drives_of(joints, number)))
         for direction in directions:
             mass = segment.mass_per_length
-            even, growing, *points = (
+            uniform, linear, *points = (
                 FrameAcceleration(frame, direction, x, extension)
                 for x in (0.0, None, *(point.x for point in segment.masses))
             )
-            if growing.peak or even.peak:
-                yield Load(number, direction, -mass, None, even, inertial=True)
-                yield AngularAcceleration(number, direction, -1.0, None, growing)
+            if linear.peak or uniform.peak:
+                yield Load(number, direction, -mass, None, uniform, inertial=True)
+                yield AngularAcceleration(number, direction, -1.0, None, linear)
                 for point, history in zip(segment.masses, points, strict=True):
                     yield Load(number, direction, -point.mass, point.x, history)
 
@@ -130,7 +130,7 @@ def turning_loads(
 def turning_changes(
     frame: FrameMotion, segments: Sequence[Segment], joints: Sequence[Joint], hanging: float
 ) -> Iterator[AxialChange]:
-    """Yield the changes of axial forces by slewing and luffing, and the centrifugal terms.
+    """Yield the changes of axial forces due to slewing and luffing, and centrifugal terms.
 
     ``hanging`` is the mass in kg of a load on a rope, which counts as a mass at the tip.
     """
@@ -145,17 +145,17 @@ def turning_changes(
     )
     if hanging:
         masses[-1] += (PointMass(segments[-1].end, hanging),)
-    moved = [tuple(drives_of(joints, number)) for number in range(len(segments))]
-    for drives in dict.fromkeys(moved):
+    drives_of_segments = [tuple(drives_of(joints, number)) for number in range(len(segments))]
+    for drives in dict.fromkeys(drives_of_segments):
         extension = HistorySum(tuple(drive.history for drive in drives))
         for x in (0.0, None):
             history = FrameAcceleration(frame, "x", x, extension)
             thrusts = [
                 Thrust(number, mass.x, mass.mass * (1.0 if x is not None else mass.x))
                 for number, masses_of_segment in enumerate(masses)
-                if moved[number] == drives
+                if drives_of_segments[number] == drives
                 for mass in masses_of_segment
             ]
             if history.peak:
-                pressed = with_compression(segments, joints, thrusts)
-                yield AxialChange(history, [segment.compression for segment in pressed])
+                loaded_segments = with_compression(segments, joints, thrusts)
+                yield AxialChange(history, [segment.compression for segment in loaded_segments])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cache of results under the hash of their inputs.
 
-An entry is a file. Its first line, the SHA-256 of its key and content, reveals disk errors and
-foreign files. Entries are written atomically and never change. The cache removes the least recently
-used entries.
+An entry is a file. Its first line is the SHA-256 of its key and content, by which disk errors and
+foreign files are detected. Entries are written atomically and never change. The cache removes the
+least recently used entries.
 """
 
 from __future__ import annotations
@@ -48,10 +48,10 @@ _HEAD = 65
 
 
 def key(*content: Any) -> str:
-    """Return the SHA-256 of the content, to the last bit, and of the version of the program.
+    """Return the key of an entry: the SHA-256 of its inputs and of the version of the program.
 
     Raises:
-        TypeError: a record cannot have this content, see :func:`runs.folder.records.write`.
+        TypeError: an input is of a type that :func:`runs.folder.records.write` does not write.
     """
     digest = sha256()
     records.write((content, program()), SimpleNamespace(write=digest.update))
@@ -60,7 +60,7 @@ def key(*content: Any) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Cache:
-    """Cache of entries by their keys."""
+    """A folder of entries with their keys as names."""
 
     folder: Path  #: folder of the entries, which is created with the first entry
 
@@ -68,7 +68,7 @@ class Cache:
     def of_user(cls) -> Cache | None:
         """Return the cache in ``$PROTRACTILE_CACHE``, or in the cache folder of the user.
 
-        Without a home folder it gives a notice and returns None.
+        Print a notice and return None if there is no home folder.
         """
         if path := os.environ.get(VARIABLE):
             return cls(Path(path))
@@ -84,7 +84,7 @@ class Cache:
         return cls(Path(caches) / "protractile")
 
     def load(self, key: str, kind: type[Entry]) -> Entry | None:
-        """Return the entry as an object of a class; None if it is missing or damaged."""
+        """Return the entry of a key, of the class ``kind``; None if it is missing or damaged."""
         entry = self._entry(key)
         # The entry may belong to another user.
         with suppress(OSError):
@@ -129,7 +129,7 @@ class Cache:
 
         Raises:
             OSError: the entry cannot be written.
-            TypeError: a record cannot have this content.
+            TypeError: the object is of a type that records do not have.
         """
         with atomic_path(self._entry(key)) as part, part.open("w+b") as file:
             file.write(bytes(_HEAD))
@@ -155,14 +155,14 @@ class Cache:
 
     def make_room(self, room: int = MAX_SIZE) -> None:
         """Remove the least recently used entries until the others fit into ``room`` bytes."""
-        used: list[tuple[float, int, Path]] = []
+        files: list[tuple[float, int, Path]] = []
         for entry in self.folder.glob(f"*{_SUFFIX}"):
             # Another process may remove the same entry.
             with suppress(OSError):
                 status = entry.stat()
-                used.append((status.st_mtime, status.st_size, entry))
-        total = sum(size for _, size, _ in used)
-        for _, size, entry in sorted(used)[:-1]:
+                files.append((status.st_mtime, status.st_size, entry))
+        total = sum(size for _, size, _ in files)
+        for _, size, entry in sorted(files)[:-1]:
             if total <= room:
                 return
             entry.unlink(missing_ok=True)
@@ -178,7 +178,7 @@ def load_or_compute(
     comm: MPI.Comm,
     compute: Callable[[], ReducedShell],
 ) -> ReducedShell:
-    """Return a reduced shell from the cache, or compute it. Collective.
+    """Return a reduced shell from the cache, or compute it. All ranks must call it.
 
     If several processes need the same shell, one computes it and the others wait. A cache that
     cannot be read or written causes a notice.
@@ -187,7 +187,7 @@ def load_or_compute(
         cache: cache of the user; None to compute the shell.
         content: all inputs of the shell.
         comm: ranks that share the work; the first one reads and writes.
-        compute: function that computes the shell. Collective.
+        compute: function that computes the shell; all ranks call it.
     """
     if cache is None:
         return compute()
@@ -196,15 +196,15 @@ def load_or_compute(
     start = perf_counter()
     name = key(list(content))
     with cache.entry_lock(name) if comm.rank == 0 else nullcontext():
-        loaded = cache.load(name, ReducedShell) if comm.rank == 0 else None
+        cached = cache.load(name, ReducedShell) if comm.rank == 0 else None
         # Only the first rank has fields and meshes.
-        shared = comm.bcast(None if loaded is None else replace(loaded, fields=None, meshes=[]))
-        if shared is not None:
-            return replace(loaded or shared, seconds={"cache": perf_counter() - start})
-        reduced = compute()
+        common = comm.bcast(None if cached is None else replace(cached, fields=None, meshes=[]))
+        if common is not None:
+            return replace(cached or common, seconds={"cache": perf_counter() - start})
+        result = compute()
         if comm.rank == 0:
-            cache.try_to_store(name, reduced)
-    return reduced
+            cache.try_to_store(name, result)
+    return result
 
 
 def _head(key: str, file: BufferedIOBase) -> bytes:

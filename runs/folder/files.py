@@ -26,7 +26,7 @@ from runs.process.ending import when_interrupted
 
 MANIFEST = ".manifest"
 
-# Arguments of renameat2(2): paths relative to the current folder; exchange of two names.
+# Arguments of the system call renameat2: paths relative to the working folder; exchange two names.
 _AT_FDCWD, _RENAME_EXCHANGE = -100, 2
 
 
@@ -74,8 +74,8 @@ def atomic_folder(folder: Path) -> Iterator[Path]:
 def modified_folder(folder: Path) -> Iterator[Path]:
     """Yield a copy of ``folder`` to modify, and replace the folder by it at the end.
 
-    Files in the copy are links: replace them, but do not write to them. Files of the user are kept,
-    without an entry in the manifest. Call it within :func:`folder_lock`.
+    The files in the copy are hard links: replace them, but do not write to them. Files that the
+    user added stay, without an entry in the manifest. Call it within :func:`folder_lock`.
     """
     with scratch_folder(folder) as part:
         for source in folder.rglob("*"):
@@ -89,11 +89,11 @@ def modified_folder(folder: Path) -> Iterator[Path]:
                     # The file system has no links.
                     shutil.copy2(source, target, follow_symlinks=False)
         yield part
-        listed = _manifest_checksums(folder)
+        checksums = _manifest_checksums(folder)
         names = [
             name
             for name in _files(part)
-            if name in listed
+            if name in checksums
             or not (folder / name).is_file()
             or not filecmp.cmp(part / name, folder / name)
         ]
@@ -102,7 +102,7 @@ def modified_folder(folder: Path) -> Iterator[Path]:
 
 @contextmanager
 def folder_lock(folder: Path) -> Iterator[None]:
-    """Lock the folder, so that no other process replaces it."""
+    """Lock a folder, so that no other process replaces it, while the context is open."""
     path = resolve_path(folder)
     with ExitStack() as stack:
         with suppress(OSError):
@@ -127,10 +127,10 @@ def scratch_folder(path: Path) -> Iterator[Path]:
         if not path.parent.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
         # A locked folder belongs to a running process, others to killed ones.
-        for left in path.parent.glob(f"{escape(_hidden(path))}*"):
-            with suppress(OSError), (left / MANIFEST).open("r+", encoding="utf-8") as manifest:
+        for old in path.parent.glob(f"{escape(_hidden(path))}*"):
+            with suppress(OSError), (old / MANIFEST).open("r+", encoding="utf-8") as manifest:
                 fcntl.flock(manifest, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                shutil.rmtree(left, ignore_errors=True)
+                shutil.rmtree(old, ignore_errors=True)
         with ExitStack() as stack:
             for scratch in (unlocked, part):
                 remove = partial(shutil.rmtree, scratch, ignore_errors=True)
@@ -153,9 +153,9 @@ def scratch_folder(path: Path) -> Iterator[Path]:
 
 
 def find_damaged_file(folder: Path) -> str | None:
-    """Return the first file with another checksum than in the manifest; None if all agree.
+    """Return the name of a file whose checksum differs from the manifest; None if all agree.
 
-    Missing files and added files do not count.
+    Missing and additional files are no damage.
     """
     for name, digest in _manifest_checksums(folder).items():
         path = folder / name
@@ -165,12 +165,12 @@ def find_damaged_file(folder: Path) -> str | None:
 
 
 def _hidden(path: Path) -> str:
-    """Return the common prefix of the names of hidden folders beside a path."""
+    """Return the prefix that the names of all hidden folders beside a path have."""
     return f".{path.name[:50]}.protractile-"
 
 
 def _exchange_path(path: Path) -> Path:
-    """Return the temporary path of the old folder in an exchange in two steps."""
+    """Return the path to which an old folder moves until the new one is in its place."""
     return path.with_name(f".{path.name[:50]}.away")
 
 

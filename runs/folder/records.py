@@ -62,7 +62,7 @@ def read(file: IO[bytes], kind: type[Kind]) -> Kind:
 
 
 def _encode(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
-    """Return an object in JSON types, and append its arrays to ``arrays``."""
+    """Return an object as JSON data, and append its arrays to ``arrays``."""
     if thing is None or isinstance(thing, bool | int | float | str):
         return thing
     if isinstance(thing, np.generic):
@@ -81,7 +81,7 @@ def _encode(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
         entries = [[_encode(name, arrays), _encode(value, arrays)] for name, value in thing.items()]
         return {"mapping": entries}
     if (names := _names(type(thing))) is not None:
-        # Only fields that are set are written of a pydantic model.
+        # Of a pydantic model, only the fields that are set are written.
         present = thing.model_fields_set if isinstance(thing, BaseModel) else names
         parts = {name: _encode(getattr(thing, name), arrays) for name in names if name in present}
         return {"record": [type(thing).__module__, type(thing).__name__], "parts": parts}
@@ -90,11 +90,11 @@ def _encode(thing: Any, arrays: list[np.ndarray[Any, Any]]) -> Any:
     raise TypeError(f"{type(thing).__qualname__} cannot be kept: it is no data")
 
 
-def _decode(written: Any, file: IO[bytes]) -> Any:
-    """Return the object of data in JSON types, with its arrays from the file."""
-    match written:
+def _decode(encoded: Any, file: IO[bytes]) -> Any:
+    """Return the object that JSON data describe, with its arrays from the file."""
+    match encoded:
         case None | bool() | int() | float() | str():
-            return written
+            return encoded
         case {"array": _}:
             return np.lib.format.read_array(file, allow_pickle=False)
         case {"dataset": content}:
@@ -113,7 +113,7 @@ def _decode(written: Any, file: IO[bytes]) -> Any:
 
 
 def _class(module: str, name: str) -> type:
-    """Return a class of this program; its objects must consist of fields only."""
+    """Return a class of this program, or raise ValueError if its objects have more than fields."""
     if module.partition(".")[0] in {package.name for package in packages()}:
         content = vars(import_module(module)).get(name)
         if (
@@ -126,7 +126,7 @@ def _class(module: str, name: str) -> type:
 
 
 def _names(kind: type) -> list[str] | None:
-    """Return the field names of a class; None if its objects may have other data."""
+    """Return the field names of a class; None if its objects may have further data."""
     if issubclass(kind, BaseModel):
         return list(kind.model_fields)
     if is_dataclass(kind):

@@ -24,7 +24,7 @@ def installed_version(name: str) -> str | None:
 
 
 def versions() -> dict[str, str | None]:
-    """Return the versions of loaded libraries by name. A run of beams does not load FEniCSx."""
+    """Return the versions of libraries by name; None for libraries that are not loaded."""
     modules: Sequence[str] = (
         "numpy", "scipy", "numba", "xarray", "gmsh", "dolfinx", "petsc4py", "mpi4py",
     )  # fmt: skip
@@ -59,7 +59,7 @@ def sources(folders: Iterable[Path]) -> str:
 
 @cache
 def program() -> dict[str, str | None]:
-    """Return the hash of the sources and the versions of libraries that affect results."""
+    """Return the hash of the sources, and the versions of the libraries that affect results."""
     # Installed versions, since the loaded modules differ between processes.
     libraries = {name: installed_version(name) for name in _LIBRARIES}
     return {"sources": sources(packages()), **libraries}

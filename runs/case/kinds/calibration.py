@@ -31,11 +31,11 @@ if TYPE_CHECKING:
     from shell_model.reduced_shell import ReducedShell
 
 
-# Keys of the motion, which a calibrating shell must not have: only the beam is integrated.
+# Keys of the time integration, which a calibrating shell must not have: only the beam moves.
 OF_MOTION = ("contact", "step")
 
 
-# The tag of the table is its kind, which error paths contain.
+# Error paths contain the tag of the table, which is the kind of model.
 _Shell = Annotated[
     Annotated[Name, Tag("name")] | Annotated[Shell, Tag("shell")],
     Discriminator(lambda value: "name" if isinstance(value, str) else "shell"),
@@ -43,7 +43,7 @@ _Shell = Annotated[
 
 
 class CalibratedTable(BeamTable):
-    """Keys of a beam model, whose stiffness and station springs a shell may determine."""
+    """Keys of a beam model that a shell may calibrate: segment stiffness and station springs."""
 
     calibrated_by: _Shell | None = None
     """the name of a shell of the case, or the table of another one, that determines the stiffness
@@ -72,7 +72,7 @@ class CalibratedTable(BeamTable):
         return self.model_copy(update={"calibrated_by": self.calibrated_by.with_shells(update)})
 
     def resolve_shell(self, models: Mapping[str, ModelTable]) -> Self:
-        """Return the model with the table of its shell in place of a name of these models."""
+        """Return the model with its shell, taken from ``models``, in place of the shell's name."""
         shell = models.get(self.calibrated_by) if isinstance(self.calibrated_by, str) else None
         if not isinstance(shell, Shell):
             return self
@@ -123,7 +123,7 @@ class CalibratedTable(BeamTable):
         return replace(built, seconds=seconds)
 
     def build_calibrated(self, model_boom: ModelBoom, calibration: Calibration) -> BuiltModel:
-        """Return the calibrated beam of a boom."""
+        """Return the calibrated beam model of a boom."""
         from beam_model.calibration import with_stiffnesses
         from beam_model.lines import lines
 
@@ -143,11 +143,11 @@ class CalibratedTable(BeamTable):
         )
 
     def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
-        """Return the model for time integration: by default the calibrated beam."""
+        """Return the model to integrate in time: by default the calibrated beam."""
         return built
 
     def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        # The springs of a calibrated beam act in its contacts: these are bonded instead.
+        # Contacts of a calibrated beam act on its springs, and must be bonded themselves.
         return super().system_without_play(boom) if self.calibrated_by is None else None
 
     @abstractmethod

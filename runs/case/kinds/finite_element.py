@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 # Maximum number of elements: a larger dense eigenproblem is an input error.
 MOST_ELEMENTS = 5_000
 
-# Maximum number of coordinates of each segment with section fields.
+# Maximum number of coordinates of each segment with section fields, see the key below.
 FIELDS = 40
 
-# Measured cost of a dense eigenproblem of n coordinates: time in s over n³, numbers stored over n².
+# Measured cost of a dense eigenproblem of n coordinates: time in s / n³, stored numbers / n².
 _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
 # Maximum number of coordinates of the beams that estimates and checks build.
 _BUILT = 400

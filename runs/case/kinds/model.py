@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class BeamSegments:
-    """Segments of a beam model and their buckling factor, each computed once, on first use."""
+    """Segments of a beam model, and their buckling factor. Each is computed on first use."""
 
     boom: Boom  #: boom with the contact laws of the model
     model: BeamTable  #: beam model
@@ -53,7 +53,7 @@ class BeamSegments:
 
     @cached_property
     def critical_factor(self) -> float | None:
-        """The buckling factor of the boom's axial forces, as in :class:`BuiltModel`."""
+        """The buckling factor of the boom's axial forces, see :class:`BuiltModel`, or None."""
         from beam_model.boom_modes import critical_factor
 
         if not self.boom.compressed:
@@ -62,13 +62,13 @@ class BeamSegments:
             with np.errstate(all="ignore"):
                 return critical_factor(self.boom, self.segments)
         except (ArithmeticError, np.linalg.LinAlgError, ValueError):
-            # With extreme numbers the computation fails. The run fails likewise and reports it.
+            # With extreme numbers this fails. The run then fails too, and reports it.
             return None
 
 
 @dataclass(frozen=True, slots=True)
 class ModelBoom:
-    """The boom of a case with the contact laws of one model, and the beams computed from it."""
+    """The boom of a case with the contact laws of one model, and the beam segments of it."""
 
     boom: Boom  #: boom of the case, with the model's contact laws in its joints
     _beams: list[BeamSegments] = field(default_factory=list, init=False, repr=False, compare=False)
@@ -84,7 +84,7 @@ class ModelBoom:
 
 @dataclass(frozen=True, slots=True)
 class BuildContext:
-    """Ranks, progress reporter and cache for building a meshed model."""
+    """Ranks, progress reporter and cache for the reduction of a shell."""
 
     comm: MPI.Comm  #: the ranks that share the work
     #: callback that receives the stage and its completed fraction
@@ -104,8 +104,8 @@ class BuiltModel:
     #: Buckling factor of the axial forces with closed contacts, from
     #: :func:`dynamics.second_order.buckling_factor`; infinite without axial forces.
     critical_factor: float | None = float("inf")
-    shell: ReducedShell | None = None  #: other data of a reduced shell
-    calibration: Calibration | None = None  #: calibration of a beam by its shell
+    shell: ReducedShell | None = None  #: the reduced shell, of a shell model
+    calibration: Calibration | None = None  #: calibration of a beam by a shell
     lines: Sequence[Line] = ()  #: lines along the segments, on the first rank
     beams: BeamSegments | None = None  #: beam segments of a model without calibration
 
@@ -169,7 +169,7 @@ class ModelTable(CaseTable):
 
     @property
     def plates_remedy(self) -> str:
-        """The end of a message on missing sections: a remedy besides giving them."""
+        """The text of a remedy for missing sections, besides giving them, for messages."""
         return ""
 
     def with_shells(self, update: Mapping[str, object]) -> Self:
@@ -337,7 +337,7 @@ class ModelTable(CaseTable):
         """Return the lines along the segments of the built model, on the first rank."""
 
     def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        """Return gap system and lines of the bonded boom; None if its contacts must be bonded."""
+        """Return gap system and lines of the bonded boom; None if the model has no such system."""
         return None
 
     @abstractmethod

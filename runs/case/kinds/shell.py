@@ -35,8 +35,8 @@ MOST_POINTS = 256
 
 # Typical number of coordinates of each reduced segment, of planar and of 3-D booms.
 _FLAT, _SPATIAL = 60, 210
-# Measured costs. Number of dofs over area / (mesh size)²: of a uniform mesh, of a graded mesh
-# outside and inside its refinement zones. Bytes per dof, and per dof and coordinate; s per dof.
+# Measured costs. Number of dofs per area / (mesh size)²: of a uniform mesh, and of a graded mesh
+# outside and inside refinement zones. Bytes per dof, and per dof and coordinate; s per dof.
 _DOFS, _GRADED_DOFS, _DOFS_AT_ZONES = 21.0, 42.0, 35.0
 _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 0.45e-4
 # A single process reduces a shell of fewer dofs in a few seconds.
@@ -139,18 +139,18 @@ class Shell(ModelTable):
         factor = shell.critical_factor
         if (boom.telescopes or model_boom.boom.axial_changes) and factor is not None:
             # The reduced shell gives the factor at t = 0, the beam over the whole motion.
-            on_the_way = self.critical_factor(model_boom)
-            factor = min(factor, on_the_way or factor)
+            beam_factor = self.critical_factor(model_boom)
+            factor = min(factor, beam_factor or factor)
         return BuiltModel(shell.system, shell.num_dofs, shell.seconds, factor, shell)
 
     def content(self, boom: Boom) -> tuple[Boom, ShellOptions]:
-        """Return all inputs of the reduced shell of a boom."""
+        """Return all inputs of the reduced shell: a standard boom, and options."""
         from shell_model.standard import standard_boom
 
         return standard_boom(boom), self.options()
 
     def options(self) -> ShellOptions:
-        """Return mesh size, contact line and reduction for the shell model of the boom."""
+        """Return the options of mesh, contact and reduction."""
         from shell_model.boom_shell import ShellOptions
         from shell_model.contact.surface import POINTS, SurfaceOptions
         from shell_model.reduction.krylov import KrylovOptions
@@ -194,16 +194,16 @@ class Shell(ModelTable):
         return Surrogate(beam, coordinates, memory, _REDUCTION * dofs)
 
     def estimate_dofs(self, boom: Boom) -> float:
-        """Return the approximate total number of dofs, without meshing."""
+        """Return the approximate number of degrees of freedom, without meshing."""
         squares = _surface(boom) / self.mesh_size**2
         if self.contact_tolerance == "any" or self.contact_line == "surface":
             return _DOFS * squares
-        pressed = self.contact_line, stop_patches(boom), pads(boom)
+        contacts = self.contact_line, stop_patches(boom), pads(boom)
         return _GRADED_DOFS * squares + _DOFS_AT_ZONES * sum(
             (1 << len(segment.mirrors)) * zone.num_squares(self.mesh_size)
             for number, segment in enumerate(boom.segments)
             if segment.section is not None
-            for zone in refinement_zones(boom, number, self.contact_tolerance, *pressed)
+            for zone in refinement_zones(boom, number, self.contact_tolerance, *contacts)
         )
 
     def _check_contact(self, where: str, model_boom: ModelBoom) -> None:
