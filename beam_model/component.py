@@ -111,7 +111,7 @@ Rule = Callable[[Component], Array]
 
 @dataclass(frozen=True, slots=True)
 class BeamMember:
-    """Rows and load vectors of a segment in any coordinates; a :class:`geometry.load.Member`."""
+    """Rows and load vectors of a segment, a :class:`geometry.load.LoadedSegment`."""
 
     #: function (motion, row of a component) that returns the row (num_coordinates,); the second
     #: argument is a function that returns the row of a :class:`Component`

@@ -108,7 +108,7 @@ def _rows(
 
 def _row(place: Observation, modes: BoomModes) -> Array:
     """Return the row (num_modes,) of the displacement of an observation."""
-    match place.kind.read:
+    match place.kind.displacement:
         case "rotation":
             return modes.rotation(place.segment, place.x, "z")
         case "twist":

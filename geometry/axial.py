@@ -133,8 +133,8 @@ def pin_moments(
 ) -> Iterator[tuple[int, Array]]:
     """Yield (segment, load vector) of the moment of axial forces, for each pin below the axis.
 
-    The pin is fixed, so that a rotation w′ at the pin moves the segment along x by −d w′ against
-    the axial forces N. Their work N d w′ equals the work of a constant moment N d at the pin.
+    The pin, at the depth d, does not move. So a slope w′ at the pin moves the segment along x by
+    −d w′ against its compression P. The work P d w′ equals that of a moment P d at the pin.
 
     Args:
         segments: segments with their axial forces.
@@ -183,12 +183,13 @@ def moving_force_places(
 
 @dataclass(frozen=True, slots=True)
 class AxialChange:
-    """Change of the stiffness across the boom by axial and centrifugal forces.
+    """Change over time of the stiffness of deflections by axial and centrifugal forces.
 
-    At the value h of the history, it reduces the strain energy by ½ h (∫ P w′² dx + Σ m w²).
+    At the value g_e of the history, the strain energy decreases by ½ g_e (∫ P w′² dx + Σ m w²) with
+    the axial forces P, the point masses m and the deflections w.
     """
 
-    history: Any  #: factor h over time, see :mod:`dynamics.excitation`
+    history: Any  #: factor g_e over time, see :mod:`dynamics.excitation`
     #: axial force P of each segment in N at the factor 1; none unless given
     compressions: Sequence[Compression] = ()
     #: point masses m of each segment in kg; none unless given
@@ -203,10 +204,10 @@ class AxialChange:
     def geometric_stiffness(
         self, deflections: Sequence[Mapping[Direction, tuple[Array, Array]]]
     ) -> Array:
-        """Return the reduction of the stiffness (num_modes, num_modes) at the factor 1.
+        """Return the reduction of the modal stiffness (num_modes, num_modes) at the factor 1.
 
-        ``deflections`` are, for each segment and direction, ascending x (num_places,) in m and rows
-        (num_places, num_modes) of deflections.
+        ``deflections`` has, for each segment and direction, ascending x (num_places,) in m and the
+        deflections (num_places, num_modes) of the modes there.
         """
         from scipy.interpolate import CubicSpline
 
@@ -225,7 +226,7 @@ class AxialChange:
 
 
 def largest_change(changes: Sequence[AxialChange]) -> Array:
-    """Return the factors (num_changes,) of the histories at the largest compression of the foot."""
+    """Return the factors (num_changes,) of the histories when the foot's compression is largest."""
     times = np.unique(np.concatenate([np.zeros(1), *(change.times for change in changes)]))
     factors = np.array([change.history(times) for change in changes])
     pressed = [one.compressions[0].transferred if one.compressions else 0.0 for one in changes]
@@ -233,7 +234,7 @@ def largest_change(changes: Sequence[AxialChange]) -> Array:
 
 
 def _at_gauss_points(function: Any, places: set[float]) -> tuple[Array, Array]:
-    """Return values (num_points, num_modes) at Gauss points, with x and weights (2, ...) in m."""
+    """Return values (num_points, num_modes) at Gauss points; x and weights (2, num_points) in m."""
     ends = np.array(sorted(places))
     half = 0.5 * np.diff(ends)[:, None]
     x = ends[:-1, None] + half * (1.0 + _GAUSS[0])
@@ -335,18 +336,18 @@ def _compression(
         if places[-1] + near < x <= segment.end + near:
             places.append(x)
 
-    def beyond(x: float) -> float:
+    def sum_beyond(x: float) -> float:
         """Return the sum of the forces at and beyond x."""
         at_places = sum(force for place, force in points if place >= x - near)
         return at_places + sum(q * max(0.0, end - max(start, x)) for start, end, q in spread)
 
-    everything = beyond(segment.start)
+    everything = sum_beyond(segment.start)
     pieces = []
     for a, b in pairwise(places):
         at_a = sum(force for place, force in points if abs(place - a) <= near)
-        first, last = beyond(a) - at_a, beyond(b)
-        hangs = everything if b <= anchor + near else 0.0
-        pieces.append((first - hangs, last - hangs))
+        first, last = sum_beyond(a) - at_a, sum_beyond(b)
+        reaction = everything if b <= anchor + near else 0.0
+        pieces.append((first - reaction, last - reaction))
     if not any(force for piece in pieces for force in piece):
         return replace(NO_COMPRESSION, transferred=everything)
     return Compression(tuple(places), tuple(pieces), everything)

@@ -167,7 +167,7 @@ class Boom:
         ]
 
     def moving_intervals(self, segment: int) -> tuple[float, ...]:
-        """Return the ascending x in m between which stations and axial forces move on a segment."""
+        """Return the ascending ends in m of the intervals where stations and axial forces move."""
         places = {
             place[joint.inner == segment]
             for joint in self.joints
@@ -219,7 +219,7 @@ class Boom:
         return places
 
     def all_observations(self, of_ends: Sequence[Quantity]) -> list[Observation]:
-        """Return the observations of segment ends, then those of the case.
+        """Return the observations of the quantities ``of_ends`` at ends, then those of the case.
 
         Examples of names at ends: ``tip`` for a deflection, ``tip_rotation`` for a rotation.
         """

@@ -200,7 +200,7 @@ def _check_observations(boom: Boom) -> None:
             )
         names.add(place.name)
         boom.segments[place.segment].check_place(f"{where}.x", place.x)
-        if place.kind.read in SPATIAL_QUANTITIES and not boom.spatial:
+        if place.kind.displacement in SPATIAL_QUANTITIES and not boom.spatial:
             raise BoomError(
                 f"{where}.quantity",
                 "the boom is flat, and nothing moves along 'y' or twists; give another "

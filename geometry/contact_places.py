@@ -54,7 +54,7 @@ class Patch:
 
 @dataclass(frozen=True, slots=True)
 class ContactInterval:
-    """Interval of the corners of a segment on which a contact force acts.
+    """Interval along x on which a contact force acts at the corners of a segment.
 
     Args:
         start, end: x of its ends in m.
@@ -100,10 +100,10 @@ class Pad:
         side: 1 if contact is at positive displacement of the inner segment, −1 if it is at
             negative displacement, 0 if it is at both.
         inner, outer: (y, z) in m of the points from the axes of their segments.
-        weight: fraction of the contact law of the side.
+        weight: fraction of the side's contact law that this pad has.
         sliding_direction: direction of friction.
         normal_force: prescribed normal force of friction in N; None for the contact force.
-        intervals: intervals of the corners of inner and outer segment on which the force acts.
+        intervals: intervals along x on which the force acts on inner and outer segment.
         patch: area on the wall; None for a point, or a pad that bears on a corner.
         shim: reduction of the clearance by a shim in m.
         face: face of the inner segment at whose corner the pad is; None in a flat boom.
@@ -141,7 +141,7 @@ class Pad:
 
     @property
     def across(self) -> float:
-        """The offset in m across the wall from the point to the centre of the area."""
+        """The offset in m across the wall from the point to the centre of the patch."""
         if self.patch is None or self.face is None:
             return 0.0
         return self.half * 0.5 * sum(self.patch.across(self.face)) - self._corner
@@ -153,13 +153,13 @@ class Pad:
 
     @property
     def midpoint(self) -> float:
-        """The x in m of the resultant, at the centre of the area."""
+        """The x in m of the resultant contact force, at the centre of the patch."""
         if self.patch is None:
             return self.intervals[0].station
         return 0.5 * (self.patch.start + self.patch.end)
 
     def travels(self, extension: float) -> tuple[float, float]:
-        """Return the displacement in m along outer and inner segment at an extension in m."""
+        """Return the travel in m of the contact on outer and inner segment at an extension in m."""
         on_outer = extension if self.carrier == "inner" else 0.0
         return on_outer, -extension if self.carrier == "outer" else 0.0
 
@@ -167,8 +167,8 @@ class Pad:
         """Return the pad at an ``extension`` of the joint in m."""
         on_outer, on_inner = self.travels(extension)
         inner, outer = (
-            stretch.shift(boom.segments[number], by)
-            for stretch, number, by in zip(
+            interval.shift(boom.segments[number], by)
+            for interval, number, by in zip(
                 self.intervals,
                 (self.joint.inner, self.joint.outer),
                 (on_inner, on_outer),
@@ -184,7 +184,7 @@ class Pad:
 
     @property
     def area_centres(self) -> tuple[Offset, Offset]:
-        """The centres (y, z) in m of the areas on inner and outer segment, from their axes."""
+        """The patch centres (y, z) in m on inner and outer segment, from the segment's axis."""
         step = (self.across, 0.0) if self.direction == "z" else (0.0, self.across)
         (a, b), (c, d) = self.inner, self.outer
         return (a + step[0], b + step[1]), (c + step[0], d + step[1])
@@ -207,21 +207,21 @@ def pads(boom: Boom) -> list[Pad]:
             inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None
-                pressed = (
+                at_corners = (
                     ContactInterval.from_station(inner_segment, x, length),
                     ContactInterval.from_station(outer_segment, x, length),
                 )
                 for side, inner, outer, whole, face in _points(boom, joint, direction, x):
                     for size, share, shim in joint.pads_of(direction, side):
                         weight = whole * share
-                        patch, stretches = None, pressed
+                        patch, intervals = None, at_corners
                         # Without a section, pads are points.
                         if size is not None and inner_segment.section is not None:
                             span = size.span(x, overlap)
                             if size.bears == "wall":
                                 patch = Patch(*span, size.offset, size.width)
                             else:
-                                stretches = (ContactInterval(*span, 0.5 * sum(span)),) * 2
+                                intervals = (ContactInterval(*span, 0.5 * sum(span)),) * 2
                         pad = Pad(
                             station=station,
                             joint=joint,
@@ -237,7 +237,7 @@ def pads(boom: Boom) -> list[Pad]:
                             normal_force=None
                             if normal_force is None
                             else normal_force * weight * (0.5 if side else 1.0),
-                            intervals=stretches,
+                            intervals=intervals,
                             patch=patch,
                             shim=shim,
                             face=face,
@@ -249,7 +249,7 @@ def pads(boom: Boom) -> list[Pad]:
 
 
 def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
-    """Return the x in m of the centres of pads normal to z, by x of the station in m."""
+    """Return the x in m of the centres of top and bottom pads, by the station's x in m."""
     overlap = boom.overlap(joint)
     sizes = [size for side in _SIDES for size, _, _ in joint.pads_of("z", side)]
     has_section = boom.segments[joint.inner].section is not None
@@ -273,7 +273,10 @@ def load_places(boom: Boom, number: int) -> tuple[float, ...]:
 def _points(
     boom: Boom, joint: Joint, direction: Direction, x: float
 ) -> Iterator[tuple[Side, Offset, Offset, float, Face | None]]:
-    """Yield (side, inner point, outer point, weight, inner face) of the contacts of a station."""
+    """Yield (side, inner point, outer point, weight, inner face) of each contact of a station.
+
+    Points are (y, z) in m from the axis of their segment.
+    """
     if joint.lateral_play is None:
         for side in _SIDES if joint.pads else _BOTH:
             yield side, (0.0, 0.0), (0.0, 0.0), 1.0, None
@@ -304,9 +307,9 @@ class StopPatch:
     reach: tuple[float, float]  #: range of the travel of the segment in m
 
     def at_extension(self, boom: Boom, extension: float) -> StopPatch:
-        """Return the contact at a travel of the segment by ``extension`` in m."""
-        pressed = self.interval.shift(boom.segments[self.stop.segment], -extension)
-        return replace(self, interval=pressed)
+        """Return the contact after the segment has moved by ``extension`` in m."""
+        interval = self.interval.shift(boom.segments[self.stop.segment], -extension)
+        return replace(self, interval=interval)
 
 
 def stop_patches(boom: Boom) -> list[StopPatch]:

@@ -72,21 +72,22 @@ class Cylinder:
         )
 
     def arm(self, foot: Support) -> float:
-        """Return the lever arm of the cylinder about the pin of a foot in m."""
+        """Return the lever arm in m of the cylinder force about the pin of a foot."""
         along, up = self.direction
         return (self.x - foot.x) * up + (self.depth - foot.depth) * along
 
     def luffed(self, turn: float, foot: Support) -> Cylinder:
-        """Return the cylinder in the axes of the boom after luffing by an angle in rad."""
+        """Return the cylinder in the axes of a boom turned about ``foot`` by ``turn`` in rad."""
         along, up = self.ground[0] - foot.x, self.ground[1] + foot.depth
         cosine, sine = cos(turn), sin(turn)
         ground = (foot.x + along * cosine + up * sine, -foot.depth - along * sine + up * cosine)
         return replace(self, ground=ground)
 
     def normal_force(self, x: Array, foot: Support | None) -> Array:
-        """Return the normal force (num_places,) in the segment at x in m per N of compression.
+        """Return the segment's axial force (num_places,) in N at x in m per N of cylinder force.
 
-        It is positive in tension and acts between lug and foot; without a foot it is 0.
+        The cylinder force is positive in compression, the axial force in tension. It acts between
+        lug and foot; without a foot it is 0.
         """
         if foot is None:
             return np.zeros(x.shape)
@@ -115,11 +116,12 @@ class Cylinder:
             )
 
     def load_vectors(self, body: Body, foot: Support | None) -> Iterator[Array]:
-        """Yield load vectors (num_dofs,) of 1 N. They are also the rows of the elongation.
+        """Yield load vectors (num_dofs,) of a cylinder force of 1 N, also rows of the elongation.
 
-        For two cylinders, the second vector has ½ N in one and −½ N in the other. A point (y, z)
-        of a section moves along x by −w′ z − v′ y, and along z by w + φ y. In addition, the segment
-        moves along x so that the pin of the foot does not move.
+        For two cylinders, the second vector has ½ N in one and −½ N in the other. With the
+        deflections w along z and v along y and the twist θ, a point (y, z) of a section moves along
+        x by −w′ z − v′ y, and along z by w + θ y. In addition, the whole segment moves along x so
+        that the pin of the foot does not move.
 
         Args:
             body: segment with the lug.
@@ -141,7 +143,7 @@ class GroundLine(NamedTuple):
     """Spring and dashpot between a segment and the ground, in addition to its supports."""
 
     segment: int  #: index in ``Boom.segments``
-    push: Array  #: load vector (num_dofs,) of 1 N along the line, also the row of its elongation
+    push: Array  #: load vector (num_dofs,) of 1 N along the line, also row of the elongation
     stiffness: float  #: stiffness in N/m
     dashpot: float  #: dashpot in N·s/m
     #: name of the spring force in results, positive in compression; empty if it is not a result
@@ -154,12 +156,12 @@ def force_name(number: int) -> str:
 
 
 def forces(boom: Boom) -> dict[str, str]:
-    """Return the names of the cylinders' spring forces in results, with descriptions."""
+    """Return the descriptions of the cylinders' spring forces, by their names in results."""
     observations = {}
     for number, one in enumerate(boom.cylinders, start=1):
         name = force_name(number)
         where = f"at x = {one.x:g} m of {boom.segments[one.segment].name!r}"
-        observations[name] = f"spring force of the cylinder {where}, positive where pressed"
+        observations[name] = f"spring force of the cylinder {where}, positive in compression"
         if one.spread > 0.0:
             observations[name.replace("force", "force_difference")] = (
                 f"spring force of the cylinder at positive y {where}, less the force of the other"

@@ -76,7 +76,7 @@ class PadSize:
 
     @property
     def stiffness(self) -> float | None:
-        """The stiffness k = E A/t in N/m; None without a thickness."""
+        """The stiffness in N/m: modulus · area / thickness; None without a thickness."""
         return None if self.thickness is None else self.modulus * self.area / self.thickness
 
     def span(self, x: float, overlap: tuple[float, float]) -> tuple[float, float]:
@@ -90,7 +90,7 @@ class PadSize:
 class SlidePad(PadSize):
     """Pair of identical pads at both corners of one wall.
 
-    Pads on the same side share its force in proportion to their stiffness.
+    Pads on one side share the force of this side in proportion to their stiffness.
 
     >>> short = pt.SlidePad(length=0.1, width=0.03, side="below", thickness=0.02)
     >>> short.touches("z", -1), short.touches("z", 1)
@@ -106,7 +106,7 @@ class SlidePad(PadSize):
 
     @property
     def stiffness(self) -> float:
-        """The stiffness k = E A/t in N/m."""
+        """The stiffness in N/m: modulus · area / thickness."""
         return self.modulus * self.area / self.thickness
 
     def touches(self, direction: Direction, side: Side) -> bool:
@@ -131,7 +131,7 @@ class Drive:
     (0.0, 1.5)
 
     Args:
-        history: history in m since the start, 0 at t = 0; a history of the dynamics.
+        history: extension in m over time, 0 at t = 0; see :mod:`dynamics.excitation`.
         carriers: segment to which each station of the joint is fixed.
         least_overlap: minimum overlap in m.
         locked: segment to which the lock is fixed, where the inner segment transfers its axial
@@ -270,7 +270,7 @@ class Joint(BareJoint):
     def pads_of(
         self, direction: Direction, side: Side
     ) -> list[tuple[PadSize | None, float, float]]:
-        """Return (size, fraction of the side's force, shim in m) of each pad on a side; 0: both."""
+        """Return (size, fraction of the force, shim in m) of each pad on a side; side 0 is both."""
         if not self.pads:
             return [(self.pad, 1.0, 0.0)]
         here = [pad for pad in self.pads if pad.touches(direction, side)]

@@ -13,9 +13,9 @@ from geometry.section import Direction
 
 
 class Body(Protocol):
-    """Segment of a model under unit point loads; methods return load vectors (num_dofs,).
+    """Segment of a model. The methods return load vectors (num_dofs,) of unit point loads.
 
-    The load vector of a unit force is also the row of the displacement of its point.
+    The load vector of a unit force is also the row of the displacement at the point of the force.
     """
 
     def unit_load_vector(self, x: float, direction: Direction) -> Array:
@@ -28,16 +28,16 @@ class Body(Protocol):
         """Return the load vector of a torque of 1 N·m at x in m."""
 
 
-class Member(Body, Protocol):
-    """Segment of a model under all kinds of loads."""
+class LoadedSegment(Body, Protocol):
+    """Segment of a model. The methods return load vectors (num_dofs,) of all kinds of loads."""
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
         """Return the load vector of 1 N/m between the x in m of ``span``, by default everywhere."""
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """Return the inertia load of a uniform acceleration of the whole segment.
+        """Return the load vector of a uniform acceleration of the whole segment.
 
-        ``force`` in N/m is the inertia load of the segment without stiffeners.
+        ``force`` in N/m is the inertia force per length without stiffeners.
         """
 
     def rotation_load(self, direction: Direction) -> Array:
@@ -81,13 +81,13 @@ class Load:
         """Return the resultant in N at the value 1 of the history, for a segment's length in m."""
         return self.magnitude * (length if self.x is None else 1.0)
 
-    def push(self, member: Member) -> Array:
+    def push(self, segment: LoadedSegment) -> Array:
         """Return the load vector (num_dofs,) at the value 1 of the history."""
         if self.x is not None:
-            return self.magnitude * member.unit_load_vector(self.x, self.direction)
+            return self.magnitude * segment.unit_load_vector(self.x, self.direction)
         if self.inertial:
-            return member.inertia(self.direction, self.magnitude)
-        return self.magnitude * member.uniform(self.direction, None)
+            return segment.inertia(self.direction, self.magnitude)
+        return self.magnitude * segment.uniform(self.direction, None)
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +104,8 @@ class PartialLoad(Load):
         start, end = self.span
         return self.magnitude * (end - start)
 
-    def push(self, member: Member) -> Array:
-        return self.magnitude * member.uniform(self.direction, self.span)
+    def push(self, segment: LoadedSegment) -> Array:
+        return self.magnitude * segment.uniform(self.direction, self.span)
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,9 +115,9 @@ class Moment(Load):
     def resultant(self, length: float) -> float:
         return 0.0
 
-    def push(self, member: Member) -> Array:
+    def push(self, segment: LoadedSegment) -> Array:
         assert self.x is not None
-        return self.magnitude * member.moment(self.x, self.direction)
+        return self.magnitude * segment.moment(self.x, self.direction)
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,5 +127,5 @@ class AngularAcceleration(Load):
     With an impulse as history, it causes an angular velocity of its magnitude in rad/s.
     """
 
-    def push(self, member: Member) -> Array:
-        return self.magnitude * member.rotation_load(self.direction)
+    def push(self, segment: LoadedSegment) -> Array:
+        return self.magnitude * segment.rotation_load(self.direction)

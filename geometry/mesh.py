@@ -101,7 +101,7 @@ def mesh_segment(
     along: Mapping[float, float] | None = None,
     across: Mapping[int, Sequence[float]] | None = None,
 ) -> SegmentMesh:
-    """Mesh the plates of a section, and diaphragms.
+    """Return the mesh of a segment: the plates of its section, and diaphragms.
 
     Args:
         section: section whose mid-lines are meshed.
@@ -156,7 +156,7 @@ def diaphragm_breaks(segment: Segment) -> dict[str, float]:
 
 
 def strip_lines(segment: Segment) -> dict[int, list[float]]:
-    """Return the distances in m of the edges of collars from the midpoint of each plate."""
+    """Return the distances in m of collar edges from a plate's midpoint, by the plate's index."""
     assert segment.section is not None
     lines: dict[int, list[float]] = {}
     for strip in (one for collar in segment.collars for one in collar.strips(segment.widest)):
@@ -237,7 +237,7 @@ def _build_patches(
     the section, ``along`` the edge length in each interval along the boom.
 
     Returns:
-        The surfaces of each wall, and the ring of each outline.
+        Gmsh's numbers of the patches of each wall, and the ring of each outline.
     """
     geo = gmsh.model.geo
     corners = [place for half in halves for place in half]
@@ -275,7 +275,7 @@ def _build_patches(
 def _close(
     x: float, ring: _Ring, section: Section, halves: Sequence[Sequence[Offset]], size: float
 ) -> list[int]:
-    """Build the transfinite patches of a diaphragm, and return their surfaces.
+    """Build the transfinite patches of a diaphragm, and return gmsh's numbers of them.
 
     Spokes from the centre divide the diaphragm. If opposite half plates have equal numbers of
     edges, as in a box, each corner has a quadrilateral patch. Otherwise each half plate has a
@@ -296,7 +296,7 @@ def _close(
 
 
 def _mesh_between_spokes(ring: _Ring, middle: int, spokes: Mapping[int, int]) -> list[int]:
-    """Build the patches between spokes, and return their surfaces.
+    """Build the patches between spokes, and return gmsh's numbers of them.
 
     Args:
         ring: ring around the patches.

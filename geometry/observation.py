@@ -17,17 +17,17 @@ Quantity = Literal[Recorded, "distortion"]
 
 
 # Displacements of a cross-section, which are linear in the coordinates of a model.
-Read = Literal["deflection", "rotation", "distortion", "lateral", "twist"]
+Displacement = Literal["deflection", "rotation", "distortion", "lateral", "twist"]
 
 # Displacements that only three-dimensional booms have.
-SPATIAL_QUANTITIES: tuple[Read, ...] = ("lateral", "twist")
+SPATIAL_QUANTITIES: tuple[Displacement, ...] = ("lateral", "twist")
 
 
 class QuantityKind(NamedTuple):
     """Unit, displacement, order of the time derivative, and title of an output quantity."""
 
     unit: str
-    read: Read
+    displacement: Displacement
     derivative: Literal[0, 1, 2]
     title: str
 
@@ -37,11 +37,9 @@ KINDS: Mapping[Quantity, QuantityKind] = {
     "rotation": QuantityKind(
         "rad", "rotation", 0, "rotation of the cross-section, the slope along z"
     ),
-    "distortion": QuantityKind(
-        "m", "distortion", 0, "how much taller the cross-section has become"
-    ),
+    "distortion": QuantityKind("m", "distortion", 0, "increase of the height of the cross-section"),
     "lateral": QuantityKind("m", "lateral", 0, "deflection along y"),
-    "twist": QuantityKind("rad", "twist", 0, "turn about x"),
+    "twist": QuantityKind("rad", "twist", 0, "rotation about x"),
     "velocity": QuantityKind("m/s", "deflection", 1, "velocity along z"),
     "acceleration": QuantityKind(
         "m/s2", "deflection", 2, "acceleration along z, mean of the output interval that ends then"

@@ -23,8 +23,8 @@ class PlatedMesh(SegmentMesh):
 
     thickness: Array  #: thickness (num_triangles,) in m
     plain: Array  #: thickness (num_triangles,) in m without collars, 0 on diaphragms
-    #: weight (num_triangles,) in m that distributes a uniform line load over the walls, ``plain``
-    #: divided by the relative area of the section if the segment tapers
+    #: weight (num_triangles,) in m that distributes a uniform line load over the walls: ``plain``,
+    #: in a tapered segment times the mean area over the area of the section
     load_weight: Array
 
     @property
@@ -126,7 +126,7 @@ def _fan(section: Section) -> tuple[Array, Array]:
 
 
 def _in_fan(section: Section, places: Array) -> tuple[Indices, Array, Array]:
-    """Return the triangle (num_places,) of each place, and coordinates along two of its sides."""
+    """Return the triangle (num_places,) of each place, and two barycentric coordinates."""
     starts, middle = _fan(section)
     arms = np.stack([starts, np.roll(starts, -1, axis=0)], axis=2) - middle[:, None]
     parts = np.einsum("kij,nj->nki", np.linalg.inv(arms), places - middle)

@@ -91,7 +91,7 @@ class PolygonSection(Section):
 
     @cached_property
     def torsion_constant(self) -> float:
-        """The torsion constant in m⁴ by Bredt's second formula, 4 A² / ∮ ds/t (Bredt 1896)."""
+        """The torsion constant in m⁴ (Bredt 1896)."""
         around = sum(plate.length / plate.thickness for plate in self.plates)
         return 4.0 * self.enclosed_area**2 / around
 
@@ -125,7 +125,7 @@ class PolygonSection(Section):
 
     @cached_property
     def mirrors(self) -> tuple[Direction, ...]:
-        """The directions in which corners and thicknesses are symmetric."""
+        """The normals of the symmetry planes of corners and thicknesses."""
         corners, thicknesses = self._upwards
         corners = corners - np.array(self.centroid)
         midpoints = 0.5 * (corners + np.roll(corners, -1, axis=0))
@@ -140,7 +140,7 @@ class PolygonSection(Section):
         return tuple(directions)
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Return the plates that carry a shear force, by the shear flow."""
+        """Return (index, force in N along the tangent) of the plates, by the shear flow."""
         return shear_plates(self.plates, direction)
 
     def __str__(self) -> str:
@@ -162,7 +162,7 @@ class PolygonSection(Section):
 
     @cached_property
     def _upwards(self) -> tuple[Array, Array]:
-        """The corners (num_plates, 2) and thicknesses (num_plates,) in the order of the plates."""
+        """The corners (num_plates, 2) and thicknesses (num_plates,) in m in the order of plates."""
         corners, thicknesses = np.array(self.corners), np.array(self.thicknesses)
         if _double_enclosed_area(corners) < 0.0:
             corners, thicknesses = corners[::-1], np.roll(thicknesses[::-1], -1)
@@ -178,7 +178,7 @@ _OUTWARDS: Sequence[tuple[Direction, Side]] = (("z", -1), ("y", 1), ("z", 1), ("
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:
     """Return the section of a polygon. An upright rectangle becomes a :class:`BoxSection`.
 
-    So a box has the same shear area, of its webs only, in both specifications.
+    So both specifications of a box give the same shear area, the area of its webs.
 
     >>> corners = ((-0.15, -0.2), (0.15, -0.2), (0.15, 0.2), (-0.15, 0.2))
     >>> print(pt.closed_polygon(corners, thicknesses=(0.01, 0.006, 0.008, 0.006)))

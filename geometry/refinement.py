@@ -35,7 +35,7 @@ class RefinementZone:
     """Refinement zone of a mesh. It also applies to its mirror images.
 
     Args:
-        low, high: (x, y, z) in m of opposite corners, on the positive side of the mirrors.
+        low, high: (x, y, z) in m of opposite corners, on the positive side of the symmetry planes.
         size: edge length in the zone in m.
         growth: growth of the permitted edge length per unit of distance from the zone.
     """
@@ -170,7 +170,7 @@ def _corner(stretch: ContactInterval, face: Face) -> _Zone:
 
 
 def _envelope(places: Iterable[_Zone]) -> _Zone:
-    """Return the common zone of zones with different x only."""
+    """Return the zone that covers zones which differ in x only."""
     lows, highs, sizes, growths = zip(*places, strict=True)
     return min(lows), max(highs), sizes[0], growths[0]
 

@@ -6,8 +6,8 @@ y is lateral, z in the plane of bending. Other modules do not depend on the numb
 and shells use plates, contacts use faces, beams use properties.
 
 Shells need plates, but beam data give only area and second moment. A box with uniform walls has
-three parameters (height, width, thickness). The third condition is the height-to-width ratio for
-the outermost segment, and the clearance in the next larger section for the others.
+three parameters: height, width and thickness. The third condition is a given height-to-width ratio
+for the outermost segment, and the clearance within the next larger section for all others.
 """
 
 from __future__ import annotations
@@ -84,8 +84,8 @@ class Face(NamedTuple):
         plate: index in the plates of the section.
         direction: axis of the outward normal.
         side: sign of the outward normal along this axis.
-        offset: offset of the mid-line along the direction, in m.
-        low, high: coordinates of its ends across the plate in m.
+        offset: coordinate in m of the mid-line along the direction.
+        low, high: coordinates in m of both ends of the mid-line along the other axis.
         thickness: thickness of the plate in m.
     """
 
@@ -101,14 +101,14 @@ class Face(NamedTuple):
     def from_plate(
         cls, plates: Sequence[Plate], number: int, direction: Direction, side: Side
     ) -> Face:
-        """Return the face of a plate that is normal to a direction."""
+        """Return the face of the plate with the index ``number``, normal to ``direction``."""
         plate, normal = plates[number], COMPONENT[direction] - 1
         low, high = sorted((plate.start[1 - normal], plate.end[1 - normal]))
         return cls(number, direction, side, plate.start[normal], low, high, plate.thickness)
 
     @property
     def width(self) -> float:
-        """The width between the mid-lines of its ends in m."""
+        """The distance between both ends of the mid-line in m."""
         return self.high - self.low
 
     @property
@@ -139,7 +139,11 @@ class Section(Protocol):
 
     @property
     def torsion_constant(self) -> float:
-        """The torsion constant in m⁴ by Bredt's second formula, 4 A² / ∮ ds/t (Bredt 1896)."""
+        """The torsion constant in m⁴ (Bredt 1896).
+
+        It is 4 A_m² / ∮ dℓ/t_w: A_m is ``enclosed_area``, ℓ the coordinate along mid-lines, t_w
+        the wall thickness.
+        """
 
     @property
     def shear_area(self) -> float:
@@ -159,12 +163,12 @@ class Section(Protocol):
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
-        """The directions of mirror symmetry, ``y`` before ``z``."""
+        """The normals of the symmetry planes, ``y`` before ``z``."""
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Return (index, force along the tangent) of the plates that carry a unit shear force.
+        """Return (index, force in N along the tangent) of the plates under a shear force of 1 N.
 
-        The force acts at the centroid.
+        The shear force acts at the centroid.
         """
 
     def __str__(self) -> str:
@@ -328,7 +332,7 @@ class BoxSection(Section):
 
     @property
     def torsion_constant(self) -> float:
-        """The torsion constant in m⁴ by Bredt's second formula, 4 A² / ∮ ds/t (Bredt 1896)."""
+        """The torsion constant in m⁴ (Bredt 1896)."""
         (top, bottom), (right, left) = self._walls
         around = self.height / right + self.height / left
         around += self.width / top + self.width / bottom
@@ -377,12 +381,12 @@ class BoxSection(Section):
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:
-        """The directions of symmetry: ``y`` if the webs are equal, ``z`` if the flanges are."""
+        """The normals of the symmetry planes: ``y`` for equal webs, ``z`` for equal flanges."""
         alike: dict[Direction, bool] = {"y": not self.left_web, "z": not self.bottom_flange}
         return tuple(axis for axis, same in alike.items() if same)
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Return (index, force) of webs for z, or of flanges for y, by moment equilibrium."""
+        """Return (index, force in N) of the webs for z, or of the flanges for y, by equilibrium."""
         y, z = self.centroid
         if direction == "z":
             return (1, 0.5 + y / self.width), (3, y / self.width - 0.5)
@@ -427,8 +431,8 @@ def infer_outer_section(
         SectionError: no wall thickness gives these values.
     """
 
-    # With width = h/r and wall = c/h, 6 J = c ((1 + 3/r) h² + (3 + 1/r) c²/h²). The larger of the
-    # two roots h² has the thinner wall.
+    # Height b, width b/r and wall thickness c/b give 6 J = c ((1 + 3/r) b² + (3 + 1/r) c²/b²). The
+    # larger of the two roots b² has the thinner wall.
     c = area / (2.0 * (1.0 + 1.0 / height_to_width))
     high, low = 1.0 + 3.0 / height_to_width, (3.0 + 1.0 / height_to_width) * c**2
     half = 3.0 * second_moment_of_area / c
@@ -467,8 +471,9 @@ def infer_inner_section(
     high, wide = (outer.face(axis, 1).inside - outer.face(axis, -1).inside for axis in ("z", "y"))
     outside_height, widest = high - 2.0 * clearance, wide
 
-    # With height = H − t and width = A/2t − height, the thickest wall has a width equal to its
-    # thickness, and the thinnest wall has a width + t that fills the outer section.
+    # For the wall thickness t, the height is the outside height − t, and the width A/2t − height.
+    # The thickest wall is as thick as the box is wide. The thinnest wall gives the outside width
+    # of a box that fills the outer section.
     thickest = area / (2.0 * max(outside_height, SMALLEST * high))
     total = outside_height + widest
     thinnest = 0.25 * (total - np.sqrt(max(total**2 - 4.0 * area, 0.0)))

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shear flow q along the mid-line of a closed thin wall.
+"""Shear flow q_s along the mid-line of a closed thin wall.
 
-The flow follows dq/ds = −t a·r (Jourawski 1856), with r from the centroid of the mid-lines. The
-vector a follows from the resultant of the flow, ∮ r rᵀ t ds a, which equals the force. The constant
-of a closed cell follows from zero twist, ∮ q/t ds = 0 (Bredt 1896). The solution is exact for flat
-plates, along which q is quadratic.
+The shear flow follows dq_s/dℓ = −t_w c·r (Jourawski 1856) with the coordinate ℓ along the mid-line,
+the wall thickness t_w and the position r from the centroid. The constant vector c follows from the
+shear force V = ∮ r rᵀ t_w dℓ c. The constant of integration follows from zero twist,
+∮ q_s/t_w dℓ = 0 (Bredt 1896). The solution is exact for flat plates, along which q_s is quadratic.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.section import COMPONENT, Direction, Plate
 
-# Gauss points and weights on a plate, exact for q².
+# Gauss points and weights on a plate, exact for q_s².
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(3)
 _ALONG, _PARTS = 0.5 * (1.0 + _POINTS), 0.5 * _WEIGHTS
 
@@ -30,7 +30,8 @@ class ShearFlow:
     """Shear flow of a force of 1 N through the shear centre.
 
     Args:
-        flow: q (num_plates, num_points) in 1/m along the tangents of plates, at Gauss points.
+        flow: q_s (num_plates, num_points) in N/m per N at the Gauss points of plates, positive
+            along their tangents.
         lengths, thicknesses: lengths and thicknesses (num_plates,) of the plates in m.
         arms: lever arms (num_plates,) of the tangents about the axis in m.
     """
@@ -42,7 +43,7 @@ class ShearFlow:
 
     @classmethod
     def from_plates(cls, plates: Sequence[Plate], direction: Direction) -> ShearFlow:
-        """Return the flow of a force along a direction.
+        """Return the shear flow of a force of 1 N along a direction.
 
         Args:
             plates: plates of a closed section in order, each from the end of the previous one.
@@ -69,25 +70,25 @@ class ShearFlow:
 
     @property
     def shear_area(self) -> float:
-        """The shear area 1/∮ q²/t ds in m² of equal strain energy (Pilkey 2002)."""
+        """The shear area 1/∮ q_s²/t_w dℓ in m², which has equal strain energy (Pilkey 2002)."""
         return float(1.0 / (self.lengths / self.thicknesses @ self.flow**2 @ _PARTS))
 
     @property
     def forces(self) -> Array:
-        """The force (num_plates,) of each plate along its tangent."""
+        """The force (num_plates,) of each plate along its tangent, in N per N of shear force."""
         return np.asarray(self.lengths * (self.flow @ _PARTS))
 
     @property
     def moment(self) -> float:
-        """The moment about the axis in N·m per N, the lever arm of the force in m."""
+        """The moment about the axis in N·m per N: the lever arm in m of the shear force."""
         return float(self.arms @ self.forces)
 
 
 def shear_plates(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:
-    """Return (index, force along the tangent) of the plates that carry a unit force on the axis.
+    """Return (index, force in N along the tangent) of the plates under a shear force of 1 N.
 
-    The forces result from the shear flow and from the torque that shifts the force from the shear
-    centre to the axis.
+    The shear force acts on the axis. The forces of the plates follow from the shear flow, and from
+    the torque that shifts the shear force from the shear centre to the axis.
     """
     carried = ShearFlow.from_plates(plates, direction)
     around = carried.moment / (carried.arms @ carried.lengths)

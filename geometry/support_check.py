@@ -3,8 +3,9 @@
 
 Rigid motions of a segment are translation along z and rotation in the plane x-z; in 3-D also
 translation along y, rotation in the plane x-y, and rotation about the axis. Each restraint is a row
-over the rigid motions of all segments. The boom is supported if rows · motion = 0 has only the
-solution zero. If a one-sided stop is necessary, the loads at t = 0 must press the segment on it.
+with one column for each rigid motion of each segment. The boom is supported if rows · motion = 0
+has only the solution zero. If the boom needs a one-sided stop, the loads at t = 0 must press the
+segment against it.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from geometry.arrays import Array
 from geometry.axial import foot_thrust, pin_moments
 from geometry.boom_error import BoomError
 from geometry.cylinder import ground_lines
-from geometry.load import Member
+from geometry.load import LoadedSegment
 from geometry.section import Direction
 from geometry.segment import Segment
 
@@ -91,7 +92,7 @@ def check_contacts_at_rest(boom: Boom) -> None:
 
 
 @dataclass(frozen=True, slots=True)
-class _RigidBody(Member):
+class _RigidBody(LoadedSegment):
     """Rigid segment; degrees of freedom are the rigid motions of all segments.
 
     Rotations are scaled by the length of the boom.
@@ -226,10 +227,10 @@ def _free_motions(rows: Iterable[Array], bodies: list[_RigidBody]) -> Array:
     motions = np.eye(bodies[-1].motions.stop)
     if not scaled.size:
         return motions
-    _, bound, turned = np.linalg.svd(scaled)
-    return np.asarray(turned[int(np.count_nonzero(bound > _ROUND_OFF * bound[0])) :].T)
+    _, values, vectors = np.linalg.svd(scaled)
+    return np.asarray(vectors[int(np.count_nonzero(values > _ROUND_OFF * values[0])) :].T)
 
 
 def _segments_in_motion(bodies: list[_RigidBody], free: Array) -> Iterator[_RigidBody]:
-    """Yield the segments that move in free motions."""
+    """Yield the segments that move in ``free`` (num_dofs, num_free)."""
     return (body for body in bodies if np.abs(free[body.motions]).max(initial=0.0) > _ROUND_OFF)

@@ -23,18 +23,18 @@ def interpolate_section(tail: Section, head: Section, part: float) -> Section:
     """
     shape: Any = tail
     mixed = {
-        one.name: _mixed(getattr(tail, one.name), getattr(head, one.name), part)
+        one.name: _interpolate(getattr(tail, one.name), getattr(head, one.name), part)
         for one in fields(shape)
     }
     between: Section = type(shape)(**mixed)
     return between
 
 
-def _mixed(tail: Any, head: Any, part: float) -> Any:
+def _interpolate(tail: Any, head: Any, part: float) -> Any:
     if tail is None:
         return None
     if isinstance(tail, tuple):
-        return tuple(_mixed(one, other, part) for one, other in zip(tail, head, strict=True))
+        return tuple(_interpolate(one, other, part) for one, other in zip(tail, head, strict=True))
     return head if part == 1.0 else tail + part * (head - tail)
 
 

@@ -49,7 +49,7 @@ class TelescopingStations:
 
 
 def telescoping_stations(boom: Boom) -> list[TelescopingStations]:
-    """Return the stations that drives move, by drives; stops are stations, too."""
+    """Return the stations that move, grouped by drives; stops on moving segments are included."""
     moved: dict[tuple[int, ...], list[int]] = {}
     for station, joints in _driven_stations(boom):
         if joints:
@@ -102,14 +102,14 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
 
 
 def farthest_travel(boom: Boom, segment: int) -> float:
-    """Return the largest outward travel of a segment in m, else the inward one as negative."""
+    """Return a segment's largest outward travel in m; negative if the segment only retracts."""
     drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
     reaches = [drive.reach for drive in drives if drive is not None]
     return sum(high or low for low, high in reaches)
 
 
 def sample_extensions(boom: Boom) -> list[dict[int, float]]:
-    """Return extensions in m by index of the joint, at the extremes and at times between them."""
+    """Return the extensions in m at several times, by joint; they include all extremes."""
     drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
     times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))
     extensions = np.array([drive.history(times) for drive in drives.values()]).reshape(
@@ -145,17 +145,17 @@ def check_drives(boom: Boom) -> None:
         return
     for number, joint in driven:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
-        _check_way(f"joints[{number}].drive", joint, outer, inner)
+        _check_travel(f"joints[{number}].drive", joint, outer, inner)
         check_pads_in_travel(f"joints[{number}]", joint, boom)
         _check_taper(f"joints[{number}].drive", boom, outer, inner)
         _check_lock(f"joints[{number}].locked_at", joint, outer, inner)
     _check_order(boom)
     for segment in range(len(boom.segments)):
         if drives_below(boom.joints, segment):
-            _check_free(boom, segment)
+            _check_unsupported(boom, segment)
 
 
-def _check_way(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
+def _check_travel(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
     drive = joint.drive
     assert drive is not None
     if joint.bonded:
@@ -252,7 +252,7 @@ def _check_order(boom: Boom) -> None:
             )
 
 
-def _check_free(boom: Boom, number: int) -> None:
+def _check_unsupported(boom: Boom, number: int) -> None:
     """Check that a segment that telescopes has no supports and cylinders; stops may touch it."""
     segment = boom.segments[number]
     held = [f"segments[{number}].supports"] if segment.supports else []

@@ -49,7 +49,7 @@ def trapezoids(plates: Sequence[Plate]) -> Array:
 
 
 def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
-    """Return the total clearances of a section within another one in m, along z and along y.
+    """Return the total clearances in m, along z and along y, of a section within another one.
 
     Both sections must be convex. If a clearance is negative, the inner section does not fit.
 
@@ -63,17 +63,17 @@ def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float,
     starts = np.array([plate.start for plate in outer.plates])
     walls = np.array([plate.thickness for plate in outer.plates])
     clear = (normal * starts).sum(axis=1) - 0.5 * walls - (normal @ reach.T).max(axis=1)
-    low, high = _travel(normal[:, 1], clear)
-    pressed = 0.5 * (low + high) + np.array([-0.5, 0.5]) * play
-    widths = (_travel(normal[:, 0], clear - normal[:, 1] * place) for place in pressed)
+    low, high = _shift_range(normal[:, 1], clear)
+    shifts = 0.5 * (low + high) + np.array([-0.5, 0.5]) * play
+    widths = (_shift_range(normal[:, 0], clear - normal[:, 1] * shift) for shift in shifts)
     return high - low, min(right - left for left, right in widths)
 
 
-def _travel(slope: Array, clear: Array) -> tuple[float, float]:
-    """Return the lowest and the highest shift in m without interference.
+def _shift_range(slope: Array, clear: Array) -> tuple[float, float]:
+    """Return the lowest and the highest shift in m at which no plate interferes.
 
     Args:
-        slope: reduction (num_plates,) of the clearance per unit of shift.
+        slope: reduction (num_plates,) of each plate's clearance per unit of shift.
         clear: clearance (num_plates,) in m at a shift of 0.
     """
     ahead, behind = slope > _ASIDE, slope < -_ASIDE

@@ -20,7 +20,7 @@ from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
 from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
-from geometry.observation import Quantity, Read
+from geometry.observation import Displacement, Quantity
 from geometry.plating import PlatedMesh, add_thickness, tapered_mesh
 from geometry.refinement import refinement_zones
 from shell_model.contact.rows import ShellContacts, ties
@@ -221,14 +221,14 @@ def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, OutputOpe
         if at not in outlines:
             outlines[at] = shells[place.segment].outline(place.x)
         kind = place.kind
-        row = _READ[kind.read](outlines[at])
+        row = _ROW_OF[kind.displacement](outlines[at])
         observed[place.name] = OutputOperator(
             Operator({place.segment: row}), kind.unit, kind.derivative
         )
     return observed
 
 
-_READ: Mapping[Read, Callable[[SectionNodes], Row]] = {
+_ROW_OF: Mapping[Displacement, Callable[[SectionNodes], Row]] = {
     "deflection": SectionNodes.mean_deflection,
     "rotation": SectionNodes.rotation,
     "distortion": SectionNodes.distortion,

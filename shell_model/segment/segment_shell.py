@@ -26,7 +26,7 @@ _ROUND_OFF = 1.0e-10
 
 @dataclass(frozen=True)
 class SegmentShell(Shell):
-    """Shell of one segment, and its load vectors; a :class:`geometry.load.Member`."""
+    """Shell of one segment, and its load vectors; a :class:`geometry.load.LoadedSegment`."""
 
     section: Section  #: section of the plates at the tail
     segment: Segment  #: the segment

@@ -72,7 +72,7 @@ def test_every_model_stands_on_its_cylinder(case: Case) -> None:
     force = results.trajectories["cylinder_force"]
     assert force.attrs == {
         "units": "N",
-        "long_name": "spring force of the cylinder at x = 3 m of 'base', positive where pressed",
+        "long_name": "spring force of the cylinder at x = 3 m of 'base', positive in compression",
     }
     for model in ("elements", "series", "rigid", "bonded"):
         pressed = force.sel(model=model).values
