@@ -120,7 +120,7 @@ class SegmentMotion(NamedTuple):
     """Deflections and section forces (num_frames, num_places) of a segment at x (num_places,)."""
 
     x: Array
-    read: Mapping[Quantity, Array]
+    curves: Mapping[Quantity, Array]
 
 
 class BeamOutput(NamedTuple):

@@ -39,7 +39,7 @@ SIGN, SMALL = 15.0, 9.0
 # Heights in inches: panel along the boom, panel to scale (maximum, minimum), sections, line of the
 # legend.
 ALONG_HEIGHT, MAX_HEIGHT, MIN_HEIGHT, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
-# A boom steeper than this angle in degrees leaves room for so many sections beside it.
+# Angle of the boom in degrees above which up to this number of sections are drawn beside it.
 STEEP, BESIDE = 25.0, 3
 # Margin beside the boom, as a fraction of its length.
 MARGIN = 0.06
@@ -59,14 +59,14 @@ class Panel:
     axes: Axes  #: axes of the drawing
     boom: Boom  #: the boom
     angle: float  #: angle of the boom in degrees
-    larger: float  #: factor by which heights are exaggerated
+    height_factor: float  #: factor by which heights are exaggerated
     whole: bool  #: True for the whole boom without details
     meanings: dict[str, Line2D] = field(default_factory=dict)  #: symbol of each legend text
 
     @property
     def turn(self) -> Transform:
         """The transform from x and z in m to coordinates of the panel."""
-        return Affine2D().scale(1.0, self.larger).rotate_deg(self.angle)
+        return Affine2D().scale(1.0, self.height_factor).rotate_deg(self.angle)
 
     def outline(self, corners: Sequence[tuple[float, float]] | Array, **style: Any) -> None:
         """Draw a filled polygon from the x and z of its corners in m."""
@@ -97,7 +97,7 @@ def boom(run: FigureContext) -> list[Figure]:
 
 
 def draw_boom_of(case: Case, path: Path) -> None:
-    """Draw the boom of a case to scale, with exaggerated heights, and its sections.
+    """Draw the boom of a case twice, to scale and with exaggerated heights, and its sections.
 
     Args:
         case: case with the boom.
@@ -135,12 +135,12 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     ][:MOST]
     beside = abs(angle) > STEEP and 0 < len(sections) <= BESIDE
     room = (0.45 if beside else 1.0) * theme.WIDTH
-    standing = min(max(MIN_HEIGHT, room * (high - low)[1] / (high - low)[0]), MAX_HEIGHT)
+    whole_height = min(max(MIN_HEIGHT, room * (high - low)[1] / (high - low)[0]), MAX_HEIGHT)
     rows: list[HashableList[str]] = [
         ["whole", "sections" if beside else "whole"],
         ["along", "along"],
     ]
-    heights = [standing, ALONG_HEIGHT]
+    heights = [whole_height, ALONG_HEIGHT]
     if sections and not beside:
         rows.append(["sections", "sections"])
         heights.append(SECTIONS)
@@ -149,11 +149,11 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)
     symbols = list(boom_symbols(case, boom))
     _draw_whole(Panel(panels["whole"], boom, angle, 1.0, whole=True), symbols)
-    lying = Panel(panels["along"], boom, 0.0, _height_factor(boom), whole=False)
-    _draw_along(lying, symbols)
+    detailed = Panel(panels["along"], boom, 0.0, _height_factor(boom), whole=False)
+    _draw_along(detailed, symbols)
     if sections:
         _draw_sections(panels["sections"], sections)
-    entries = lying.meanings | dict.fromkeys(_remarks(case, boom), Line2D([], [], linestyle=""))
+    entries = detailed.meanings | dict.fromkeys(_remarks(case, boom), Line2D([], [], linestyle=""))
     columns = 2 if max(map(len, entries)) <= LEGEND_CHARACTERS else 1
     lines = -(-len(entries) // columns)
     sheet.set_size_inches(theme.WIDTH, sum(heights) + 0.4 + LEGEND_LINE * (lines + 1))
@@ -195,14 +195,14 @@ def _draw_whole(panel: Panel, symbols: Sequence[Symbol]) -> None:
 def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
     """Draw the boom horizontally, with exaggerated heights, names and x."""
     _draw(panel, symbols)
-    boom, axes, larger = panel.boom, panel.axes, panel.larger
+    boom, axes, factor = panel.boom, panel.axes, panel.height_factor
     for number, segment in enumerate(boom.segments):
         # Each name stands above the visible part; many names alternate between two lines.
         hidden = boom.segments[number - 1].end if number else segment.start
         middle = 0.5 * (max(hidden, segment.start) + segment.end)
         axes.annotate(
             segment.name,
-            (middle, larger * edges(boom, segment, middle)[1]),
+            (middle, factor * edges(boom, segment, middle)[1]),
             (0, 18 + 12 * (number % 2 if len(boom.segments) > 4 else 0)),
             textcoords="offset points",
             ha="center",
@@ -212,14 +212,14 @@ def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
         )
     margin = MARGIN * boom.length
     axes.set_xlim(boom.segments[0].start - margin, boom.tip + _farthest(boom) + margin)
-    tallest = larger * max(abs(z) for s in boom.segments for x in s.ends for z in edges(boom, s, x))
+    tallest = factor * max(abs(z) for s in boom.segments for x in s.ends for z in edges(boom, s, x))
     axes.set_ylim(-2.9 * tallest, 2.6 * tallest)
     axes.grid(False)
     axes.set_yticks([])
     axes.spines["left"].set_visible(False)
     axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 2, 5, 10]))
     axes.set_xlabel("x along the boom (m)", fontsize=10.0)
-    exaggeration = f", heights × {larger:g}" if larger > 1.0 else ""
+    exaggeration = f", heights × {factor:g}" if factor > 1.0 else ""
     axes.set_title(f"along the boom{exaggeration}", fontsize=10.0)
 
 
@@ -279,7 +279,7 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
     """Draw a cylinder from lug to ground, without its lower part in the detailed panel."""
     lug, ground = np.array([cylinder.x, -cylinder.depth]), np.array(cylinder.ground)
     if not panel.whole:
-        ground = lug + (ground - lug) * min(1.0, 0.6 / panel.larger)
+        ground = lug + (ground - lug) * min(1.0, 0.6 / panel.height_factor)
     panel.line([lug * [1.0, 0.0], lug], color=theme.INK, linewidth=1.0)
     panel.line([lug, ground], color=theme.INK, linewidth=1.6)
     panel.line([0.5 * (lug + ground), ground], color=theme.INK, linewidth=4.0)

@@ -135,7 +135,7 @@ class BoomView:
 def draw_boom(
     view: BoomView, instants: Sequence[Instant], until: float, pace: str = "", part: float = 1.0
 ) -> Iterator[Image.Image]:
-    """Draw the deformed boom above the deflection of its tip over time.
+    """Yield pictures of the deformed boom, each above the tip deflection over time.
 
     Args:
         view: view of the boom.
@@ -227,14 +227,14 @@ def render_buckling(
 
 
 def _draw_mode(heading: str, points: Array, triangles: Numbers, shape: Array, path: Path) -> None:
-    """Draw a mode (num_points, 3) with the wall of its largest displacement in front."""
+    """Draw a mode (num_points, 3), with the wall that moves most towards the viewer."""
     size = np.linalg.norm(shape, axis=1)
     most = int(size.argmax())
     height = float(np.ptp(points[:, 2]))
-    # Mirror images turn this wall to the front and to the top.
+    # Mirroring brings this wall to the front and to the top.
     flip = np.where(points[most, 1:] * [1.0, -1.0] > 0.25 * height, -1.0, 1.0)
     sides = np.array([1.0, *flip])
-    moved = sides * (points + MODE_DRAWN * height * shape / size[most])
+    deformed_points = sides * (points + MODE_DRAWN * height * shape / size[most])
     half = 0.5 * MODE_LENGTH * height
     low, high = points[:, 0].min(), points[:, 0].max()
     middle = float(np.clip(points[most, 0], min(low + half, high), max(high - half, low)))
@@ -247,7 +247,7 @@ def _draw_mode(heading: str, points: Array, triangles: Numbers, shape: Array, pa
     bar = sheet.colour_bar((1110, 100, 420, 40), 1.0, theme.DEFLECTION)
     bar.set_label("displacement over the largest")
     with stage(camera.pixels) as plotter:
-        wall = surface(moved, triangles[near])
+        wall = surface(deformed_points, triangles[near])
         wall["size"] = size / size[most]
         plotter.add_mesh(
             wall, scalars="size", cmap=theme.DEFLECTION, clim=(0.0, 1.0), show_edges=True, **MATTE
@@ -255,10 +255,11 @@ def _draw_mode(heading: str, points: Array, triangles: Numbers, shape: Array, pa
         edges = sharp_edges(surface(sides * points, triangles[near]))
         plotter.add_mesh(edges, color=theme.INK, line_width=2.4, **UNLIT)
         sheet.show(camera.render(plotter))
-    seen = " and ".join(
+    orientation = " and ".join(
         name
-        for name, turned in zip(("from behind", "upside down"), flip < 0.0, strict=True)
-        if turned
+        for name, flipped in zip(("from behind", "upside down"), flip < 0.0, strict=True)
+        if flipped
     )
-    sheet.write(heading, f"first mode, magnified{f'; seen {seen}' if seen else ''}")
+    text = f"; seen {orientation}" if orientation else ""
+    sheet.write(heading, f"first mode, magnified{text}")
     sheet.image().save(path)

@@ -2,10 +2,10 @@
 """Export of the shells of a boom at rest as an input deck for CalculiX, in the form of Abaqus.
 
 Each triangle is an S6 element. Elastic supports, cylinders and pads act on weighted means of
-displacements. A mean is the displacement of an additional node, by an equation, and the node has a
+displacements. An equation makes each mean the displacement of an additional node, which has a
 spring to the ground. A contact that is closed in the static state is a spring with the tangent
-stiffness of its law, and a force that gives the static contact force. Axial forces act by loads
-K_G w of the static deflection w. Open contacts and friction are left out. So the deck is linear.
+stiffness of its law, and a force that gives the static contact force. Axial forces are loads K_G w,
+with the static deflection w. Open contacts and friction are left out, so that the deck is linear.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from shell_model.segment.cross_section import Row
     from shell_model.segment.segment_shell import SegmentShell
 
-# Stiffness in N/m of a mean displacement without a spring, which must not be free in CalculiX.
+# Stiffness in N/m for a mean displacement without a spring, since CalculiX permits no free node.
 _FREE = 1.0e-3
 
 # Number of terms in a line of an equation.
@@ -159,7 +159,7 @@ def _nodal(shell: SegmentShell, row: Array, first: int) -> list[tuple[int, int, 
     ]
 
 
-def exported(case: Case, file: str, name: str | None = None) -> Shell:
+def select_model(case: Case, file: str, name: str | None = None) -> Shell:
     """Return the shell with a name, by default the last one.
 
     Raises:
@@ -175,7 +175,7 @@ def exported(case: Case, file: str, name: str | None = None) -> Shell:
 
 
 def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache | None) -> None:
-    """Write the deck of the shell from :func:`exported` under the loads at t = 0.
+    """Write the deck of the shell of :func:`select_model` under the loads at t = 0.
 
     Args:
         case: a checked case.
@@ -193,7 +193,7 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
     from shell_model.buckling import TOUCHING, rigid, sideways
     from shell_model.segment.solver import times
 
-    model = exported(case, file)
+    model = select_model(case, file)
     model_boom = model.model_boom(build_boom(case))
     boom = model_boom.boom
     for key, present in (

@@ -151,9 +151,9 @@ def _axis(name: str, panel: int) -> str:
     return f"{name}{panel + 1 if panel else ''}"
 
 
-def extremes(values: Array, stretches: int) -> np.ndarray[Any, np.dtype[np.intp]]:
+def extremes(values: Array, intervals: int) -> np.ndarray[Any, np.dtype[np.intp]]:
     """Return the ascending indices (num_kept,) of the extreme samples in each interval."""
-    ends = np.linspace(0, values.size, stretches + 1).astype(int)
+    ends = np.linspace(0, values.size, intervals + 1).astype(int)
     finite = np.nan_to_num(values)
     kept = {
         start + int(extreme(finite[start:end]))

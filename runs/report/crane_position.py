@@ -30,7 +30,7 @@ class CranePosition(NamedTuple):
     #: (num_times, 2, 2) foot and tip in m: in the plan of a crane that slews, otherwise in the
     #: elevation
     boom: Array
-    load: Array | None  #: (num_times, 2) load on the rope, likewise; None without a hoist
+    load: Array | None  #: (num_times, 2) load on the rope, in the same view; None without a hoist
     title: str  #: name of the view
 
     @classmethod

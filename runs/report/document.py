@@ -95,7 +95,7 @@ def render(
 
 
 def tables_by_part(results: Results) -> dict[str, list[Table]]:
-    """Return the tables with rows of each part of the report."""
+    """Return the tables of each part of the report, without empty ones."""
     first_screen = [summary_table(results), limit_table(results)]
     tables: dict[str, list[Table]] = {
         "summary": [table for table in first_screen if table],

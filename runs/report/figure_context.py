@@ -141,7 +141,7 @@ class FigureContext:
     def over_time(
         self, panels: int, height: float, end: float | None = None, share_y: bool = False
     ) -> tuple[Sheet, list[Axes]]:
-        """Return a sheet over time with panels, and a panel of the drives' extensions, if any.
+        """Return a sheet with panels over time, in which a second axis has extensions of drives.
 
         Args:
             panels: number of panels.

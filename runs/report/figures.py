@@ -75,18 +75,18 @@ def draw(results: Results, folder: Path, helper: Executor | None = None) -> list
         folder: folder of the PNG files; it must exist. Existing files are kept.
         helper: second process, which draws figures from the last one backwards.
     """
-    there = {}
+    futures = {}
     with suppress(BrokenExecutor):
         if helper is not None:
-            # Pickled before use, since results cache what they compute.
+            # Pickled before drawing, which adds cached values to the results.
             content = pickle.dumps(results)
             for figures in reversed(FIGURES):
-                there[figures] = helper.submit(_draw_in_helper, figures, content, folder)
+                futures[figures] = helper.submit(_draw_in_helper, figures, content, folder)
     finished_figures: list[Figure] = []
     for figures in FIGURES:
         with suppress(BrokenExecutor):
-            if figures in there and not there[figures].cancel():
-                finished_figures += there[figures].result()
+            if figures in futures and not futures[figures].cancel():
+                finished_figures += futures[figures].result()
                 continue
         finished_figures += _draw_some(figures, results, folder)
     return finished_figures
@@ -118,8 +118,8 @@ def draw_in_folder(results: Results, folder: Path, helper: Executor | None = Non
 
 def _figure_digest(results: Results, folder: Path) -> str:
     """Return the SHA-256 of the data of figures and of the program."""
-    bare = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
-    digest = sha256(json.dumps([str(bare), program(), matplotlib.__version__]).encode())
+    summary = results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=None)})
+    digest = sha256(json.dumps([str(summary), program(), matplotlib.__version__]).encode())
     for path in (folder / name for name in (CASE, TRAJECTORIES, ENSEMBLES)):
         digest.update(path.read_bytes() if path.is_file() else b"")
     return digest.hexdigest()

@@ -121,8 +121,8 @@ def running_mean(run: FigureContext, force: Array) -> Array:
     """Return the running mean (num_times,) of a force. The window does not exceed the run."""
     width = min(max(1, round(FORCE_WINDOW / (run.time[1] - run.time[0]))), force.size)
     window = np.ones(width)
-    held = np.convolve(np.ones(force.size), window, mode="same")
-    return np.convolve(force, window, mode="same") / held
+    counts = np.convolve(np.ones(force.size), window, mode="same")
+    return np.convolve(force, window, mode="same") / counts
 
 
 def _has_contacts(run: FigureContext) -> bool:

@@ -115,7 +115,7 @@ def horizon_column(models: list[ModelSummary], share: float, duration: float) ->
 
 
 def step_table(results: Results) -> Table:
-    """Return the table of steps: computed, and necessary for the first peaks."""
+    """Return the table of steps: those of the run, and the fewest that preserve slow peaks."""
     models = results.summary.models.values()
     columns = [
         Column("model", list(results.summary.models)),
@@ -147,10 +147,10 @@ def step_table(results: Results) -> Table:
 def law_table(results: Results) -> Table:
     """Return the table of the contact laws of joints in each model, with the first peak."""
     laws = [
-        (model.name, joint, seen.contact)
+        (model.name, joint, joint_of_model.contact)
         for model in results.completed_models
         if not model.bonded
-        for joint, seen in zip(
+        for joint, joint_of_model in zip(
             results.case.joints, model.model_boom(results.boom).boom.joints, strict=True
         )
         if not joint.bonded
@@ -251,7 +251,7 @@ def wall_table(results: Results) -> Table:
 
 
 def _largest(boom: Boom, stress: StressSummary) -> str:
-    """Return the largest mean stress over a patch, and a triangle's stress at this time."""
+    """Return a text on the largest stresses: mean over a patch, and in a single triangle."""
     triangle = (
         f"single element, which grows with mesh refinement beside a line of contact: "
         f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_yield_utilisation(boom, stress)} at "

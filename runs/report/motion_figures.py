@@ -69,8 +69,8 @@ def close_up(run: FigureContext) -> list[Figure]:
         contact = run.summary[name].first_contact
         if contact and contact <= end:
             contacts.append(contact)
-            then = np.interp(contact, run.time, deflection)
-            axes.plot(contact, then, "o", color=color, zorder=4, **circle)
+            touching = np.interp(contact, run.time, deflection)
+            axes.plot(contact, touching, "o", color=color, zorder=4, **circle)
         peak, height = run.summary[name].first_peak[place]
         if peak is None or height is None:
             peakless.append(name)

@@ -229,9 +229,9 @@ def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
     forces = np.abs(law.force(side * (onset + deepest * parts)))
     approaches = onset + deepest * parts + forces * compliance
     along = np.concatenate([[onset - 1.0, onset], approaches])
-    pressed = np.concatenate([[-OPEN, 0.0], forces])
+    contact_forces = np.concatenate([[-OPEN, 0.0], forces])
     order = 1 if side > 0.0 else -1
-    return [(side * along)[::order].tolist(), (side * pressed)[::order].tolist()]
+    return [(side * along)[::order].tolist(), (side * contact_forces)[::order].tolist()]
 
 
 def _cylinders(boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]:
@@ -247,7 +247,7 @@ def _cylinders(boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]
 
 
 def _frictions(boom: Boom, parts: Sequence[Part]) -> Iterator[list[object]]:
-    """Yield two nodes and the friction force in N, for each friction."""
+    """Yield two nodes and the friction force in N, for each pad with friction."""
     for pad in pads(boom):
         if pad.joint.friction > 0.0:
             assert pad.normal_force is not None
@@ -282,7 +282,7 @@ def _ends(pad: Pad, parts: Sequence[Part]) -> list[list[int]]:
     ]
 
 
-def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
+def select_model(case: Case, file: str, name: str | None = None) -> BeamElements:
     """Return the model with a name, by default the last beam-element model with play.
 
     Args:
@@ -305,7 +305,7 @@ def exported(case: Case, file: str, name: str | None = None) -> BeamElements:
 def write(
     case: Case, file: str, comm: MPI.Intracomm | None, path: Path, cache: Cache | None
 ) -> None:
-    """Write the script of the model from :func:`exported`.
+    """Write the script of the model of :func:`select_model`.
 
     Args:
         case: a checked case.
@@ -318,7 +318,7 @@ def write(
         BadInput: the model does not exist, or has a feature that the script does not support.
     """
     # Beam elements of OpenSees have no section fields.
-    model = exported(case, file).model_copy(update={"section_fields": False})
+    model = select_model(case, file).model_copy(update={"section_fields": False})
     boom = build_boom(case)
     calibration = None
     if model.needs_shell:

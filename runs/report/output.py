@@ -54,10 +54,10 @@ def rerender_report(
     with folder_lock(path):
         results = Results.load(path)
         check_not_working_folder(path, folder, "folder")
-        judged = judge(results)
+        addition_of_client = judge(results)
         with modified_folder(path) as part:
-            yield results, judged, part
-            write_report(results, judged, part)
+            yield results, addition_of_client, part
+            write_report(results, addition_of_client, part)
             if excel is not None:
                 write_workbook(results, part, folder, excel)
 
@@ -82,20 +82,20 @@ def write_in_two_steps(
     files = {name: folder / f"{f'{name}-' if several else ''}{FIELDS}" for name in run.shells}
     for name, path in files.items():
         run.shells[name].fields.to_netcdf(path, engine="scipy")
-    pictured = [*files.values()] if snapshots_now else []
-    later = LATER if files and not pictured else None
+    picture_files = [*files.values()] if snapshots_now else []
+    later = LATER if files and not picture_files else None
     results.summary.snapshots = Snapshots(written=[], skipped=later)
     motion = folder / TRAJECTORIES
-    with snapshots.start_rendering(results, pictured, motion, folder, helper=helper) as gather:
+    with snapshots.start_rendering(results, picture_files, motion, folder, helper=helper) as gather:
 
         def write_others(addition: Addition) -> None:
             write_csv(results.trajectories, folder / "trajectories.csv")
             for name, path in files.items():
                 prefix = path.name.removesuffix(FIELDS)
                 run.shells[name].write_files(folder, prefix)
-            if turned := viewer(run):
-                write_atomically(folder / VIEWER, turned)
-            figures = draw_in_folder(results, folder, helper if pictured else None)
+            if viewer_page := viewer(run):
+                write_atomically(folder / VIEWER, viewer_page)
+            figures = draw_in_folder(results, folder, helper if picture_files else None)
             try:
                 gather()
             except RenderingUnavailable as reason:
@@ -126,9 +126,9 @@ def _write_pages(
     results: Results, addition: Addition, folder: Path, figures: Sequence[Figure]
 ) -> None:
     pictures = snapshots.describe(results, folder)
-    there = VIEWER if (folder / VIEWER).is_file() else ""
+    viewer_file = VIEWER if (folder / VIEWER).is_file() else ""
     texts = {
-        REPORT: render(results, addition, figures, pictures, there),
+        REPORT: render(results, addition, figures, pictures, viewer_file),
         SUMMARY: str(results.summary),
         **addition.files,
     }
@@ -143,7 +143,7 @@ def _write_pages(
 
 
 def write_csv(trajectories: xr.Dataset, path: Path) -> None:
-    """Write trajectories as CSV: a line for each model and time. Stations are ``NAME@PLACE``."""
+    """Write trajectories as CSV, a line per model and time; station columns are ``NAME@PLACE``."""
     columns = {}
     places = trajectories["place"].values if "place" in trajectories.coords else ()
     for name, variable in trajectories.data_vars.items():

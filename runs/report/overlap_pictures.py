@@ -44,7 +44,7 @@ from runs.report.sheet import (
 from shell_model.stress.stresses import ShellStress
 
 # Limits of the magnified clearance and of magnified wall displacements relative to the outer
-# segment, over the height of the outer section; margin beside the stations in m.
+# segment, both as fractions of the height of the outer section; margin beside the stations in m.
 CLEARANCE_DRAWN, DISPLACEMENT_DRAWN, MARGIN = 0.08, 0.25, 0.6
 
 PIXELS = (SHEET[0], 625)
@@ -124,7 +124,7 @@ class OverlapView:
 
     @cached_property
     def scale(self) -> float:
-        """The largest magnification of displacements and play within the limits for both."""
+        """The magnification of displacements and play, as large as the limits for both permit."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
         half = 0.5 * np.ptp(self.stations) + MARGIN
         near = np.abs(self.scene.points[:, 0] - self.midpoint) <= half
@@ -180,7 +180,7 @@ class OverlapView:
         return places[self.scene.flange_in_plane(segment, side)]
 
     def ends(self, places: Array) -> tuple[float, float]:
-        """Return the lowest and highest z in m of the outer flanges at the stations."""
+        """Return the lowest and highest z in m of the outer segment's flanges at the stations."""
         flanges = [self.flange(places, self.overlap.outer, side) for side in (-1, 1)]
         heights = [_point_at(line, x)[2] for line in flanges for x in self.stations]
         return min(heights), max(heights)
@@ -191,7 +191,7 @@ class OverlapView:
         return Camera(centre, self.width, self.pixels, elevation=8.0)
 
     def half(self, segment: int) -> Numbers:
-        """Return the triangles (num_seen, 3) of a segment behind the cut."""
+        """Return the point numbers (num_triangles, 3) of a segment's triangles behind the cut."""
         mine = self.scene.segment == segment
         return np.asarray(self.scene.triangles[self.behind & mine])
 
@@ -254,7 +254,7 @@ class OverlapView:
 def draw_overlap(
     scene: Scene, instants: Sequence[Instant], overlap: Overlap
 ) -> Iterator[Image.Image]:
-    """Draw a sectional view of an overlap, with the forces at its stations."""
+    """Yield sectional views of an overlap, with the forces at its stations."""
     view = OverlapView(scene, overlap, [instant.time for instant in instants])
     outer, inner = view.names
     labels = {theme.OUTER: outer, theme.INNER: inner, theme.FORCE: f"force of {inner} on {outer}"}
@@ -334,7 +334,7 @@ class StressScale:
 def draw_stress(
     scene: Scene, instants: Sequence[Instant], scale: StressScale, overlaps: Iterable[Overlap]
 ) -> Iterator[list[Image.Image]]:
-    """Draw von Mises stresses: for each overlap the whole boom above a sectional view of it."""
+    """Yield, for each overlap, pictures of its von Mises stresses below those of the boom."""
     assert scene.stress is not None
     times = [instant.time for instant in instants]
     corners = [
@@ -378,14 +378,14 @@ def draw_stress(
                     f"overlap: cut open, × {view.scale:g}, cuts white (outer), grey (inner)\n"
                     f"{_ring_largest(sheet, view, places, values)}; "
                     f"{_largest(view, instant.time)}\n"
-                    f"{view.explain_forces(instant.time)}{_coarse(view)}",
+                    f"{view.explain_forces(instant.time)}{_coarse_mesh_caution(view)}",
                 )
                 images.append(sheet.image())
         yield images
 
 
 def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> Any:
-    """Return a surface with stresses, and with separate triangles, so that colours may jump.
+    """Return a surface of separate triangles with stresses, so that colours may jump at edges.
 
     Args:
         points: (num_points, 3) in m.
@@ -399,7 +399,7 @@ def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> An
 
 
 def smooth_corners(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:
-    """Return corner values (num_triangles, 3): means over the triangles of a wall at each point."""
+    """Return means (num_triangles, 3) at the corners, over triangles of one wall at each point."""
     walls = int(shell.wall.max()) + 1
     of = (triangles.astype(np.int64) * walls + shell.wall[:, None]).ravel()
     _, number = np.unique(of, return_inverse=True)
@@ -433,7 +433,7 @@ def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array)
     return f"circle: smoothed maximum {largest}, {place}"
 
 
-def _coarse(view: OverlapView) -> str:
+def _coarse_mesh_caution(view: OverlapView) -> str:
     """Return a caution if webs have too few elements to resolve their stresses."""
     fewest = min(_across_web(view.scene, number) for number in view.numbers)
     return "" if fewest >= ENOUGH else f";  webs of {fewest} elements are coarse for stresses"

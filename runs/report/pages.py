@@ -14,8 +14,8 @@ from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from PIL import Image
 
 TEMPLATES = Path(__file__).parent / "templates"
-# Largest width of pictures in a page, two pixels per pixel of the page, and their compression to a
-# third of the size on the disk without visible loss.
+# Largest width in pixels of pictures in a page, twice the width of the page; compression of
+# pictures to a third of their size without visible loss.
 WIDEST = 1240
 _WEBP: dict[str, Any] = {"format": "WEBP", "quality": 85, "method": 1}
 # CSS class of cells with each mark.

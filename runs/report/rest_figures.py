@@ -53,7 +53,7 @@ class Line(NamedTuple):
 
 def at_rest(run: FigureContext) -> list[Figure]:
     """Draw static deflection and section forces, with and without play."""
-    designs = dict(_read_first(run))
+    designs = dict(_main_designs(run))
     farthest = {name: design.farthest_static for name, design in designs.items()}
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
@@ -86,7 +86,7 @@ def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the envelopes of the section forces in motion."""
     envelopes_of_models = {
         name: design.motion.envelopes
-        for name, design in _read_first(run)
+        for name, design in _main_designs(run)
         if design.motion is not None
     }
     lines = {
@@ -94,7 +94,7 @@ def envelopes(run: FigureContext) -> list[Figure]:
             what: [
                 line
                 for envelope in several
-                for line in _both_ends(envelope, what, name, run.strokes[name].color)
+                for line in _envelope_lines(envelope, what, name, run.strokes[name].color)
             ]
             for what in _FORCES
         }
@@ -109,7 +109,7 @@ def envelopes(run: FigureContext) -> list[Figure]:
 
 def mode_shapes(run: FigureContext) -> list[Figure]:
     """Draw the first modes of the first main model that has modes."""
-    modes_of_models = [(name, design.modes) for name, design in _read_first(run) if design.modes]
+    modes_of_models = [(name, design.modes) for name, design in _main_designs(run) if design.modes]
     if not modes_of_models:
         return []
     name, modes = modes_of_models[0]
@@ -131,7 +131,7 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
     ]
 
 
-def _read_first(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
+def _main_designs(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
     for name in run.models:
         if name in run.main_models and name in run.design:
             yield name, run.design[name]
@@ -149,7 +149,7 @@ def rest_lines(rest: StaticResult, name: str, color: str) -> dict[str, list[Line
     return lines
 
 
-def _both_ends(envelope: Envelope, what: str, name: str, color: str) -> Iterator[Line]:
+def _envelope_lines(envelope: Envelope, what: str, name: str, color: str) -> Iterator[Line]:
     dashes = "--" if color == theme.PLAY_FREE else "-"
     for side in (envelope.low, envelope.high):
         if what in side:

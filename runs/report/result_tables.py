@@ -21,9 +21,9 @@ from runs.report.formatting import amount, number
 from runs.report.model_tables import metric_columns
 from runs.report.tables import Cell, Column, Table
 
-# Relative difference that is negligible.
+# Relative difference below which an effect is negligible.
 NEGLIGIBLE = 0.005
-# Fraction of the values of other models that counts as zero.
+# Fraction of the largest force in a column below which a force counts as zero.
 ROUND_OFF = 1.0e-9
 
 
@@ -95,7 +95,7 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
 
 
 def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
-    places = dict.fromkeys(pressed.place for rest in rests.values() for pressed in rest.stations)
+    places = dict.fromkeys(station.place for rest in rests.values() for station in rest.stations)
     columns = [Column("station", [f"x = {place} m" for place in places])]
     for name, rest in rests.items():
         forces = {one.place: one.force for one in rest.stations}
@@ -142,12 +142,12 @@ def mode_table(results: Results) -> Table:
     }
     lowest: dict[tuple[str, int], float] = {}
     for frequencies in of.values():
-        for way, frequency in frequencies.items():
-            lowest[way] = min(frequency, lowest.get(way, frequency))
-    rows = sorted(lowest, key=lambda way: lowest[way])
-    columns = [Column("mode", [f"{way} {count}" for way, count in rows])]
+        for mode, frequency in frequencies.items():
+            lowest[mode] = min(frequency, lowest.get(mode, frequency))
+    rows = sorted(lowest, key=lambda mode: lowest[mode])
+    columns = [Column("mode", [f"{motion} {count}" for motion, count in rows])]
     columns += [
-        Column(name, [frequencies.get(way) for way in rows], ".4g", "Hz")
+        Column(name, [frequencies.get(mode) for mode in rows], ".4g", "Hz")
         for name, frequencies in of.items()
     ]
     notes = (
@@ -158,7 +158,7 @@ def mode_table(results: Results) -> Table:
 
 
 def peak_table(results: Results) -> Table:
-    """Return the table of maxima in motion and values at rest, for the leading models."""
+    """Return the table of maxima in motion, with ratios to static values, for the main models."""
     of = {
         name: {
             (peak.what, peak.where): f"{amount(peak.largest, peak.unit)}{times(peak)}"
@@ -220,7 +220,7 @@ def drive_table(results: Results) -> Table:
 
 
 def luffing_table(results: Results) -> Table | None:
-    """Return length and force of the cylinders of every model; None if nothing luffs."""
+    """Return the table of cylinder lengths and forces in luffing; None without luffing."""
     boom, data = results.boom, results.trajectories
     if results.case.luff is None or not boom.cylinders:
         return None
@@ -251,13 +251,13 @@ def luffing_table(results: Results) -> Table | None:
 
 
 def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, float, float]:
-    """Return a drive's mean and maximum force in N, maximum power in W and work in J."""
+    """Return a drive's mean and maximum friction force in N, maximum power in W and work in J."""
     data = results.trajectories.sel(model=model)
-    way, friction, power = (
+    extension, friction, power = (
         np.asarray(data[name + suffix].values, dtype=float)
         for name in ("extension", "drive_friction", "drive_power")
     )
-    moving = np.diff(way, prepend=way[0]) != 0.0
+    moving = np.diff(extension, prepend=extension[0]) != 0.0
     mean = float(np.abs(friction[moving]).mean()) if moving.any() else 0.0
     work = float((power[1:] * np.diff(data["time"].values)).sum())
     return mean, float(np.abs(friction).max()), float(power.max()), work
@@ -294,7 +294,7 @@ def stick_slip_table(results: Results) -> Table:
 
 
 def record_tables(results: Results) -> Iterator[Table]:
-    """Yield a table for each result that has one record per model."""
+    """Yield a table for each kind of record, with a row for each model."""
     design = results.summary.design.models
     for name, kind in records(ModelDesignResults).items():
         results_of_models = {
@@ -310,7 +310,7 @@ def record_tables(results: Results) -> Iterator[Table]:
 
 
 def pad_table(results: Results) -> Table:
-    """Return the table of pad forces and pressures; None without pads of given size."""
+    """Return the table of pad forces and pressures, without rows if no pad has a known size."""
     pads = results.summary.pads
     columns = (
         Column("model", [pad.model for pad in pads]),
@@ -357,7 +357,7 @@ def stress_table(results: Results) -> Table:
 
 
 def buckling_table(results: Results) -> Table:
-    """Return buckling factors of the walls of each segment; None if not requested."""
+    """Return the table of buckling factors of walls, without rows if they are not requested."""
     rows: list[Sequence[Cell]] = []
     for name, model_results in results.summary.design.models.items():
         shells = {
@@ -391,7 +391,7 @@ def buckling_table(results: Results) -> Table:
 
 
 def life_table(results: Results) -> Table:
-    """Return the table of rainflow stress ranges of segments, for the leading models."""
+    """Return the table of rainflow stress ranges of segments, for the main models."""
     models = results.summary.design.models
     rows = [
         (name, life)

@@ -99,7 +99,7 @@ class Scene:
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
-        """Return the scenes of a shell: seen from the side, in 3-D booms also from above.
+        """Return the scenes of a shell: from the side, and for a boom in space also from above.
 
         For the view from above the boom is rotated about x, so that y points up.
 
@@ -229,8 +229,8 @@ class Scene:
     def along(self, t: float) -> Array:
         """Return the travel (num_points,) of each point by drives in m, at a time in s."""
         step = int(np.abs(self.motion["time"].values - t).argmin())
-        ways = [self.travel(number)[step] for number in range(len(self.boom.segments))]
-        return np.array(ways)[self.owner]
+        travels = [self.travel(number)[step] for number in range(len(self.boom.segments))]
+        return np.array(travels)[self.owner]
 
     def telescopes(self, overlap: Overlap) -> bool:
         """Return True if a drive moves the inner segment of an overlap in the outer one."""
@@ -288,7 +288,7 @@ class Scene:
         return max(0.5 * float(np.ptp(self.edges(segment, end))) for end in ends)
 
     def flange_in_plane(self, segment: int, side: int) -> Numbers:
-        """Return the points (num_points,) of a flange in the plane of bending, from base to tip.
+        """Return the point numbers of a flange in the plane of bending, from base to tip.
 
         ``side`` is 1 for the top flange, -1 for the bottom flange.
         """
@@ -364,10 +364,10 @@ class _Tube(NamedTuple):
 
 def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
     """Return the tube of a segment: rings of corners, with two triangles per plate and interval."""
-    x, read = output.x, output.read
+    x, curves = output.x, output.curves
     corners = np.array([_corners(boom, segment, place) for place in x.tolist()])
-    none = np.zeros_like(read["deflection"])
-    w, v, twist = (read.get(name, none)[..., None] for name in ("deflection", "lateral", "twist"))
+    none = np.zeros_like(curves["deflection"])
+    w, v, twist = (curves.get(name, none)[..., None] for name in ("deflection", "lateral", "twist"))
     turn_z, turn_y = (np.gradient(line[..., 0], x, axis=1)[..., None] for line in (w, v))
     y, z = np.moveaxis(corners, -1, 0)
     displacement = [-z * turn_z - y * turn_y, v - z * twist, w + y * twist]
@@ -376,9 +376,9 @@ def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
     a, b, c, d = np.array(quads).transpose(1, 0, 2).reshape(4, -1)
     there = [segment.prismatic_at(place) for place in x.tolist()]
     # Rigid segments have no bending moments.
-    stress = _bending(read.get("moment", none), there, "second_moment_of_area") * z
-    if "lateral_moment" in read:
-        stress += _bending(read["lateral_moment"], there, "lateral.second_moment_of_area") * y
+    stress = _bending(curves.get("moment", none), there, "second_moment_of_area") * z
+    if "lateral_moment" in curves:
+        stress += _bending(curves["lateral_moment"], there, "lateral.second_moment_of_area") * y
     shape = (len(w), -1)
     return _Tube(
         points=np.stack([np.repeat(x, y.shape[1]), y.ravel(), z.ravel()], axis=1),

@@ -29,7 +29,7 @@ from runs.report import theme
 
 Pixels = npt.NDArray[np.uint8]
 
-# Lights: faces differ in brightness; with COLOUR_READ they match the colour bar, too.
+# Lights under which faces differ in brightness; with COLOUR_READ they also match the colour bar.
 MATTE = {
     "ambient": 0.35,
     "diffuse": 0.75,
@@ -153,9 +153,9 @@ class Sheet:
         self.figure = Figure(figsize=(SHEET[0] / DPI, SHEET[1] / DPI), dpi=part * DPI)
         self._canvas: Any = FigureCanvasAgg(self.figure)
         self._part, self._floor = part, floor
-        self._seen: list[tuple[Pixels, int, int]] = []
-        self._passing: list[Artist] = []
-        self._still: Any = None
+        self._pictures: list[tuple[Pixels, int, int]] = []
+        self._temporary_artists: list[Artist] = []
+        self._background: Any = None
         self.picture = self.axes(0, floor, *pixels)
         self.picture.spines["left"].set_visible(False)
         self.picture.set(xlim=(0, pixels[0]), ylim=(0, pixels[1]), yticks=[])
@@ -187,13 +187,13 @@ class Sheet:
     def show(self, pixels: Pixels, left: int = 0, bottom: int | None = None) -> None:
         """Show rendered pixels in the picture, or at a position in pixels on the sheet."""
         up = self._floor if bottom is None else bottom
-        self._seen.append((pixels, round(self._part * left), round(self._part * up)))
+        self._pictures.append((pixels, round(self._part * left), round(self._part * up)))
 
     def show_once(self, *artists: Artist) -> None:
         """Show artists in the next image only."""
         for artist in artists:
             artist.set_animated(True)
-        self._passing += artists
+        self._temporary_artists += artists
 
     def write(self, heading: str, explanation: str) -> None:
         """Write the heading and the explanation of the next image above the picture."""
@@ -231,19 +231,19 @@ class Sheet:
 
     def image(self) -> Image.Image:
         """Return the current image of the sheet, and remove temporary artists."""
-        if self._still is None:
+        if self._background is None:
             self._canvas.draw()
-            self._still = self._canvas.copy_from_bbox(self.figure.bbox)
-        self._canvas.restore_region(self._still)
+            self._background = self._canvas.copy_from_bbox(self.figure.bbox)
+        self._canvas.restore_region(self._background)
         page = np.asarray(self._canvas.buffer_rgba())
-        for pixels, left, bottom in self._seen:
+        for pixels, left, bottom in self._pictures:
             top, (height, width, _) = len(page) - bottom, pixels.shape
             place = page[top - height : top, left : left + width, :3]
             # Characters that reach down into the picture are kept.
             np.minimum(place, pixels, out=place)
-        for artist in sorted(self._passing, key=Artist.get_zorder):
+        for artist in sorted(self._temporary_artists, key=Artist.get_zorder):
             self.figure.draw_artist(artist)
             artist.remove()
-        self._passing.clear()
-        self._seen.clear()
+        self._temporary_artists.clear()
+        self._pictures.clear()
         return Image.fromarray(page[..., :3].copy())

@@ -34,8 +34,8 @@ from runs.report.scene import Instant, Scene
 
 SNAPSHOTS = "snapshots"
 
-# Animation: duration in the run in s, but the whole run of a crane; duration on the screen in s,
-# number of frames, size factor of the sheet.
+# Animation: animated duration of the run in s, for a crane the whole run; number of frames;
+# duration on the screen in s; size factor of the sheet.
 ANIMATION = "motion.gif"
 ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, 0.6
 
@@ -85,7 +85,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
         ValueError: a time lies outside the run.
     """
     begin, end = _ends(views[0])
-    when = _when(views[0].motion, times)
+    when = _named_times(views[0].motion, times)
     for t in when.values():
         if not begin <= t <= end:
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
@@ -95,7 +95,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
         scale = StressScale.of(views[0].stress, when.values())
         for seen in views:
             above = "-above" if seen.from_above else ""
-            when = _when(seen.motion, times)
+            when = _named_times(seen.motion, times)
             instants = _instants(views, when)
             view = BoomView.of(seen, [*instants, *_film(seen)])
             pictures: dict[str, Iterable[Image.Image]] = {
@@ -122,10 +122,10 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
 def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
     """Draw the first seconds of the motion of a shell as ``motion.gif``."""
     # The view is the one in which the tip moves most.
-    scene = max(views, key=lambda seen: float(np.ptp(seen.motion["tip"].values)))
+    scene = max(views, key=lambda view: float(np.ptp(view.motion["tip"].values)))
     film, (begin, _) = _film(scene), _ends(scene)
     with rc_context(theme.PAGE_RC):
-        view = BoomView.of(scene, [*_instants(views, _when(scene.motion, times)), *film])
+        view = BoomView.of(scene, [*_instants(views, _named_times(scene.motion, times)), *film])
         last = film[-1].time
         slow = SHOWN / (last - begin) if last > begin else 1.0
         pace = f"; {slow:.3g} times slower than real time" if slow > 1.0 else ""
@@ -181,7 +181,7 @@ def _film_end(motion: xr.Dataset, crane: CranePosition | None) -> float:
     return float(end if crane else min(end, begin + ANIMATED))
 
 
-def _when(motion: xr.Dataset, times: Times) -> dict[str, float]:
+def _named_times(motion: xr.Dataset, times: Times) -> dict[str, float]:
     """Return the times in s by their names in file names."""
     return characteristic_instants(motion) if times is None else {f"{t:g}s": t for t in times}
 
@@ -213,7 +213,7 @@ def characteristic_instants(motion: xr.Dataset) -> dict[str, float]:
     force = np.abs(np.nan_to_num(motion["contact_force_peak"].values))
     if force.any():
         largest = float(time[force.max(axis=1).argmax()])
-        if all(abs(largest - seen) > SAME * time[-1] for seen in instants.values()):
+        if all(abs(largest - other) > SAME * time[-1] for other in instants.values()):
             instants["largest-force"] = largest
         if not force[0].any():
             instants["first-contact"] = float(time[force.any(axis=1).argmax()])
@@ -274,12 +274,12 @@ def start_rendering(
     if not shells:
         yield list
         return
-    beside = workers.workers(1, opengl.silence_stderr) if helper is None else nullcontext(helper)
-    with TemporaryDirectory(dir=folder) as easel, beside as pool:
+    executor = workers.workers(1, opengl.silence_stderr) if helper is None else nullcontext(helper)
+    with TemporaryDirectory(dir=folder) as temporary, executor as pool:
         first = pool.submit(opengl.render_test_picture)
         futures = []
         for number, path in enumerate(sorted(shells)):
-            place = Path(easel) / str(number)
+            place = Path(temporary) / str(number)
             place.mkdir()
             future = pool.submit(
                 render_files, RENDERED, path, trajectories, results.case, place, times

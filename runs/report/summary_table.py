@@ -100,7 +100,7 @@ def summary_table(results: Results) -> Table | None:
 
 
 def deviation_note(results: Results) -> str:
-    """Return a sentence on the deviation of other models with play; empty without them."""
+    """Return a sentence on how other models with play deviate from the reference, or nothing."""
     design, reference = results.summary.design.models, results.reference
     if not design or reference is None:
         return ""
@@ -164,8 +164,8 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
 def _missing_strengths(results: Results, model: str) -> str:
     """Return a text on missing strengths of steel and of loaded pads."""
     steels = [one.name for one in results.boom.segments if one.yield_strength is None]
-    pressed = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
-    pads = {pad.inner: None for pad in pressed if pad.utilisation is None}
+    loaded = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
+    pads = {pad.inner: None for pad in loaded if pad.utilisation is None}
     missing = {"yield strength is given of": steels, "allowable pressure is given of pads of": pads}
     return "".join(f" No {what} {join_words([*of])}." for what, of in missing.items() if of)
 
@@ -185,7 +185,7 @@ def _more(one: PlayDifference) -> str:
 
 
 def governing_pads(results: Results) -> dict[str, PadLoad]:
-    """Return the pad of each model with the highest utilisation, or the highest pressure."""
+    """Return the pad of each model with the highest utilisation; without one, highest pressure."""
     pads = results.summary.pads[::-1]
     pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
     return {pad.model: pad for pad in pads}
@@ -310,7 +310,7 @@ def _each(results: Sequence[ModelDesignResults], what: str) -> list[str | None]:
 
 
 def _largest(results: ModelDesignResults, what: str, at: str = "") -> str | None:
-    """Return the maximum of a kind in kN or mm, and its position, as text."""
+    """Return the largest peak of a quantity in kN or mm, with its position, as text."""
     if (peak := largest_peak(results, what)) is None:
         return None
     return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"

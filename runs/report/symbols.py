@@ -126,7 +126,7 @@ def marker_style(path: Path, color: str, size: float) -> dict[str, Any]:
 def edges(
     boom: Boom, segment: Segment, x: float, direction: Direction = "z"
 ) -> tuple[float, float]:
-    """Return the lowest and highest z of a segment at x, both in m, estimated without a section."""
+    """Return the lowest and highest z in m of a segment at x; an estimate without a section."""
     half = 0.5 * DEFAULT_HEIGHT * boom.length
     return (-half, half) if segment.section is None else segment.section_at(x).reach(direction)
 

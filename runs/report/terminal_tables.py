@@ -28,7 +28,7 @@ from runs.report.summary_table import (
 )
 from runs.report.tables import Cell, Column, Table
 
-# Headings in the terminal of columns of the models' table.
+# Terminal headings of columns of the table of models, by their headings in the report.
 SHOWN = {
     "model": "model",
     "degrees of freedom": "dofs",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Style of figures, with the same colour of a model in all of them."""
+"""Style of figures; a model has the same colour in all figures."""
 
 from __future__ import annotations
 
@@ -22,8 +22,8 @@ FAINT = "#a8a8a8"
 # Colours of energy losses.
 LOSS = "#8c6d1f"
 
-# Colours of Okabe and Ito (2008) except the colours that are too pale for lines, with a darker
-# purple, and two further colours.
+# Colours of Okabe and Ito (2008) without those that are too pale for lines, with a darker purple
+# and two further colours.
 PALETTE = ("#0072b2", "#d55e00", "#009e73", "#111111", "#b0568c", "#6a3fd0", "#8a6d00")
 
 # Colours of two segments and their contact force, which the colour-blind can distinguish.

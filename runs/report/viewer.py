@@ -38,8 +38,8 @@ TRUNCATION = 2.0e-3
 MOST_POINTS = 60_000
 # Percentile of the stresses at the end of the colour scale.
 PERCENTILE = 99.0
-# Size of a symbol over the length of the boom, size of a small symbol over this, and margin around
-# the boom over its length.
+# Size of a symbol as a fraction of the length of the boom; size of a small symbol as a fraction of
+# this; margin around the boom as a fraction of its length.
 SYMBOL, SMALL, MARGIN = 0.03, 0.6, 0.02
 # Scale at which matplotlib converts the curves of a symbol into polygons.
 FINE = 100.0
@@ -265,7 +265,7 @@ def _figure(view: View, lines: Sequence[Lines], reach: Array) -> dict[str, Any]:
 
 
 def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
-    """Return moved points and travel of each drive, by the name of the inner segment.
+    """Return the points that each drive moves, and its travel, by the name of the inner segment.
 
     The first array (num_points,) is 1 for points that the drive moves, else 0. The second is the
     travel (num_frames,) in m at the times (num_frames,) in s.
@@ -296,10 +296,10 @@ def few_shapes(displacement: Array) -> tuple[Array, Array]:
     _, parts = np.linalg.eigh(displacement @ displacement.T)
     parts = parts[:, ::-1]
     shapes, largest = parts.T @ displacement, float(np.abs(displacement).max())
-    left = displacement.copy()
+    residual = displacement.copy()
     for count in range(1, len(parts) + 1):
-        left -= np.outer(parts[:, count - 1], shapes[count - 1])
-        if np.abs(left).max() <= TRUNCATION * largest:
+        residual -= np.outer(parts[:, count - 1], shapes[count - 1])
+        if np.abs(residual).max() <= TRUNCATION * largest:
             break
     return parts[:, :count], shapes[:count]
 

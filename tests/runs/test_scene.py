@@ -290,7 +290,7 @@ def test_values_at_jumps_are_read_beyond_the_jump() -> None:
     output = BeamOutput.of([line], Trajectory(data, np.array([[0.0], [2.0]])))
     (segment,) = output.segments
     assert segment.x.tolist() == [0.0, 1.0, 2.0]
-    assert segment.read["moment"].tolist() == [[0.0, 0.0, 0.0], [0.0, 10.0, 0.0]]
+    assert segment.curves["moment"].tolist() == [[0.0, 0.0, 0.0], [0.0, 10.0, 0.0]]
 
 
 def drawn(name: str) -> Figure:
