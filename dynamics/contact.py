@@ -22,7 +22,8 @@ from dynamics.contact_term import (
     slope_of,
 )
 
-# A negligible force in N, and natural logarithms of penetrations in m for interpolation.
+# A negligible force in N, and logarithms of penetrations in m between which forces are
+# interpolated.
 _LEAST, _LOG_DEPTHS = 1.0e-300, np.linspace(-300.0, 300.0, 6001)
 
 
@@ -32,8 +33,8 @@ class ContactLaw(ABC):
     A user-defined law is a frozen dataclass that derives from this class. It defines
 
     - ``terms``; their sum is the elastic force F, which is never attractive and is zero at y = 0;
-    - ``damping``, d in s/m of Hunt and Crossley (1975): the force is F (1 + d ṗ) at the rate ṗ of
-      the penetration, but never adhesive;
+    - ``damping``, χ in s/m of Hunt and Crossley (1975): the force is F (1 + χ δ̇) at the rate δ̇ of
+      the penetration, but never attractive;
     - ``str(law)``, a short description for tables.
 
     Contact begins at y = 0 unless :meth:`with_clearance` adds a clearance.
@@ -55,12 +56,12 @@ class ContactLaw(ABC):
         return part if part.terms else None
 
     def with_weight(self, weight: float) -> Gap:
-        """Return the law times ``weight``, for one of several points that share its force."""
+        """Return the law times ``weight``, for one of several points of a contact."""
         part = self.with_clearance(0.0)
         return replace(part, weight=weight * part.weight)
 
     def with_clearance(self, above: float, below: float | None = None) -> Gap:
-        """Return the law with a clearance in m for y > 0, and this or another one for y < 0."""
+        """Return the law with clearances in m for y > 0 and for y < 0, by default the same."""
         return Gap(self, above, above if below is None else below)
 
     def scale_clearances(self, factor: float) -> ContactLaw:
@@ -68,11 +69,11 @@ class ContactLaw(ABC):
         return self
 
     def onset(self, side: float) -> float:
-        """Return the |y| in m at which contact begins on a side; infinite without contact."""
+        """Return the |y| in m at which contact begins on side 1 or −1; infinite without contact."""
         return min((term.onset for term in self.terms if term.side == side), default=np.inf)
 
     def force(self, y: Array) -> Array:
-        """Return the elastic force in N on the outer segment, opposite to that on the inner one.
+        """Return the elastic force F in N on the outer segment; −F acts on the inner one.
 
         Args:
             y: relative displacement u − w in m, any shape.
@@ -162,7 +163,7 @@ class Gap(ContactLaw):
         return replace(self, above=factor * self.above, below=factor * self.below)
 
     def slope_at(self, force: float) -> float:
-        # With its clearances, a small penetration would be lost to round-off.
+        # Beside clearances, a small penetration would be lost to round-off.
         return ContactLaw.slope_at(replace(self, above=0.0, below=0.0), force)
 
     def __str__(self) -> str:
@@ -171,7 +172,7 @@ class Gap(ContactLaw):
 
 @dataclass(frozen=True, slots=True)
 class PowerContact(ContactLaw):
-    """F(y) = k₂ yⁿ above 0, −k₁ (−y)ⁿ below.
+    """Power law F = k₂ yⁿ for y > 0 and F = −k₁ (−y)ⁿ for y < 0.
 
     Equation (4) of Rusiński and Wyciślok (1997), in the only sign convention that gives a restoring
     force; n = 3/2 is Hertz contact, n = 1 a linear stop. A side with stiffness zero has no contact.
@@ -184,8 +185,8 @@ class PowerContact(ContactLaw):
         stiffness: k₂ in N/mⁿ.
         exponent: n, at least 1, so that the slope is finite at the beginning of contact.
         stiffness_below: k₁ in N/mⁿ; the same as ``stiffness`` unless given.
-        damping: d in s/m of Hunt and Crossley (1975), F = k pⁿ (1 + d ṗ) at the penetration p, but
-            never adhesive; not negative.
+        damping: χ in s/m of Hunt and Crossley (1975), not negative: F = k δⁿ (1 + χ δ̇) at the
+            penetration δ, but never attractive.
 
     Raises:
         ValueError: an argument is out of its range or not finite.
@@ -233,7 +234,7 @@ class PowerContact(ContactLaw):
 
 @dataclass(frozen=True, slots=True)
 class DryFriction:
-    """Coulomb's law on one sliding row: |R| ≤ μ N, and R = −μ N sign(ṡ) while it slides.
+    """Coulomb's law of one friction row: |R_l| ≤ μ N_l, and R_l = −μ N_l sign(ḋ_l) in sliding.
 
     Equation (28) of Rusiński and Wyciślok (1997) with a prescribed normal force, and (11) with
     contact forces as normal force.
@@ -249,8 +250,8 @@ class DryFriction:
     Args:
         coefficient: μ, not negative.
         station: index in the stations of the system.
-        normal_force: prescribed part of N in N, not negative.
-        normal_rows: contact rows whose |F| contribute to N.
+        normal_force: prescribed part of N_l in N, not negative.
+        normal_rows: contact rows whose forces |F_j| are the other part of N_l.
 
     Raises:
         ValueError: an argument is negative or not finite.
@@ -281,17 +282,17 @@ def contact_limits(laws: Sequence[ContactLaw]) -> Limits:
 
 
 def restitution_damping(restitution: float, speed: float) -> float:
-    """Return the damping d in s/m for which a mass rebounds with the restitution e.
+    """Return the damping χ in s/m for which a mass rebounds with a given restitution.
 
-    With F = k pⁿ (1 + d ṗ), ṗ dṗ/(1 + d ṗ) = −(k/m) pⁿ dp. Over the whole impact the integral of
-    the right side is zero for all k, n and m, hence (e + 1) v = ln[(1 + d v)/(1 − d e v)]/d.
+    For a mass m with F = k δⁿ (1 + χ δ̇), δ̇ dδ̇/(1 + χ δ̇) = −(k/m) δⁿ dδ. The right side integrates
+    to zero over the whole impact for all k, n and m, hence v₀ + v₁ = ln[(1 + χ v₀)/(1 − χ v₁)]/χ.
 
     >>> print(f"{pt.restitution_damping(restitution=0.5, speed=2.0):.4f} s/m")
     0.7164 s/m
 
     Args:
-        restitution: e, ratio of the speeds after and before the impact, above 0 and at most 1.
-        speed: v before the impact in m/s, positive.
+        restitution: ratio v₁/v₀ of the speeds after and before the impact, above 0 and at most 1.
+        speed: v₀ before the impact in m/s, positive.
 
     Raises:
         ValueError: an argument is out of its range.
@@ -303,11 +304,11 @@ def restitution_damping(restitution: float, speed: float) -> float:
         raise ValueError(f"restitution must be above 0 and at most 1, got {e}")
     if not 0.0 < speed < np.inf:
         raise ValueError(f"speed must be finite and positive, got {speed} m/s")
-    # The root of the third-order series in d v, whose relative error is of the order of (d v)².
+    # The root of the third-order series in χ v₀, whose relative error is of the order of (χ v₀)².
     first = 1.5 * (1.0 - e**2) / (1.0 + e**3)
     if first < 1.0e-4:
         return first / speed
-    # The unknown is u = −ln(1 − d e v), which is finite for all d e v below 1.
+    # The unknown is u = −ln(1 − χ v₁), which is finite for all χ v₁ below 1.
     u = brentq(
         lambda u: np.log1p(-np.expm1(-u) / e) + u + (1.0 + e) * np.expm1(-u) / e,
         -np.log1p(-0.5 * e * first),

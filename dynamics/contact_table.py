@@ -16,7 +16,7 @@ from dynamics.contact_term import Term
 class TableContact(ContactLaw):
     """Contact law with linear interpolation in a table of forces, and extrapolation beyond it.
 
-    The law is a sum of linear springs: one begins at each change of slope.
+    The law is a sum of linear springs: one spring begins at each change of slope.
 
     >>> pad = pt.TableContact(depths=(0.001, 0.002), forces=(1e3, 4e3))
     >>> round(float(pad.force(np.array(0.0015))), 6)

@@ -17,8 +17,8 @@ import numpy.typing as npt
 Terms = npt.NDArray[np.void]
 Limits = npt.NDArray[np.void]
 
-# Types: a gap in a compiled loop, or an array of gaps; a function of a term, or of the arrays of
-# several terms with one exponent, and a gap.
+# Types: a relative displacement y, or an array of them; a function of a term and y, or of the
+# arrays of several terms with one exponent and y.
 Gap = Any
 OfTerm = Callable[[Any, Gap], Gap]
 
@@ -32,7 +32,7 @@ TERM = np.dtype(
         ("exponent", np.float64),
     ]
 )
-# Record of the gaps in m between which a row is open, and of its damping in s/m.
+# Record of the y in m between which a contact is open, and of its damping χ in s/m.
 LIMITS = np.dtype([("low", np.float64), ("high", np.float64), ("damping", np.float64)])
 
 
@@ -44,25 +44,25 @@ class Term(NamedTuple):
     """
 
     side: float  #: 1 for contact at positive y, −1 at negative y
-    stiffness: float  #: k in N/mⁿ; negative if a law becomes softer
-    onset: float  #: onset in m from y = 0 on its side
+    stiffness: float  #: k in N/mⁿ; negative where a law becomes softer
+    onset: float  #: distance in m from y = 0 at which contact begins
     exponent: float  #: n, at least 1
 
 
 def force_of(term: np.void, y: Gap) -> Gap:
-    """Return the force in N of a term at gaps y in m."""
+    """Return the force in N of a term at relative displacements y in m."""
     depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
     power = depth if n == 1.0 else depth * depth if n == 2.0 else depth**n
     return term["side"] * term["stiffness"] * power
 
 
 def energy_of(term: np.void, y: Gap) -> Gap:
-    """Return the potential in J of a term at gaps y in m."""
+    """Return the potential in J of a term at relative displacements y in m."""
     depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
     return term["stiffness"] * depth ** (n + 1.0) / (n + 1.0)
 
 
 def slope_of(term: np.void, y: Gap) -> Gap:
-    """Return dF/dy in N/m of a term at gaps y in m."""
+    """Return dF/dy in N/m of a term at relative displacements y in m."""
     depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
     return np.sign(depth) * n * term["stiffness"] * depth ** (n - 1.0)

@@ -2,14 +2,16 @@
 """Modal damping of a boom with its joints in contact.
 
 The coordinates of a boom with play are modes of separate segments. Damping of these modes does not
-affect the rigid motions, which contribute much to the vibration. So damping is specified for the
-modes with closed contacts: Φ (num_modes, r), Φᵀ Φ = 1, of frequencies ω. With ρ and ε the rigid and
-elastic coordinates of Φ, Ω the frequencies of the segments, and ε⁺ the pseudo-inverse,
+affect the rigid motions, which contribute much to the vibration. So the damping ratio ζ is
+specified for the modes Φ with closed contacts, Φᵀ Φ = 1, of the circular frequencies ω. With the
+rigid and elastic coordinates Φ_r and Φ_e of Φ, the pseudo-inverse Φ_e⁺, the diagonal matrix Ω of
+the circular frequencies of the segments, and a factor η,
 
-    C = 2ζ [½ ω₁ on rigid coordinates + s Ω on elastic ones + ε⁺ᵀ (ω − ½ ω₁ ρᵀρ − s εᵀ Ω ε) ε⁺]
+    C = 2ζ [½ ω₁ on rigid coordinates + η Ω on elastic ones
+            + Φ_e⁺ᵀ (ω − ½ ω₁ Φ_rᵀ Φ_r − η Φ_eᵀ Ω Φ_e) Φ_e⁺]
 
-gives Φᵀ C Φ = 2ζ ω. The speed of a segment without contact decays at the rate ζ ω₁. C is
-positive semidefinite at least for s ≤ ½, since εᵀ Ω ε ≤ (εᵀ Ω² ε)^½ ≤ ω (Hansen 1980); s is the
+gives Φᵀ C Φ = 2ζ ω. The speed of a segment without contact decays at the rate ζ ω₁. C is positive
+semidefinite at least for η ≤ ½, since Φ_eᵀ Ω Φ_e ≤ (Φ_eᵀ Ω² Φ_e)^½ ≤ ω (Hansen 1980). η is the
 largest permitted value up to 1.
 """
 
@@ -36,10 +38,10 @@ _ROUND_OFF = 1.0e-9
 
 
 def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
-    """Return ω (num_shapes,) in rad/s, ascending, and shapes (num_modes, num_shapes).
+    """Return ω (num_shapes,) in rad/s, ascending, and modes Φ (num_modes, num_shapes).
 
-    Contacts that press at rest have their stiffness F'(y) at rest; a force that is round-off does
-    not press. If no contact presses at a station between segments, all its rows are bonded.
+    Contacts that are closed at rest have the stiffness F′(y) at rest. A contact whose force is
+    round-off counts as open. A station between segments whose contacts are all open is bonded.
 
     Args:
         system: gap system of a boom.
@@ -54,9 +56,9 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
         force = np.abs([float(law.force(y)) for law, y in gaps])
         slope = np.array([law.slope(y) for law, y in gaps])
         stiffness = np.where(force > _ROUND_OFF * force.max(initial=0.0), slope, 0.0)
-    pressed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
-    tied = system.rows[~pressed & ~np.isin(system.station_of_row, system.grounded)]
-    free = null_space(tied) if tied.size else np.eye(system.num_modes)
+    closed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
+    bonded = system.rows[~closed & ~np.isin(system.station_of_row, system.grounded)]
+    free = null_space(bonded) if bonded.size else np.eye(system.num_modes)
     rows = system.rows @ free
     omega2, combination = eigh(
         free.T @ (system.omega2[:, None] * free) + (rows.T * stiffness) @ rows
@@ -68,10 +70,10 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
 
 
 def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
-    """Return the system with the damping ratio ``ratio`` added to the first closed-contact modes.
+    """Return the system with the damping ratio ``ratio`` added to its first modes.
 
-    It applies to the first eight modes of :func:`closed_contact_modes`, or fewer if the segments
-    have fewer elastic modes. A system of rigid segments is not damped.
+    These are the first eight modes of :func:`closed_contact_modes`, or as many as the segments have
+    elastic modes, if fewer. A system of rigid segments is not damped.
     """
     rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))
@@ -82,9 +84,9 @@ def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = Non
     bent = np.where(rigid[:, None], 0.0, shapes)
     required = np.diag(omega) - (shapes - bent).T @ (rates_of_modes[:, None] * (shapes - bent))
     damping = bent.T @ (rates_of_modes[:, None] * bent)
-    share = 1.0 / max(1.0, eigh(damping, required, eigvals_only=True)[-1])
-    missing, directions = eigh(required - share * damping)
-    rates = 2.0 * ratio * np.where(rigid, rates_of_modes, share * rates_of_modes)
+    eta = 1.0 / max(1.0, eigh(damping, required, eigvals_only=True)[-1])
+    missing, directions = eigh(required - eta * damping)
+    rates = 2.0 * ratio * np.where(rigid, rates_of_modes, eta * rates_of_modes)
     needed = missing > _ROUND_OFF * omega[-1]
     strengths = np.sqrt(2.0 * ratio * missing[needed])
     dashpots = strengths[:, None] * (directions[:, needed].T @ pinv(bent, rtol=_BENT))
@@ -96,7 +98,7 @@ def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = Non
 
 
 def closed_contact_damping(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
-    """Return frequencies in Hz and damping ratios Φ·CΦ/2ω (num_shapes,) with closed contacts.
+    """Return frequencies in Hz and damping ratios (num_shapes,) of the modes with closed contacts.
 
     ``rest`` is the equilibrium, as in :func:`closed_contact_modes`.
     """

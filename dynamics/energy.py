@@ -28,13 +28,13 @@ DRIVEN_ENERGIES = (*ENERGIES, "drive_work")
 
 
 def energy_residual(energies: Array, energy_floor: float = 0.0) -> Array:
-    """Return the error (num_times,) of the energy balance as a fraction of the input energy.
+    """Return the error (num_times,) of the energy balance, as a fraction of the input energy.
 
     Args:
         energies: columns of ``ENERGIES`` or ``DRIVEN_ENERGIES`` in J, (num_times, 7) or (num_times,
             8).
-        energy_floor: input energy in J below which it is round-off, for example if friction
-            prevents motion.
+        energy_floor: least input energy in J for this fraction, above round-off; it is needed if,
+            for example, friction prevents all motion.
     """
     work = energies[:, 3]
     signs = np.ones(energies.shape[1])
@@ -43,10 +43,10 @@ def energy_residual(energies: Array, energy_floor: float = 0.0) -> Array:
     # BLAS is not used, since its last bits depend on addresses in memory.
     missing = (energies * signs).sum(axis=1) - initial
     # The strain energy may be negative, since axial forces do work on an unstable segment.
-    put_in = max(
+    input_energy = max(
         float(np.abs(work).max()), abs(initial), -float(energies[:, 1].min()), energy_floor
     )
-    return np.asarray(missing / put_in if put_in > 0.0 else missing)
+    return np.asarray(missing / input_energy if input_energy > 0.0 else missing)
 
 
 def check_energy(energies: Array, bound: float = ENERGY_BOUND, energy_floor: float = 0.0) -> None:

@@ -2,8 +2,8 @@
 """Static equilibrium of a gap system under a constant load.
 
 Strain and contact energies are convex, so that the equilibrium is the minimum of the potential
-energy. If axial forces make a segment unstable within its play, it is a local minimum. Friction,
-which would allow a range of equilibria, is ignored.
+energy. If axial forces make a segment unstable within its play, the equilibrium is a local minimum.
+Friction, which would allow a range of equilibria, is ignored.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ from dynamics.contact_term import OfTerm, Term, Terms, force_of, slope_of
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 
-# Permitted unbalanced force, as a fraction of the load or the force of shims; the minimiser aims at
-# a hundredth of it.
+# Permitted unbalanced force, as a fraction of the load or the force of shims; the search aims at a
+# hundredth of it.
 BALANCE = 1.0e-6
 
 # Unbalanced force at which the search ends, and its maximum number of steps.
@@ -28,12 +28,12 @@ _AIM, _MOST_STEPS = 0.01 * BALANCE, 200
 _FLAT = 1.0e-6
 
 # Slope of the energy at the end of a line search as a fraction of the slope at its beginning, and
-# multiple of a step beyond which nothing holds the boom.
+# multiple of a step beyond which the search finds no equilibrium.
 _EXACT, _FARTHEST = 0.05, 1.0e9
 
 
 def equilibrium(system: GapSystem, load: Array) -> Array:
-    """Return the equilibrium a (num_modes,) in √kg·m.
+    """Return the modal coordinates a (num_modes,) in √kg·m at equilibrium.
 
     >>> depth = equilibrium(ball, ball.load)[0]
     >>> print(f"{1e6 * depth:.2f} µm")
@@ -52,8 +52,8 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     if not unbalanced_load.any():
         return np.zeros(system.num_modes)
     laws = contact_terms(system.laws)
-    # L Lᵀ, the stiffness with each contact's tangent at the force of the whole load, scales the
-    # unknowns, so that all directions have a similar stiffness.
+    # Unknowns are scaled by the Cholesky factor of the stiffness with closed contacts, so that all
+    # directions have a similar stiffness. A contact has its tangent at the force of the whole load.
     whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(unbalanced_load)))
     row, k, n = laws["row"], np.abs(laws["stiffness"]), laws["exponent"]
     force, spring = whole * np.sqrt(system.row_masses), np.zeros(len(system.laws))
@@ -105,7 +105,7 @@ def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: floa
     row_of_value = np.concatenate([term["row"] for term in terms])
 
     def sum_terms(of_term: OfTerm, x: Array) -> Array:
-        """Return the sum of the terms of each row (num_rows,)."""
+        """Return the sum of ``of_term`` over the terms of each row (num_rows,)."""
         gaps = unit * rows @ x
         values = [of_term(term, gaps[term["row"]]) for term in terms]
         return np.asarray(np.bincount(row_of_value, np.concatenate(values), len(rows)), dtype=float)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Loads that change with time: a modal load times a history.
 
-Kinks, peak and highest frequency of a history serve the choice of the time step.
+Kinks, peak and highest frequency of a history determine the time step.
 """
 
 from __future__ import annotations
@@ -93,8 +93,8 @@ class Sine:
     Args:
         frequency: f in Hz, positive.
         phase: φ in rad.
-        end: time in s from which the value is 0, a zero of the sine; a half-sine pulse ends at
-            1 / (2 f).
+        end: time in s of a zero of the sine, from which on the value is 0; a half-sine pulse ends
+            at 1 / (2 f).
     """
 
     frequency: float
@@ -173,7 +173,7 @@ class PiecewiseLinear:
 
 @dataclass(frozen=True, slots=True)
 class Spline:
-    """Cubic spline between points, at rest at the first and the last one and constant beyond.
+    """Cubic spline between points, with zero slope at both ends and constant beyond them.
 
     >>> Spline(times=[0.0, 1.0, 2.0], values=[0.0, 5.0, 10.0])(np.array([0.5, 1.0, 9.0]))
     array([ 1.5625,  5.    , 10.    ])
@@ -205,7 +205,7 @@ class Spline:
 
     @property
     def fastest(self) -> float:
-        """The reciprocal of the shortest interval between points in 1/s, as a bound in rad/s."""
+        """The reciprocal of the shortest interval between points, a bound in rad/s."""
         return 1.0 / float(np.diff(self.times).min())
 
     def __call__(self, time: Array) -> Array:
@@ -224,7 +224,7 @@ class Spline:
 
 @dataclass(frozen=True, slots=True)
 class SCurve:
-    """Extension from 0 to ``travel`` within ``duration``, s = travel (τ − sin 2πτ/2π).
+    """Extension s = travel (τ − sin 2πτ/2π), with the time τ as a fraction of the duration.
 
     Speed and acceleration begin and end with 0 (cycloidal motion; Norton 2009).
 
@@ -345,7 +345,7 @@ class Stroke:
         return np.asarray(np.sign(self.travel) * self.speed * (rise[0] - rise[1]))
 
     def _integrate_ramp(self, after: Array) -> Array:
-        """Return ∫ v dt in s of a ramp v that rises from 0 to 1 and then stays constant."""
+        """Return the integral in s over ``after`` in s of a ramp that rises from 0 to 1."""
         if self.ramp == 0.0:
             return np.maximum(after, 0.0)
         part = np.clip(after / self.ramp, 0.0, 1.0)
@@ -380,10 +380,10 @@ class HistorySum:
 
 @dataclass(frozen=True, slots=True)
 class Shaped:
-    """Motion law that leaves no vibration of a mode: the zero-vibration shaper.
+    """Motion law without residual vibration of one mode (zero-vibration shaper).
 
-    A part of the law follows half a period of the mode after the other, so that the vibrations of
-    both cancel (Singer and Seering 1990).
+    The law is divided into two parts. The second part begins half a period of the mode after the
+    first one, so that the vibrations of both parts cancel (Singer and Seering 1990).
 
     >>> swing = pt.Shaped(pt.SCurve(travel=4.0, duration=5.0), frequency=0.25)
     >>> swing(np.array([0.0, 2.0, 7.0])), swing.delay
@@ -429,7 +429,7 @@ class Shaped:
 
     def rate(self, time: Array, order: int) -> Array:
         """Return the value or its first or second derivative."""
-        # The later part meets a vibration that has decayed in half a period.
+        # The vibration of the first part has decayed for half a period when the second part begins.
         decay = np.exp(-2.0 * np.pi * self.frequency * self.damping * self.delay)
         time = np.asarray(time)
         early, late = (
@@ -440,12 +440,12 @@ class Shaped:
 
 @dataclass(frozen=True, slots=True)
 class ReleasedLoad:
-    """Marker in place of a history: the load acts before t = 0 and is removed at t = 0."""
+    """Marker in place of a history, for a load that acts before t = 0 and is then removed."""
 
 
 @dataclass(frozen=True, slots=True)
 class InitialImpulse:
-    """Marker in place of a history: an impulse at t = 0, the load times 1 s."""
+    """Marker in place of a history, for an impulse at t = 0 of the load times 1 s."""
 
 
 @dataclass(frozen=True, slots=True)

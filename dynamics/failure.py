@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Errors of computations without a reliable result."""
+"""Errors of computations that have no reliable result."""
 
 import numpy as np
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Slewing and luffing: inertia forces in the frame that rotates with the boom.
 
-The frame rotates by ψ(t) about the vertical and by the luffing angle α(t) about the foot of the
-boom. With the extension s, the distance σ = x − x_foot + s along the boom, and the distance
-ρ = r + σ cos α from the slewing axis, its points have the accelerations
+The frame rotates by the slewing angle ψ about the vertical, and by the luffing angle α about the
+foot of the boom. A point of the boom has the distance ξ = x − x_foot + s from the foot, with the
+extension s, and the distance r = r_0 + ξ cos α from the slewing axis. Its accelerations
 
-    a_x = s̈ − σ α̇² − ψ̇² ρ cos α,    a_y = ρ ψ̈ + 2 ψ̇ ρ̇,    a_z = σ α̈ + 2 ṡ α̇ + ψ̇² ρ sin α
+    a_x = s̈ − ξ α̇² − ψ̇² r cos α,    a_y = r ψ̈ + 2 ψ̇ ṙ,    a_z = ξ α̈ + 2 ṡ α̇ + ψ̇² r sin α
 
-along the boom, sideways and across it (Goldstein 1980). The inertia force of a mass is −m a. The
-effect of deflections on accelerations is neglected.
+are along x, y and z of the boom (Goldstein 1980). A mass has the inertia force of opposite sign.
+The effect of deflections on accelerations is neglected.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ class FrameMotion:
     luff: MotionLaw = _RESTING  #: change of the luffing angle in degrees over time
     angle: float = 0.0  #: luffing angle at t = 0 in degrees
     foot: float = 0.0  #: x of the foot in m
-    #: horizontal distance r in m of the foot from the slewing axis, positive outwards
+    #: horizontal distance r_0 in m of the foot from the slewing axis, positive outwards
     radius: float = 0.0
     gravity: float = 0.0  #: acceleration of gravity in m/s²; 0 without weight
 
@@ -49,15 +49,18 @@ class FrameMotion:
         return change if order else np.deg2rad(self.angle) + change
 
     def position(self, time: Array, x: float, extension: MotionLaw) -> tuple[Array, Array]:
-        """Return the distance from the slewing axis and the height above the foot in m."""
+        """Return a point's distance from the slewing axis and height above the foot in m.
+
+        Arguments as in :meth:`accelerations`.
+        """
         along, luffed = x - self.foot + extension(time), self.luff_angle(time)
         return self.radius + along * np.cos(luffed), along * np.sin(luffed)
 
     def drive_moments(self, time: Array, x: float, mass: float, extension: MotionLaw) -> Array:
-        """Return the slewing and the luffing moment (2, ...) in N·m that move a mass.
+        """Return the slewing and the luffing moment (2, ...) in N·m that move a mass m in kg.
 
-        They are m ρ a_y about the slewing axis, and m σ (a_z + g cos α) about the foot. The
-        arguments are as in :meth:`accelerations`, and the mass in kg.
+        They are m r a_y about the slewing axis, and m ξ (a_z + g cos α) about the foot. The other
+        arguments are as in :meth:`accelerations`.
         """
         _, aside, across = self.accelerations(time, x, extension)
         along, luffed = x - self.foot + extension(time), np.cos(self.luff_angle(time))
@@ -88,10 +91,10 @@ class FrameMotion:
 
 @dataclass(frozen=True, slots=True)
 class FrameAcceleration:
-    """Acceleration of a point of the boom by slewing and luffing; a history of inertia loads.
+    """Acceleration of a point of the boom by slewing and luffing, as a history of inertia loads.
 
-    It includes the change of gravity across the boom, g (cos α − cos α₀) along z, and along the
-    boom, g (sin α − sin α₀) along x.
+    It includes the change of gravity in the axes of the boom since t = 0, where α is α₀:
+    g (cos α − cos α₀) along z, and g (sin α − sin α₀) along x.
     """
 
     frame: FrameMotion  #: slewing and luffing of the boom
@@ -136,7 +139,7 @@ class FrameAcceleration:
 
 
 class Spin(FrameAcceleration):
-    """Centrifugal acceleration in 1/s² per m of deflection along y or z; a history.
+    """Centrifugal acceleration per deflection along y or z in 1/s², as a history.
 
     The deflections v and w of a boom that slews and luffs have the centrifugal accelerations ψ̇² v
     and (α̇² + ψ̇² sin² α) w.
@@ -153,7 +156,7 @@ class Spin(FrameAcceleration):
 class PathAcceleration(FrameAcceleration):
     """Acceleration of a point of the straight boom along a fixed axis.
 
-    z points up, and x outwards at ψ = 0. Arguments as in :class:`FrameAcceleration`.
+    Here z points upwards, x outwards at ψ = 0. Arguments as in :class:`FrameAcceleration`.
     """
 
     def __call__(self, time: Array) -> Array:

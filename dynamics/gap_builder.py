@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Construction of gap systems from contacts, friction and observations, for beams and shells.
 
-A displacement operator gives a displacement from all degrees of freedom of a model; a row gives it
-from the modes. The operators of beams are rows. The reduction of a shell turns its operators into
-rows. Contact and friction have the same rules for both.
+A displacement operator gives a displacement from the degrees of freedom of a model, a row gives it
+from the modal coordinates. For beams, operators are rows. For shells, the reduction turns operators
+into rows. Contact and friction have the same rules for both.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ class LawRow(NamedTuple, Generic[R, L]):
     station: int
 
     def row(self, read: Callable[[R], Array]) -> Array:
-        """Return the row (num_modes,) in 1/√kg."""
+        """Return the row (num_modes,) in 1/√kg; ``read`` returns the row of an operator."""
         return read(self.operator)
 
 
 class Dashpot(NamedTuple, Generic[R]):
-    """Dashpot at a station: coefficient in N·s/m, and (weight, operator) of each point."""
+    """Dashpot at a station: constant c_d in N·s/m, and (weight, operator) of each point."""
 
     coefficient: float
     station: int
     parts: list[tuple[float, R]]
 
     def row(self, read: Callable[[R], Array]) -> Array:
-        """Return the row (num_modes,) in 1/√s."""
+        """Return the row (num_modes,) in 1/√s; ``read`` returns the row of an operator."""
         total = sum(part * read(operator) for part, operator in self.parts)
         return np.asarray(np.sqrt(self.coefficient) * total)
 
@@ -81,9 +81,9 @@ class GapBuilder(Generic[R]):
     ) -> tuple[int, ...]:
         """Add a contact row for each point (side, weight, displacement operator).
 
-        Side 1 is contact at positive displacement only, −1 at negative displacement only, each with
-        the law scaled by the weight. Side 0 is contact on both sides, with the unscaled law. A side
-        without contact in the law has no row.
+        A point of side 1 has contact at positive displacements only, of side −1 at negative ones
+        only, with the law times the weight. A point of side 0 has contact at both, with the whole
+        law. A side on which the law has no contact has no row.
 
         Args:
             station: index of the station.
@@ -135,10 +135,13 @@ class GapBuilder(Generic[R]):
     def add_dashpot(
         self, station: int, coefficient: float, points: Iterable[tuple[int, float, R]]
     ) -> None:
-        """Add a dashpot in N·s/m that resists the mean speed of points; see :meth:`add_contact`."""
+        """Add a dashpot that resists the mean speed of points, as in :meth:`add_contact`.
+
+        ``coefficient`` is c_d in N·s/m.
+        """
         if coefficient > 0.0:
             dashpot = self.dashpots.setdefault(station, Dashpot(coefficient, station, []))
-            # The weights on each of both sides sum to one.
+            # The weights sum to one on each side, so that they are halved if there are two sides.
             parts = ((0.5 * part if side else part, operator) for side, part, operator in points)
             dashpot.parts.extend(parts)
 
@@ -149,7 +152,7 @@ class GapBuilder(Generic[R]):
         return {"rows": self.contacts, "friction_rows": self.frictions, "dashpots": dashpots}
 
     def rows_at(self, stations: Sequence[int]) -> list[tuple[RowKind, int]]:
-        """Return (kind, index) of the rows at some stations, in the order of a gap system."""
+        """Return (kind, index) of all rows at ``stations``, in the order of a gap system."""
         return [
             (kind, position)
             for kind, of_kind in self.rows.items()
@@ -189,34 +192,34 @@ class GapBuilder(Generic[R]):
             damping: damping (num_modes,) in 1/s; zero unless given.
         """
 
-        def stacked(rows: Iterable[Array]) -> Array:
+        def stack(rows: Iterable[Array]) -> Array:
             return np.array(list(rows)).reshape(-1, omega2.size)
 
         def total(kind: type[ReleasedLoad | InitialImpulse]) -> Array:
             pushes = (push for push, when in loads if isinstance(when, kind))
             return sum(pushes, np.zeros(omega2.size))
 
-        seen = {
+        observers = {
             name: Observer(read(one.operator), one.unit, one.derivative)
             for name, one in observed.items()
         }
-        pressed = {name: Observer(-k * row, "N") for name, row, k, _ in lines if name}
+        observers |= {name: Observer(-k * row, "N") for name, row, k, _ in lines if name}
         return GapSystem(
             omega2=omega2,
             load=load,
-            rows=stacked(contact.row(read) for contact in self.contacts),
+            rows=stack(contact.row(read) for contact in self.contacts),
             laws=[contact.law for contact in self.contacts],
             station_of_row=np.array([contact.station for contact in self.contacts], dtype=np.int64),
             stations=[x for x, _ in places],
-            observers=seen | pressed,
+            observers=observers,
             damping=np.zeros(0) if damping is None else damping,
-            dashpots=stacked(
+            dashpots=stack(
                 [
                     *(dashpot.row(read) for dashpot in self.dashpots.values()),
                     *(np.sqrt(c) * row for _, row, _, c in lines if c > 0.0),
                 ]
             ),
-            friction_rows=stacked(friction.row(read) for friction in self.frictions),
+            friction_rows=stack(friction.row(read) for friction in self.frictions),
             frictions=[friction.law for friction in self.frictions],
             excitations=[
                 Excitation(push, when)

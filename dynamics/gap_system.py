@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Gap system: the common form of all models.
 
-    ä_i + Σ_k C_ik ȧ_k + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ṡ_l)
-    y_j = Σ_i B_ji a_i,    s_l = Σ_i D_li a_i,    C = diag(c) + Gᵀ G
+    ä_i + Σ_k C_ik ȧ_k + ω_i² a_i = Q_i + Σ_e Q_ei g_e(t) − Σ_j B_ji F_j(y_j) + Σ_l D_li R_l(ḋ_l)
+    y_j = Σ_i B_ji a_i,    d_l = Σ_i D_li a_i,    C = diag(c) + Zᵀ Z
 
-in mass-normalised modal coordinates a of all segments. Only contacts couple them. A contact row
-B_j gives the relative displacement u − w of two segments at one position, a friction row D_l their
-sliding displacement, and a dashpot row G_d the displacement whose rate the dashpot resists.
-If a boom telescopes, its travels change the rows over time. At a fixed extension, the stiffness
-may be K = diag(ω²) − K_G until ``in_own_modes`` transforms the system.
+a are mass-normalised modal coordinates of the separate segments, with the circular frequencies ω,
+constant modal loads Q, and modal loads Q_e with histories g_e. A contact row B_j gives the relative
+displacement y_j = u − w across the play, for the contact force F_j. A friction row D_l gives the
+sliding displacement d_l, for the friction force R_l. A dashpot row of Z gives the displacement
+whose rate the dashpot resists, c is the damping of single modes. If a boom telescopes, its travels
+change the rows over time. At a fixed extension, the stiffness may be K = diag(ω²) − K_G, with the
+geometric stiffness K_G of axial forces, until ``in_own_modes`` transforms the system.
 """
 
 from __future__ import annotations
@@ -68,7 +70,7 @@ class GapSystem:
         stations: x of the stations in m.
         observers: outputs of a trajectory, by name.
         damping: (num_modes,) c = 2ζω in 1/s; zero unless given.
-        dashpots: (num_dashpots, num_modes) rows G in 1/√s; none unless given.
+        dashpots: (num_dashpots, num_modes) rows Z in 1/√s; none unless given.
         friction_rows: (num_frictions, num_modes) sliding rows D in 1/√kg; none unless given.
         frictions: friction law of each friction row.
         excitations: loads that change with time.
@@ -129,7 +131,10 @@ class GapSystem:
             "station_of_row": (self.station_of_row, (m,)),
             "friction_rows": (self.friction_rows, (len(self.frictions), n)),
             **{f"excitation {e}": (x.load, (n,)) for e, x in enumerate(self.excitations)},
-            **{f"observer {name!r}": (seen.row, (n,)) for name, seen in self.observers.items()},
+            **{
+                f"observer {name!r}": (observer.row, (n,))
+                for name, observer in self.observers.items()
+            },
         }
         for name, (array, shape) in expected.items():
             if array.shape != shape:
@@ -190,7 +195,7 @@ class GapSystem:
 
     @property
     def row_masses(self) -> Array:
-        """The effective masses 1 / B_j B_jᵀ (num_rows,) in kg of impacts on single rows."""
+        """The effective mass 1 / B_j B_jᵀ (num_rows,) in kg of an impact on each contact row."""
         return np.asarray(1.0 / np.einsum("ij,ij->i", self.rows, self.rows))
 
     @property
@@ -207,10 +212,10 @@ class GapSystem:
     def gather_loads(self) -> GapSystem:
         """Return the system with all constant loads added to ``load``."""
         changing = [x for x in self.excitations if not is_constant(x.history)]
-        held = [
+        constant = [
             x.load * x.history(np.zeros(())) for x in self.excitations if is_constant(x.history)
         ]
-        load = np.sum([self.load, *held], axis=0)
+        load = np.sum([self.load, *constant], axis=0)
         moving = [travel for travel in self.travels if not is_constant(travel.history)]
         return replace(self, load=load, excitations=changing, travels=moving)
 
@@ -246,10 +251,10 @@ class GapSystem:
         return self.transform(*soften_modes(self.omega2, self.geometric_stiffness))
 
     def transform(self, omega2: Array, shapes: Array) -> GapSystem:
-        """Return the system in other coordinates b of a = Φ b.
+        """Return the system in other coordinates b, with a = Φ b.
 
         Args:
-            omega2: ω² (num_shapes,) of the new coordinates in rad²/s², with K_G.
+            omega2: ω² (num_shapes,) of the new coordinates in rad²/s², which includes K_G.
             shapes: mass-normalised Φ (num_modes, num_shapes).
         """
         return replace(
@@ -258,7 +263,8 @@ class GapSystem:
             load=self.load @ shapes,
             rows=self.rows @ shapes,
             observers={
-                name: seen._replace(row=seen.row @ shapes) for name, seen in self.observers.items()
+                name: observer._replace(row=observer.row @ shapes)
+                for name, observer in self.observers.items()
             },
             damping=np.einsum("ki,k,ki->i", shapes, self.damping, shapes),
             dashpots=self.dashpots @ shapes,

@@ -1,20 +1,21 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A load on a rope below the tip: hoisting, lift-off, hanging and swinging.
 
-The load m has its own coordinate z, its height above its initial position. The rope carries only
+The mass m has its own coordinate z_m, the height above its initial position. The rope carries only
 tension,
 
-    T = k max(w cos α − z + h(t) − s, 0),
+    F_r = k_r max(w cos α − z_m + ℓ_w(t) − Δ_r, 0),
 
-with the deflection w of the tip across the boom, the luffing angle α, the hoisted length h since
-t = 0, and the slack s. Until lift-off the ground carries the load. Rope and ground are contact
-rows. The winch is a travel of the rope's row, so that the energy balance includes its work.
+with its stiffness k_r, the deflection w of the tip along z, the luffing angle α, the length ℓ_w
+that the winch has hoisted since t = 0, and the slack Δ_r. Until lift-off the ground carries the
+load. Rope and ground are contact rows. The winch is a travel of the row of the rope, so that the
+energy balance includes the work of the winch.
 
-A load that swings as a pendulum of length l has two further coordinates X and Y, its horizontal
+A load that swings as a pendulum of length ℓ_p has two further coordinates X and Y, its horizontal
 displacements relative to the tip of the straight boom in fixed axes. For small angles, springs of
-stiffness m g/l connect it with the tip. The acceleration of the tip of the straight boom is an
+stiffness m g/ℓ_p connect it with the tip. The acceleration of the tip of the straight boom is an
 inertia load. Slewing and luffing rotate the rows of the tip. Since the axes are fixed, the
-equations have no further terms.
+equations have no Coriolis terms.
 """
 
 from __future__ import annotations
@@ -43,8 +44,8 @@ class RopeForce:
     """History of the rope force in a slow lift, up to the weight of a load on the ground."""
 
     hoist: History  #: hoisted length in m over time
-    stretch: float  #: stretch in m of rope and boom under the weight
-    slack: float  #: length in m that is wound up before the rope is straight
+    stretch: float  #: elongation in m of rope and boom under the weight
+    slack: float  #: length in m that is hoisted before the rope is tight
     peak: float = 1.0
 
     @property
@@ -65,7 +66,7 @@ class RopeForce:
 class Pendulum:
     """Horizontal motion of a hanging load."""
 
-    length: float  #: distance l from the tip to the load in m
+    length: float  #: distance ℓ_p from the tip to the load in m
     frame: FrameMotion  #: slewing and luffing of the boom
     x: float  #: initial position of the tip along the boom in m
     extension: MotionLaw  #: travel of the tip along the boom
@@ -99,11 +100,11 @@ class HangingLoad:
 
     Args:
         mass: m in kg.
-        stiffness: k of the rope in N/m.
+        stiffness: k_r of the rope in N/m.
         gravity: acceleration in m/s².
         hoist: hoisted length in m over time; None for a rope of constant length.
         cosine: cos α of the luffing angle.
-        slack: s in m at w = 0 of a load on the ground at t = 0; None for a load that hangs.
+        slack: Δ_r in m of a load on the ground at t = 0; None for a load that hangs.
         pendulum: horizontal motion of a load that hangs; None for vertical motion only.
 
     Raises:
@@ -131,8 +132,8 @@ class HangingLoad:
     def attach(self, system: GapSystem, tip: Array, x: float) -> GapSystem:
         """Return the system of a boom with the load at its tip.
 
-        The load adds the last coordinates, and stations with one contact row each for rope, springs
-        of a pendulum and ground. Under a flat boom the load swings only in the plane of the boom.
+        The coordinates of the load come last. Rope, springs of a pendulum, and ground are further
+        stations with one contact row each. Under a flat boom the load swings only in its plane.
 
         Args:
             system: gap system of the boom without the load.
@@ -153,7 +154,7 @@ class HangingLoad:
         tip, lateral = (np.pad(row, (0, dimensions)) for row in (tip, lateral))
 
         def stretches(time: float) -> Array:
-            """Return rows (dimensions, num_modes + dimensions) of the tip relative to the load."""
+            """Return rows (dimensions, num_modes + dimensions) of the tip less the load."""
             if self.pendulum is None:
                 return np.asarray(self.cosine * tip[None] - coordinates)
             return np.asarray(self.pendulum.read(time, tip, lateral)[:dimensions] - coordinates)
@@ -213,7 +214,7 @@ class HangingLoad:
         ``rope_force`` and ``rope_force_peak`` in N, the mean and the maximum of the output interval
         that ends at the time, are positive in tension; their attribute ``weight`` is m g. A
         pendulum has ``swing_out`` and ``swing_aside`` in m, the distances of the load from the tip
-        in the directions of the boom; their attribute ``length`` is l.
+        in the directions of the boom; their attribute ``length`` is ℓ_p.
         """
         rows = self._coordinates([str(name) for name in motion.data]) + (
             0 if self.slack is None else 1

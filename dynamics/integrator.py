@@ -20,7 +20,7 @@ from dynamics.trajectory import Output, Trajectory
 # Default permitted error of the time step, as a fraction of the range of observed deflections.
 TOLERANCE = 1.0e-3
 
-# Initial and minimum number of steps per output interval. With one, mean forces alternate.
+# Initial and minimum number of steps per output interval. With one step, mean forces alternate.
 _FIRST, _FEWEST = 8, 2
 
 # Number of output intervals and steps per call of the time loop, between which a run can be
@@ -30,7 +30,7 @@ _CALL, _STEPS_OF_CALL = 1000, 2**16
 # Maximum number of output intervals of a window, and ω in rad/s if all modes are rigid.
 _LONGEST, _DEFAULT_OMEGA = 128, 100.0
 
-# Times, in periods, at which two step sizes are compared in the free motion after a window.
+# Times in periods at which free motions after a window are compared.
 _FREE_TIMES = np.linspace(0.0, 0.25, 9)
 
 # Maximum product of the step and the highest circular frequency of a history.
@@ -42,8 +42,8 @@ _LEAST_RANGE = 1.0e-3
 # Fraction of the tolerance below which the next window has half as many steps.
 _COARSEN_BELOW = 0.125
 
-# Fraction of the error that must not remain after two halvings of the step. In regular motion at
-# most a quarter remains.
+# Fraction of the error that remains after two halvings of the step in chaotic motion. In regular
+# motion at most a quarter remains.
 _REMAINS = 0.5
 
 Progress = Callable[[float], None]
@@ -57,7 +57,7 @@ class Integrator(Protocol):
         ...
 
     def like(self, trajectory: Trajectory) -> Integrator:
-        """Return an integrator with the step sizes of a trajectory that this one computed."""
+        """Return an integrator with the steps of ``trajectory``, which this integrator computed."""
         ...
 
     def finer(self) -> Integrator:
@@ -127,13 +127,13 @@ class FixedStep:
 class AdaptiveStep:
     """Integrator with error control by step doubling (Hairer, Nørsett and Wanner 1993).
 
-    Each window of the motion is computed with a step and with twice that step from the same state.
-    The error of the window is the difference of observed deflections within the window, and in free
-    motion over the next quarter period of the slowest mode. The tolerance limits the sum of these
-    errors, which is the attribute ``step_error`` of the trajectory. A window is about a period of
-    that mode, long enough to average over impacts. No step meets a tolerance in chaotic motion. So
-    a step that resolves the largest impact is not halved further if two halvings leave more than
-    half of the error. The step also has a lower limit.
+    A window of the motion is about a period of the slowest mode. Each window is computed with a
+    step and with twice that step from the same state. The error of the window is the largest
+    difference of observed deflections, within the window and in free motion over the next quarter
+    period. The tolerance limits the sum of these errors, the attribute ``step_error`` of the
+    trajectory. In chaotic motion no step meets a tolerance. So a step that resolves the largest
+    impact is not halved further if two halvings leave more than half of the error. The step has a
+    lower limit.
 
     >>> motion = AdaptiveStep()(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.data.attrs["step_error"] < 1e-3
@@ -199,7 +199,7 @@ class AdaptiveStep:
         )
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
-        """Return the integrator with the steps of a trajectory, so that only data differ."""
+        """Return the integrator with the steps of a trajectory."""
         return StepSchedule.from_trajectory(trajectory)
 
     def finer(self) -> AdaptiveStep:
@@ -209,7 +209,7 @@ class AdaptiveStep:
 
 @dataclass(frozen=True, slots=True)
 class _WindowError:
-    """Difference between the deflections computed with a step and with twice that step.
+    """Error of a window: difference of the deflections for a step and for twice that step.
 
     Args:
         rows: rows (num_observed, num_modes) of the deflections.
@@ -226,8 +226,8 @@ class _WindowError:
 
     @classmethod
     def from_system(cls, system: GapSystem) -> _WindowError:
-        seen = [x.row for x in system.observers.values() if (x.unit, x.derivative) == ("m", 0)]
-        rows = np.array(seen or system.rows).reshape(-1, system.num_modes)
+        observed = [x.row for x in system.observers.values() if (x.unit, x.derivative) == ("m", 0)]
+        rows = np.array(observed or system.rows).reshape(-1, system.num_modes)
         omega = system.omega
         period = 2.0 * np.pi / min(omega[omega > 0.0], default=_DEFAULT_OMEGA)
         times = _FREE_TIMES[:, None] * period
@@ -235,7 +235,7 @@ class _WindowError:
         return cls(rows, period, rows * np.cos(omega * times)[:, None], rows * sines[:, None])
 
     def __call__(self, fine: Output, coarse: Output, state: State, other: State) -> float:
-        """Return the largest difference in m within the window, and in free motion after it."""
+        """Return the largest difference in m, within the window and in free motion after it."""
         within = np.abs(self._read(fine.states - coarse.states))
         places = (self.places * (state.a - other.a)).sum(axis=2)
         after = np.abs(places + (self.speeds * (state.v - other.v)).sum(axis=2))

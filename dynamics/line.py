@@ -39,7 +39,7 @@ class Line:
 
     @property
     def deflections(self) -> Iterator[tuple[Literal["y", "z"], tuple[Array, Array]]]:
-        """Each direction, with ascending x (num_places,) in m and rows (num_places, num_modes)."""
+        """Each direction, with ascending x (num_places,) in m, and rows (num_places, num_modes)."""
         x, index = np.unique(self.x, return_index=True)
         names: dict[Quantity, Literal["y", "z"]] = {"deflection": "z", "lateral": "y"}
         for name, direction in names.items():
@@ -54,9 +54,9 @@ class Line:
         return {name: states[..., : row.shape[1]] @ row.T for name, row in self.rows.items()}
 
     def transform(self, basis: Array) -> Line:
-        """Return the line in other coordinates b of a = Φ b, with Φ (num_modes, num_others).
+        """Return the line in other coordinates b, with a = Φ b and Φ (num_modes, num_others).
 
-        Further coordinates a, as in :meth:`read`, are ignored.
+        Rows of Φ for further coordinates, as in :meth:`read`, are ignored.
         """
         rows = {name: row @ basis[: row.shape[1]] for name, row in self.rows.items()}
         return replace(self, rows=rows)

@@ -84,9 +84,9 @@ def build_motion(
     Args:
         system: system of the boom with all loads, including those that end at t = 0.
         duration, output_step: duration and output step of the motion in s.
-        at_rest: True if the boom starts at rest under the loads at t = 0, False if it starts
+        at_rest: True if the boom starts in equilibrium with the loads at t = 0, False if it starts
             straight and unloaded.
-        damping_ratio: damping ratio of the boom's modes with closed contacts.
+        damping_ratio: damping ratio ζ of the boom's modes with closed contacts.
         rayleigh: mass-proportional factor in 1/s, and stiffness-proportional factor in s.
 
     Raises:
@@ -94,7 +94,7 @@ def build_motion(
     """
     system, position, velocity = initial_state(system, at_rest)
     rest = constant_load_equilibrium(system, at_rest, position)
-    # Both kinds of damping come in addition to the damping of the segments.
+    # Rayleigh and modal damping are added to the damping of the segments.
     rates = system.damping + rayleigh[0] + rayleigh[1] * np.maximum(system.omega2, 0.0)
     system = replace(system, damping=rates)
     if damping_ratio:
@@ -103,7 +103,7 @@ def build_motion(
 
 
 def initial_state(system: GapSystem, at_rest: bool) -> tuple[GapSystem, Array, Array]:
-    """Return the system from t = 0 on, and its initial a and ȧ, (num_modes,) each.
+    """Return the system from t = 0 on, the initial a in √kg·m and ȧ in √kg·m/s, (num_modes,) each.
 
     Arguments and errors as in :func:`build_motion`.
     """

@@ -18,13 +18,13 @@ _DEPENDENT = 1.0e-6
 def reduce_modes(
     omega2: Array, pushes: Array, kept: Indices, rest: Indices, moments: int
 ) -> tuple[Array, Array]:
-    """Return ω² (num_shapes,) and shapes (num_modes, num_shapes) of a reduced system.
+    """Return ω² (num_shapes,) in rad²/s² and shapes (num_modes, num_shapes) of a reduced system.
 
     Args:
         omega2: ω² (num_modes,) in rad²/s², positive for the modes ``rest``.
         pushes: forces (num_pushes, num_modes) that excite the modes.
         kept, rest: indices of the modes to keep, and of the modes to reduce.
-        moments: number of moments of the response that match at zero frequency.
+        moments: number of moments of the response at zero frequency that the reduction preserves.
     """
     elastic = omega2[rest, None]
     blocks = [independent_columns(pushes[:, rest].T)]
@@ -39,7 +39,7 @@ def reduce_modes(
 
 
 def independent_columns(block: Array) -> Array:
-    """Return an orthonormal basis (num_modes, rank) of the columns, scaled to unit length."""
+    """Return an orthonormal basis (num_modes, rank) of the columns (num_modes, num_columns)."""
     sizes = np.linalg.norm(block, axis=0)
     kept = sizes > _DEPENDENT**2 * sizes.max(initial=0.0)
     basis, values, _ = np.linalg.svd(block[:, kept] / sizes[kept], full_matrices=False)
@@ -47,7 +47,7 @@ def independent_columns(block: Array) -> Array:
 
 
 def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem:
-    """Return the system with more coordinates, excited by contacts, friction and dashpots only.
+    """Return the system with coordinates that only contacts, friction and dashpots excite.
 
     Args:
         system: gap system without travels.

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Second-order theory: modes under constant axial forces, and buckling loads.
 
-In the modes of the unloaded boom the stiffness is diag(ω²) − G, with G = Φᵀ K_G Φ of the geometric
-stiffness (Timoshenko and Gere 1961). Without contact, a segment whose supports are contacts may be
-unstable: its rotation has a negative ω².
+In the modes Φ of the unloaded boom with the circular frequencies ω, the stiffness is
+diag(ω²) − Φᵀ K_G Φ with the geometric stiffness K_G (Timoshenko and Gere 1961). A segment that only
+contacts support may be unstable while they are open: its rotation has a negative ω².
 """
 
 from __future__ import annotations
@@ -20,8 +20,11 @@ _ROUND_OFF = 1.0e-9
 def soften_modes(omega2: Array, geometric: Array) -> tuple[Array, Array]:
     """Return ω² (num_modes,), ascending, and modes (num_modes, num_modes) under axial forces.
 
-    ``omega2`` is ω² without axial forces, exactly 0 for rigid motions; ``geometric`` is G. Columns
-    of the modes are coefficients of the modes without axial forces.
+    Each column of the modes has the coefficients of the modes without axial forces.
+
+    Args:
+        omega2: ω² (num_modes,) in rad²/s² without axial forces, exactly 0 for rigid motions.
+        geometric: Φᵀ K_G Φ (num_modes, num_modes) in 1/s².
     """
     # The upper triangle preserves the digits of low modes, see ``natural_modes`` of beams.
     softened, combination = eigh(np.diag(omega2) - geometric, lower=False)
@@ -34,10 +37,10 @@ def soften_modes(omega2: Array, geometric: Array) -> tuple[Array, Array]:
 
 
 def buckling_factor(stiffness: Array, geometric: Array) -> float:
-    """Return the lowest buckling factor λ > 0 of the axial forces, det(K − λ K_G) = 0.
+    """Return the lowest factor λ > 0 of the axial forces at which det(K − λ K_G) = 0.
 
-    It is infinite if the boom does not buckle. The boom must be supported; coordinates are
-    arbitrary.
+    It is infinite if the boom does not buckle. ``stiffness`` K must be positive definite;
+    ``geometric`` is K_G in the same coordinates.
     """
     last = len(stiffness) - 1
     if last < 0:

@@ -2,10 +2,10 @@
 """Time integration of a gap system, the same for all models, contact laws and losses.
 
 Within a step of length h, contact and friction forces are constant and the solution of each mode is
-exact. Contact forces are discrete gradients of their energy (Gonzalez 1996), friction obeys its
-set-valued law for the displacement in the step (Moreau 1988), and dashpots resist the mean rate.
-The energy balance holds to round-off for every h. The scheme has second order (first order with
-stick-slip), and is reversible without losses. The time loop is
+exact. A contact force is the discrete gradient of the contact energy (Gonzalez 1996), friction
+obeys the set-valued law for the displacement in the step (Moreau 1988), a dashpot resists the mean
+rate. The energy balance holds to round-off for every h. The scheme has second order (first order
+with stick-slip), and is reversible without losses. The time loop is
 :func:`dynamics.kernels.march.march`.
 """
 
@@ -59,7 +59,7 @@ class Integration:
 
     @classmethod
     def begin(cls, motion: Motion) -> Integration:
-        """Return the integration at t = 0, with all constant loads added to ``load``."""
+        """Return the integration of a motion at t = 0."""
         motion = replace(motion, system=motion.system.gather_loads())
         system, laws = motion.system, motion.system.laws
         n, m, f = system.num_modes, len(laws), len(system.frictions)
@@ -77,7 +77,7 @@ class Integration:
             np.full(m, np.inf),
         )  # fmt: skip
         kinds = DRIVEN_ENERGIES if driven.size else ENERGIES
-        rates = n if any(seen.derivative for seen in system.observers.values()) else 0
+        rates = n if any(observer.derivative for observer in system.observers.values()) else 0
         columns = (n, rates, len(kinds), m, m, m, f, driven.size)
         output = Output(*(np.zeros((motion.outputs + 1, count)) for count in columns))
         output.states[0], output.gaps[0] = a, y[:m]
@@ -101,8 +101,8 @@ class Integration:
         """True if only constant loads act while all contacts are open."""
         system = self.motion.system
         others = len(system.excitations), len(system.travels), len(system.dashpots)
-        rubbed = any(friction.normal_force for friction in system.frictions)
-        return not (any(others) or rubbed or (system.omega2 < 0.0).any())
+        has_friction = any(friction.normal_force for friction in system.frictions)
+        return not (any(others) or has_friction or (system.omega2 < 0.0).any())
 
     def advance(
         self, first: int, last: int, substeps: int, state: State, output: Output | None = None
@@ -112,7 +112,7 @@ class Integration:
         Args:
             first, last: indices of the outputs at start and end.
             substeps: number of steps of each interval.
-            state: state at the start; it is changed to the state at the end.
+            state: state at the start; the method changes it to the state at the end.
             output: output to fill in; a new one unless given.
 
         Raises:
@@ -149,11 +149,11 @@ class Integration:
     def trajectory(
         self, substeps: tuple[int, ...], window: int, step_error: float = np.nan
     ) -> Trajectory:
-        """Return the trajectory.
+        """Return the trajectory of the whole motion.
 
         For each travel with a suffix it includes the extension in m, the force of the drive against
-        friction in N, and its power in W. For an elastic drive it also includes its force, lag,
-        speed and acceleration, and its ``StickSlip`` in the attribute ``stick_slip``.
+        friction in N, and the power of the drive in W. For an elastic drive it also includes force,
+        lag, speed and acceleration, and the :class:`StickSlip` in the attribute ``stick_slip``.
 
         Args:
             substeps, window: as in :class:`dynamics.integrator.StepSchedule`.
@@ -213,7 +213,7 @@ class Integration:
 
 
 def step_schedule(system: GapSystem, times: Array) -> Schedule:
-    """Return loads and extensions of the steps between times (num_steps + 1,) in s."""
+    """Return loads and extensions in the steps between times (num_steps + 1,) in s."""
     lines = [line_within(x.history, times) for x in system.excitations]
     mean, change = np.array(lines).reshape(-1, 2, times.size - 1).transpose(1, 2, 0)
     extensions = np.array([travel.history(times) for travel in system.travels])
@@ -221,10 +221,11 @@ def step_schedule(system: GapSystem, times: Array) -> Schedule:
 
 
 def line_within(history: History, times: Array) -> tuple[Array, Array]:
-    """Return mean and change (num_steps,) of the straight line that replaces a history in steps.
+    """Return mean and change (num_steps,) of the straight line that replaces a history in a step.
 
     The line has the same integral and first moment as the history. So steps need not end at kinks:
-    the error of a mode's response is at most (ωh)⁴/720 of the effect of a kink.
+    with the step h, the response of a mode of frequency ω has an error of at most (ωh)⁴/720 of the
+    effect of a kink.
 
     Args:
         history: history of a load.
@@ -246,7 +247,7 @@ def line_within(history: History, times: Array) -> tuple[Array, Array]:
 
 
 def axial_friction(system: GapSystem, travel: Travel, forces: Array) -> Array:
-    """Return μ Σ|N| (num_times,) in N of the pads that a travel moves.
+    """Return the friction μ Σ|N_l| (num_times,) in N of the pads that a travel moves.
 
     Args:
         system: gap system with the travel.

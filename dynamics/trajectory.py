@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Trajectories: deflections, contact forces and energies over time.
 
-A trajectory is labelled (xarray) and includes its energy residual: the error of the balance
-"kinetic, strain and contact energy, less the work of the loads, plus the losses of damping,
-friction and contact, equal the initial energy".
+A trajectory is an xarray dataset. It includes the energy residual, the error of the balance
+"kinetic, strain and contact energy, plus the losses of damping, friction and contact, less the work
+of loads and drives, equal the initial energy".
 """
 
 from __future__ import annotations
@@ -75,10 +75,10 @@ class PointwiseDifferences:
     """Pointwise differences of two motions while both are predictable.
 
     Args:
-        until: end of the comparison in s; for ensembles the earlier horizon of both at the first of
-            ``SHARES``.
-        largest, rms: largest and root mean square difference, as fractions of the larger range
-            within this time.
+        until: end of the comparison in s; for ensembles, the earlier of both horizons at the first
+            of ``SHARES``.
+        largest, rms: largest and root mean square difference, as fractions of the larger of both
+            ranges within this time.
     """
 
     scope: ClassVar[str] = (
@@ -94,7 +94,7 @@ class PointwiseDifferences:
     def from_curves(
         cls, one: Array, other: Array, time: Array, until: float
     ) -> PointwiseDifferences:
-        """Compare two curves (num_times,) of one quantity, up to ``until``; times in s."""
+        """Return the differences of two curves (num_times,) up to ``until``; times are in s."""
         before = time <= until
         apart = np.abs(one - other)[before]
         scale = max(np.ptp(one[before]), np.ptp(other[before]))
@@ -135,7 +135,7 @@ class Trajectory:
         attributes: Mapping[str, object],
         energy_floor: float = 0.0,
     ) -> Trajectory:
-        """Return the trajectory of an integrator's output, with forces summed at each station.
+        """Return the trajectory of an integrator's output; forces are sums over each station.
 
         Args:
             system: system of the motion.
@@ -143,14 +143,14 @@ class Trajectory:
             output: output at these times.
             attributes: attributes of the data, which include ``step``, ``steps``,
                 ``first_contact`` and ``contact_changes``.
-            energy_floor: largest input energy in J that counts as round-off.
+            energy_floor: least input energy in J, as in :func:`dynamics.energy.energy_residual`.
         """
         stations = np.arange(len(system.stations))
-        belongs = np.equal.outer(system.station_of_row, stations)
-        rubs = np.equal.outer([friction.station for friction in system.frictions], stations)
-        rows_at = np.maximum(belongs.sum(axis=0), 1)
+        at_station = np.equal.outer(system.station_of_row, stations)
+        friction_at = np.equal.outer([friction.station for friction in system.frictions], stations)
+        rows_at = np.maximum(at_station.sum(axis=0), 1)
         # Peaks of rows on the same side coincide, peaks on opposite sides do not.
-        up, down = np.maximum(output.peaks, 0.0) @ belongs, np.minimum(output.peaks, 0.0) @ belongs
+        up, down = (extreme(output.peaks, 0.0) @ at_station for extreme in (np.maximum, np.minimum))
 
         def read(seen: Observer) -> Array:
             values = (output.velocities if seen.derivative else output.states) @ seen.row
@@ -163,10 +163,10 @@ class Trajectory:
             for name, seen in system.observers.items()
         }
         by_station = {
-            "contact_force": output.means @ belongs,
+            "contact_force": output.means @ at_station,
             "contact_force_peak": np.where(up >= -down, up, down),
-            "friction_force": output.frictions @ rubs,
-            "gap": output.gaps @ belongs / rows_at,
+            "friction_force": output.frictions @ friction_at,
+            "gap": output.gaps @ at_station / rows_at,
         }
         variables |= {
             name: (("time", "station"), values, {**STATION_VARIABLES[name]})
@@ -199,9 +199,10 @@ class Trajectory:
     def from_states(
         cls, system: GapSystem, time: Array, states: Array, velocities: Array
     ) -> Trajectory:
-        """Return the trajectory with the states of a user-defined integrator, without losses.
+        """Return the trajectory of the states of a user-defined integrator, without losses.
 
-        Forces are instantaneous at output times; the first contact is accurate to an output step.
+        Forces are values at output times; the time of the first contact is accurate to an output
+        step.
 
         Args:
             system: gap system with constant loads only, all in ``load``.
@@ -217,8 +218,8 @@ class Trajectory:
         for row, law in enumerate(system.laws):
             forces[:, row] = law.force(gaps[:, row])
             energies[:, 2] += law.energy(gaps[:, row])
-        pressed = forces != 0.0
-        touching = pressed.any(axis=1)
+        closed = forces != 0.0
+        touching = closed.any(axis=1)
         none = np.zeros((time.size, 0))
         return cls.record(
             system,
@@ -228,7 +229,7 @@ class Trajectory:
                 "step": float(time[1] - time[0]),
                 "steps": time.size - 1,
                 "first_contact": float(time[np.argmax(touching)]) if touching.any() else np.nan,
-                "contact_changes": int(np.count_nonzero(np.diff(pressed, axis=0))),
+                "contact_changes": int(np.count_nonzero(np.diff(closed, axis=0))),
             },
         )
 
@@ -253,18 +254,18 @@ class Trajectory:
         return float(self.data.attrs["first_contact"])
 
     def first_peak(self, observer: str = "tip") -> tuple[float, float]:
-        """Return time in s and value in m of the first prominent peak in the initial direction.
+        """Return the time in s and the value of the first prominent peak in the initial direction.
 
         The prominence of a peak is at least a fifth of the whole range, which excludes the ripple
         of micro-impacts. Both values are NaN without a peak.
         """
         deflection = np.asarray(self.data[observer].values)
-        outstanding = 0.2 * np.ptp(deflection)
-        if outstanding < _ROUND_OFF * np.abs(deflection).max():
+        prominence = 0.2 * np.ptp(deflection)
+        if prominence < _ROUND_OFF * np.abs(deflection).max():
             return float("nan"), float("nan")
         off = deflection - deflection[0]
-        side = np.sign(off[np.argmax(np.abs(off) > outstanding)])
-        peak = _first_prominent(side * deflection, outstanding)
+        side = np.sign(off[np.argmax(np.abs(off) > prominence)])
+        peak = _first_prominent(side * deflection, prominence)
         if peak is None:
             return float("nan"), float("nan")
         return float(self.time[peak]), float(deflection[peak])

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows and axial forces that change with an extension, as piecewise cubics.
+"""Rows and axial forces that change with an extension s, as piecewise cubics.
 
 With cubic shape functions and a knot where the contact passes a node, the cubics are exact.
 Otherwise pieces are halved until the error of the cubics is within a tolerance.
 
-An axial force that moves along a segment compresses it between its initial and current position.
-It reduces the stiffness by K_G(s) = N ∫₀ˢ w′ᵀ w′ dσ with the slope w′ at the position (second-order
-theory, Timoshenko and Gere 1961). For rows that are cubic in s this is exact.
+An axial force P_t that moves along a segment compresses the length between its initial and its
+current position. It reduces the stiffness by K_G(s) = P_t ∫₀ˢ w′ᵀ w′ ds̃ with the row w′(s̃) of the
+slope at the force (second-order theory, Timoshenko and Gere 1961). For rows that are cubic in s
+this is exact.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ _COEFFICIENTS = 0.5 * np.array(
 )  # fmt: skip
 _TEST_POINTS = np.array([0.15, 0.5, 0.85])
 
-# Minimum relative change of the stiffness of a direction by an axial force that changes with time.
+# Minimum relative change of the stiffness of a modal direction by a changing axial force.
 _LEAST_CHANGE = 1.0e-5
 
 # i + j + 1, the reciprocals of ∫₀¹ uⁱ uʲ du for the powers in slopes.
@@ -45,7 +46,7 @@ _POWERS = 1.0 + np.add.outer(np.arange(3), np.arange(3))
 
 @dataclass(frozen=True, slots=True)
 class RowTable:
-    """Rows over an extension s.
+    """Rows as functions of an extension s.
 
     >>> table = RowTable.interpolate(lambda s: np.array([[1.0, s**3]]), [0.0, 1.0, 2.0])
     >>> table(1.5)
@@ -53,8 +54,8 @@ class RowTable:
 
     Args:
         knots: (num_pieces + 1,) in m, ascending.
-        coefficients: (num_pieces, 4, num_rows, num_modes) coefficients of powers of the relative
-            position in a piece.
+        coefficients: (num_pieces, 4, num_rows, num_modes) coefficients of the powers 0 to 3 of the
+            position in a piece, as a fraction of the length of the piece.
 
     Raises:
         ValueError: knots are not ascending, or shapes do not agree.
@@ -77,11 +78,11 @@ class RowTable:
 
     @classmethod
     def interpolate(cls, rows: Callable[[float], Array], breaks: Sequence[float]) -> RowTable:
-        """Return the table of a function of s that is smooth between breaks in m.
+        """Return the table of the function ``rows``, which is smooth between ``breaks`` in m.
 
-        ``rows`` returns the rows (num_rows, num_modes) at an extension s in m.
+        The function returns the rows (num_rows, num_modes) at an extension s in m.
         """
-        # Rows are cached, since pieces share ends, and halves share points with the whole piece.
+        # Rows are cached, since pieces have common ends, and halves have points of the whole piece.
         rows = cache(rows)
         scale = max(float(np.abs(rows(s)).max(initial=0.0)) for s in breaks)
         pieces = [
@@ -111,16 +112,16 @@ class RowTable:
         return self.coefficients.shape[3]
 
     def transform(self, shapes: Array) -> RowTable:
-        """Return the rows in other coordinates b of a = Φ b, with Φ (num_modes, num_others)."""
+        """Return the table in other coordinates b, with a = Φ b and Φ (num_modes, num_others)."""
         return replace(self, coefficients=self.coefficients @ shapes)
 
     def __call__(self, s: float) -> Array:
         """Return the rows (num_rows, num_modes) at s in m."""
         piece, part, _ = self.locate(s)
-        return _combined(part ** np.arange(4), self.coefficients[piece])
+        return _weighted_sum(part ** np.arange(4), self.coefficients[piece])
 
     def locate(self, s: float) -> tuple[int, float, float]:
-        """Return index and length in m of the piece at s in m, and the relative position in it."""
+        """Return the index of the piece at s in m, the relative position in it, and its length."""
         last = len(self.knots) - 2
         piece = min(max(int(np.searchsorted(self.knots, s, side="right")) - 1, 0), last)
         length = float(self.knots[piece + 1] - self.knots[piece])
@@ -136,7 +137,7 @@ class MovingAxialForce:
     array([[9.]])
     """
 
-    force: float  #: N in N, positive if it compresses the length between 0 and a positive s
+    force: float  #: P_t in N, positive if it compresses the length between 0 and a positive s
     table: RowTable  #: rows (num_planes, num_modes) of the deflections at the force, over s in m
 
     @property
@@ -155,13 +156,13 @@ class MovingAxialForce:
 
     @cached_property
     def slopes(self) -> Array:
-        """The slopes w′ (num_pieces, 3, num_planes, num_modes), as coefficients of powers."""
+        """The coefficients (num_pieces, 3, num_planes, num_modes) of the powers 0 to 2 in w′."""
         factors = np.arange(1.0, 4.0)[:, None, None]
         lengths = np.diff(self.table.knots)[:, None, None, None]
         return np.asarray(factors * self.table.coefficients[:, 1:] / lengths)
 
     def slope_products(self, plane: int) -> Array:
-        """Return ∫ w′ᵀ w′ ds (num_pieces, num_modes, num_modes) from 0 to each piece."""
+        """Return ∫ w′ᵀ w′ ds̃ (num_pieces, num_modes, num_modes) from 0 to each piece's start."""
         slopes, lengths = self.slopes[:, :, plane], np.diff(self.table.knots)
         within = np.einsum("p,ij,pik,pjl->pkl", lengths, 1 / _POWERS, slopes, slopes, optimize=True)
         upto = np.concatenate([np.zeros_like(within[:1]), within.cumsum(axis=0)])
@@ -170,7 +171,7 @@ class MovingAxialForce:
         return np.asarray(upto[:-1] - upto[piece] - slopes[piece].T @ products @ slopes[piece])
 
     def geometric_stiffness(self, s: float) -> Array:
-        """Return the increase of K_G (num_modes, num_modes) from 0 to s in m."""
+        """Return the increase of K_G (num_modes, num_modes) in 1/s² from 0 to s in m."""
         (first, start, _), (last, end, _) = (self.table.locate(x) for x in sorted((0.0, s)))
         slopes, lengths = self.slopes[first : last + 1], np.diff(self.table.knots)[first : last + 1]
         begins, ends = np.zeros((lengths.size, 1, 1)), np.ones((lengths.size, 1, 1))
@@ -184,21 +185,21 @@ class MovingAxialForce:
 
 @dataclass(frozen=True, slots=True)
 class ChangingAxialForce:
-    """Axial force that is proportional to the value s of a history: K_G(s) = s Vᵀ diag(c) V."""
+    """Axial force proportional to the value g_e of a history: K_G = g_e Σ_k λ_k x_kᵀ x_k."""
 
-    factors: Array  #: c (num_vectors,)
-    vectors: Array  #: V (num_vectors, num_modes)
+    factors: Array  #: λ (num_vectors,)
+    vectors: Array  #: x (num_vectors, num_modes)
 
     @classmethod
     def of(cls, geometric: Array, stiffness: Array, peak: float) -> ChangingAxialForce:
-        """Return the force whose geometric stiffness is K_G (num_modes, num_modes) at s = 1.
+        """Return the force whose geometric stiffness is ``geometric`` at g_e = 1.
 
-        Directions with a relative change of the stiffness below 1e-5 at s = ``peak`` are left out.
+        Directions with a relative change of the stiffness below 1e-5 at ``peak`` are left out.
 
         Args:
-            geometric: K_G in 1/s².
+            geometric: K_G (num_modes, num_modes) in 1/s².
             stiffness: positive definite stiffness (num_modes, num_modes) in 1/s².
-            peak: largest |s|.
+            peak: largest |g_e|.
         """
         factors, shapes = eigh(geometric, stiffness)
         matter = np.abs(factors) * peak > _LEAST_CHANGE
@@ -214,11 +215,11 @@ class ChangingAxialForce:
         return replace(self, vectors=self.vectors @ shapes)
 
     def geometric_stiffness(self, s: float) -> Array:
-        """Return K_G (num_modes, num_modes) at a value s."""
+        """Return K_G (num_modes, num_modes) in 1/s² at the value ``s`` of the history."""
         return np.asarray(s * (self.vectors.T * self.factors) @ self.vectors)
 
 
-def _combined(weights: Array, arrays: Array) -> Array:
+def _weighted_sum(weights: Array, arrays: Array) -> Array:
     """Return a weighted sum. It avoids BLAS so that results are bitwise reproducible."""
     return np.asarray((weights[:, None, None] * arrays).sum(axis=0))
 
@@ -226,14 +227,14 @@ def _combined(weights: Array, arrays: Array) -> Array:
 def _pieces(
     rows: Callable[[float], Array], a: float, b: float, bound: float, halvings: int
 ) -> Iterator[tuple[float, Array]]:
-    """Yield the start in m and the coefficients (4, num_rows, num_modes) of each piece."""
-    met = np.array([rows(a + part * (b - a)) for part in _POINTS])
-    cubic = np.array([_combined(weights, met) for weights in _COEFFICIENTS])
-    missed = [
-        float(np.abs(_combined(part ** np.arange(4), cubic) - rows(a + part * (b - a))).max())
+    """Yield start in m and coefficients (4, num_rows, num_modes) of each piece from a to b."""
+    values = np.array([rows(a + part * (b - a)) for part in _POINTS])
+    cubic = np.array([_weighted_sum(weights, values) for weights in _COEFFICIENTS])
+    errors = [
+        float(np.abs(_weighted_sum(part ** np.arange(4), cubic) - rows(a + part * (b - a))).max())
         for part in _TEST_POINTS
     ]
-    if halvings == 0 or max(missed) <= bound:
+    if halvings == 0 or max(errors) <= bound:
         yield a, cubic
         return
     middle = 0.5 * (a + b)

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Stick-slip of a segment that an elastic drive telescopes.
 
-The extension s(t) lags behind the command s_c(t) of the drive:
+The extension s of the mass m lags by Δs = s_c − s behind the extension s_c that the drive commands:
 
-    m s̈ + c (ṡ − ṡ_c) + k (s − s_c) = p − R sign(ṡ),   |k (s_c − s) + c ṡ_c + p| ≤ R_s where ṡ = 0
+    m s̈ + c_d (ṡ − ṡ_c) + k_d (s − s_c) = f_d − R sign ṡ,   |k_d Δs + c_d ṡ_c + f_d| ≤ R_s in stick
 
-R = μ Σ|N| is the friction of the pads, R_s the static friction, and p the inertia force that other
-drives cause. The boom moves with the command s_c; the lag does not affect it. R uses the mean N of
-each output interval, which smooths the faster chatter of pads.
+k_d and c_d are stiffness and dashpot of the drive. R = μ Σ|N_l| is the friction of the pads, R_s
+the static friction, f_d the inertia force that other drives cause. The boom moves with s_c; the lag
+does not affect it. R is the mean over each output interval, which smooths the chatter of pads.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ import numpy as np
 from dynamics.arrays import Array
 from dynamics.excitation import History
 
-# Largest step, as a phase angle in rad of the mass on its spring or a fraction of its decay time.
+# Largest step, as a phase angle in rad of the vibrating mass or a fraction of its decay time.
 _PART = 0.1
 
 # Variables of a trajectory for each elastic drive; the suffix of its travel follows each name.
@@ -42,8 +42,8 @@ class ElasticDrive:
 
     Args:
         mass: mass of all moved segments in kg.
-        stiffness: k of rope, chain or cylinder in N/m.
-        dashpot: c in parallel in N·s/m.
+        stiffness: k_d of rope, chain or cylinder in N/m.
+        dashpot: c_d parallel to the stiffness in N·s/m.
         sticking: ratio of static to sliding friction, at least 1.
         thrust: axial load towards the base in N, such as weight.
         coupled_drives: (mass in kg that both drives move, history) of each other drive.
@@ -74,7 +74,7 @@ class ElasticDrive:
 
     @property
     def damping_ratio(self) -> float:
-        """The damping ratio ζ = c / 2√(k m)."""
+        """The damping ratio ζ = c_d / 2√(k_d m)."""
         return 0.5 * self.dashpot / float(np.sqrt(self.stiffness * self.mass))
 
 
@@ -114,15 +114,15 @@ def move_segment(
 ) -> DriveMotion:
     """Return the motion of the segment from rest under the axial load.
 
-    The solution is exact for s_c and p that are linear within steps, at least 63 per period. The
-    accelerations in p are second differences. Histories of other drives are mirrored at t = 0, so
-    that an initial jump of the speed gives its whole impulse within the first step.
+    The solution is exact for s_c and f_d that are linear within steps, at least 63 per period. The
+    accelerations in f_d are second differences. Histories of other drives are mirrored at t = 0, so
+    that an initial jump of their speed gives its whole impulse within the first step.
 
     Args:
         drive: elastic drive of the segment.
         command: history of s_c in m.
         time: (num_times,) in s, evenly spaced from 0 on.
-        friction: R (num_times,) in N, the mean over the interval that ends at each time.
+        friction: R (num_times,) in N, the mean over the output interval that ends at each time.
     """
     from dynamics.kernels import stick_slip as kernel
 
@@ -143,10 +143,10 @@ def move_segment(
     lag, speed, _ = recorded.T
     force = np.diff(sums[:, kernel.IMPULSE], prepend=0.0) / output_step + drive.thrust
     moving = np.diff(command(time), prepend=0.0) != 0.0
-    work, load_work, damped, rubbed, _ = sums.T
+    work, load_work, damping_loss, friction_loss, _ = sums.T
     stored = 0.5 * drive.mass * speed**2 + 0.5 * drive.stiffness * lag**2
     most = float((np.abs(work) + np.abs(load_work)).max())
-    missing = float(np.abs(stored + damped + rubbed - work - load_work).max())
+    missing = float(np.abs(stored + damping_loss + friction_loss - work - load_work).max())
     results = StickSlip(
         mean=float(np.abs(force[moving]).mean()) if moving.any() else 0.0,
         peak=max(

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Travels: the extension of a segment over time, and the rows that it changes.
 
-In material coordinates, a segment that moves along its axis has the inertia m̄ ü if slopes are
-small. So its modes, loads and observers do not change. The row of a contact changes: on one of
-the two segments, the position of the contact moves with the extension.
+A segment that moves along its axis has the inertia m̄ ü at a fixed material point if slopes are
+small. So its modes, loads and observers do not change. But contact rows change, since the contact
+moves along one of the two segments with the extension.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ ROW_KINDS: tuple[RowKind, ...] = get_args(RowKind)
 
 @dataclass(frozen=True, slots=True)
 class Travel:
-    """Extension over time, from 0 at t = 0, and the rows that change with it.
+    """Extension over time, 0 at t = 0, and the rows that change with the extension.
 
     Example: the row of a contact decreases with the extension.
 
@@ -76,6 +76,6 @@ class Travel:
         return bool(self.moved_rows) and not self.shifts
 
     def transform(self, shapes: Array) -> Travel:
-        """Return the travel in other coordinates b of a = Φ b, with Φ (num_modes, num_others)."""
+        """Return the travel in other coordinates b, with a = Φ b and Φ (num_modes, num_others)."""
         forces = [force.transform(shapes) for force in self.axial_forces]
         return replace(self, table=self.table.transform(shapes), axial_forces=forces)

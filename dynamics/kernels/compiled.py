@@ -24,9 +24,9 @@ LOOP: Mapping[str, Any] = MappingProxyType(
 # Options of functions that are inlined in their callers.
 PART: Mapping[str, Any] = MappingProxyType({**LOOP, "forceinline": True})
 
-# Options of loops over modes, whose sums may be reordered. They are inlined: numba optimises a
-# function that is called a second time, in another order, so that the process that compiles would
-# differ in the last bit from those that read its cache.
+# Options of loops over modes, whose sums may be reordered. They are inlined. Otherwise numba would
+# optimise a second call in another order, and the process that compiles would differ in the last
+# bit from processes that read the cache.
 SUMS: Mapping[str, Any] = MappingProxyType(
     {**PART, "fastmath": {"reassoc", "contract", "arcp", "nsz"}}
 )

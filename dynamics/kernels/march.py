@@ -3,8 +3,7 @@
 
 The work of a constant force is force times displacement. So the energy of modes and contacts
 changes by exactly the work of loads and drives less the losses of damping, friction and dashpots,
-for any step. Rows of travels have the displacements B₀ a₀ at the start and B₁ a₁ at the end of a
-step, and their forces act by the mean row B̄ (see :mod:`dynamics.kernels.telescoping`).
+for any step. Rows may change with travels, see :mod:`dynamics.kernels.telescoping`.
 """
 
 from __future__ import annotations
@@ -22,12 +21,12 @@ from dynamics.kernels.telescoping import AxialForces, MovingRows, add_axial_forc
 from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
 from dynamics.trajectory import Output
 
-# Indices in the tally. From the index of the work on, they have the order of
+# Indices in ``State.tally``. From the index of the work on, they have the order of
 # ``dynamics.energy.ENERGIES``.
 TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = range(9)
 
-# Largest h ω of a closed contact at which steps resolve its force: the largest sample of a
-# half-sine is at most 1 − cos(hω/2), 3 %, too small.
+# Largest h ω of a closed contact at which steps of length h resolve its force: the largest sample
+# of a half-sine is too small by 1 − cos(hω/2), at most 3 %.
 RESOLVED = 0.5
 
 # Maximum penetration in m in the search for a given energy.
@@ -41,8 +40,8 @@ class LoopSystem(NamedTuple):
     """Constant data of a gap system.
 
     Args:
-        load: (num_modes,) constant load.
-        excitations: (num_excitations, num_modes) loads that histories multiply.
+        load: (num_modes,) constant modal load in N/√kg.
+        excitations: (num_excitations, num_modes) modal loads that histories multiply.
         laws: contact and friction laws.
         moving, axial: rows and axial forces that change with travels.
     """
@@ -63,11 +62,11 @@ class State(NamedTuple):
         y: (num_rows,) displacements of the rows in m.
         force: (num_rows,) forces of the last step in N.
         axial_push: (num_modes,) K_G a of the moving axial forces in the last step.
-        tally: sums over all steps; ``TIME`` to ``CONTACT`` are its indices.
+        tally: sums over all steps, with the indices ``TIME`` to ``CONTACT``.
         driven: (num_travels,) cumulative work of each drive in J.
         crest: (num_contacts,) largest force of all steps in N.
-        resolving: (num_contacts,) step in s that is short enough for the contact at its largest
-            force; infinite if the step of this run is.
+        resolving: (num_contacts,) largest step in s that resolves the contact at its largest force;
+            infinite if the actual step does.
     """
 
     a: Array
@@ -108,7 +107,7 @@ def assign(target: Array, source: Array) -> None:
 
 @njit(**SUMS)
 def read_rows(rows: Array, a: Array, values: Array) -> None:
-    """Set ``values`` (num_rows,) to the displacements of the rows."""
+    """Set ``values`` (num_rows,) in m to the displacements of the rows."""
     for j in range(rows.shape[0]):
         total = 0.0
         for i in range(a.size):
@@ -117,8 +116,8 @@ def read_rows(rows: Array, a: Array, values: Array) -> None:
 
 
 @njit(**SUMS)
-def _push(rows: Array, force: Array, total: Array) -> None:
-    """Subtract the modal forces Rᵀ f of the rows from ``total`` (num_modes,)."""
+def _subtract_forces(rows: Array, force: Array, total: Array) -> None:
+    """Subtract the modal forces Sᵀ f of rows S with forces f from ``total`` (num_modes,)."""
     for j in range(rows.shape[0]):
         if force[j] != 0.0:
             for i in range(total.size):
@@ -149,7 +148,7 @@ def _update_contacts(state: State, laws: Laws, end: Array, free: Array, time: fl
 
 @njit(**LOOP)
 def _energy_and_stiffness(laws: Laws, j: int, y: float) -> tuple[float, float]:
-    """Return energy in J and tangent stiffness in N/m of contact j at a gap in m."""
+    """Return energy in J and tangent stiffness in N/m of contact j at the displacement y in m."""
     energy, slope = 0.0, 0.0
     for t in range(laws.first_term[j], laws.first_term[j + 1]):
         energy += term_energy(laws.terms[t], y)
@@ -159,7 +158,7 @@ def _energy_and_stiffness(laws: Laws, j: int, y: float) -> tuple[float, float]:
 
 @njit(**LOOP)
 def _stiffness_at_energy(laws: Laws, j: int, side: float, energy: float) -> float:
-    """Return the stiffness in N/m of contact j at a stored energy in J; side is 1 or −1."""
+    """Return the tangent stiffness in N/m of contact j on one side at a stored energy in J."""
     onset = laws.limits[j]["high"] if side > 0.0 else laws.limits[j]["low"]
     low, high = 0.0, 1.0e-12
     # The limit ends the search on a side without contact, which round-off of a force may give.
@@ -180,11 +179,11 @@ def _update_peaks(
     state: State, laws: Laws, compliance: Array, time: float, end: Array, force: Array,
     free: Array, peaks: Array,
 ) -> None:  # fmt: skip
-    """Update the peaks of contact forces, and the steps in s that are short enough for them.
+    """Update the peaks of contact forces, and the largest steps in s that resolve the contacts.
 
-    A peak is the force at the end of a step that is short enough. In a longer step the force
-    oscillates, and the peak is its mean. The required step follows from the stiffness at the
-    maximum penetration, when the contact also stores the kinetic energy (y_free − y₀)²/(4 C).
+    A peak is the force at the end of a step that resolves the contact. In a longer step the force
+    oscillates, and the peak is the mean force. The largest step follows from the stiffness at the
+    maximum penetration, where the contact also stores the kinetic energy (y_free − y₀)²/(4 H_jj).
     """
     for j in range(laws.limits.size):
         largest = 0.0
@@ -231,10 +230,10 @@ def _set_loads(
 
 @njit(**SUMS)
 def free_time(system: LoopSystem, flow: Flow, state: State, longest: float) -> float:
-    """Return a time in s up to ``longest`` within which no contact closes; 0 if one is closed.
+    """Return a time in s up to ``longest`` within which no contact closes; 0 if any is closed.
 
-    Without contact, the speed of a mode is at most √(v² + (ω² a − Q)²/ω²), or |v| + |Q| t for
-    ω = 0. The speed of a row is at most the sum over its modes.
+    Without contact, the speed of a mode is at most √(ȧ² + (ω² a − Q)²/ω²), or |ȧ| + |Q| t for
+    ω = 0. The speed of a row is at most the sum over all modes.
     """
     limits, speed = system.laws.limits, np.empty(state.a.size)
     for i in range(speed.size):
@@ -261,19 +260,19 @@ def march(
 ) -> bool:  # fmt: skip
     """Advance to the last time of ``output``, and return whether all steps converged.
 
-    An output interval has several stretches of 2ʲ steps. Steps in which no contact can close are
-    joined, at most to a whole stretch, since the modal solution is exact.
+    An output interval is divided into stretches of 2ʲ steps, with j = ``joined``. Steps in which no
+    contact can close are joined, at most to a whole stretch, since the modal solution is exact.
 
     Args:
-        system: system that moves.
+        system: constant data of the system.
         flow: coefficients for a stretch, half of it, a quarter and so on. They continue below the
             step, since a step is halved if its forces do not converge.
-        compliances: (num_lengths, num_rows, num_rows) C for each length of ``flow``, if rows are
-            constant.
-        state: state at the start; it is changed.
+        compliances: (num_lengths, num_rows, num_rows) H in m/N for each length of ``flow``, if rows
+            are constant.
+        state: state at the start; the function changes it to the state at the end.
         schedule: loads and extensions of all stretches.
         stretches: number of stretches of an output interval.
-        joined: j; 0 if other forces than contact forces act.
+        joined: j; 0 if other forces act than constant loads and contact forces.
         problem: work arrays of contact and friction forces.
         output: output to fill in.
     """
@@ -335,7 +334,7 @@ def march(
                         )
                     if not solve_contact_forces(laws, problem, matrix, y, time):
                         break
-                    _push(rows_mean, now, total)
+                    _subtract_forces(rows_mean, now, total)
                 free_flow(a, v, flow, depth, total, tilt, end)
                 converged = not softens
                 if softens:

@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Exact motion of uncoupled damped modes within one time step.
 
-Each mode obeys ä + c ȧ + ω² a = Q + S (t/h − ½) within a step of length h, with the mean force Q
-and the change S of the load. With the response s(t) to a unit impulse,
-r = ∫ s dt, p = ∫ r dt/h and u = ∫∫ r dt dt/h²,
+Each mode obeys ä + c ȧ + ω² a = Q + ΔQ (t/h − ½) within a step of length h, with the mean load Q
+and its change ΔQ. r_v(t) is the response to a unit initial velocity, and r_f = ∫ r_v dt the
+response to a unit force. With p = ∫ r_f dt/h and u = ∫∫ r_f dt dt/h², the step from a₀ to a₁ is
 
-    a₁ = (1 − ω² r) a₀ + s v₀ + r Q + (p − r/2) S
-    v₁ = −ω² s a₀ + (1 − c s − ω² r) v₀ + s Q + (r/h − s/2) S
-    ā  = (1 − ω² p) a₀ + (r/h) v₀ + p Q + (u − p/2) S
+    a₁ = (1 − ω² r_f) a₀ + r_v ȧ₀ + r_f Q + (p − r_f/2) ΔQ
+    ȧ₁ = −ω² r_v a₀ + (1 − c r_v − ω² r_f) ȧ₀ + r_v Q + (r_f/h − r_v/2) ΔQ
+    ā  = (1 − ω² p) a₀ + (r_f/h) ȧ₀ + p Q + (u − p/2) ΔQ
 
-The work of Q is Q (a₁ − a₀), the work of S is S ((a₀ + a₁)/2 − ā), and the damping loss c ∫ v² dt
-is a quadratic form of v₀, v̇₀ and S/h.
+with the mean ā over the step. The work of Q is Q (a₁ − a₀), the work of ΔQ is
+ΔQ ((a₀ + a₁)/2 − ā), and the damping loss c ∫ ȧ² dt is a quadratic form of ȧ₀, ä₀ and ΔQ/h.
 """
 
 from __future__ import annotations
@@ -35,10 +35,10 @@ class Flow(NamedTuple):
     Args:
         time: (num_lengths,) h in s.
         omega2, damping: (num_modes,) ω² in 1/s² and c in 1/s.
-        impulse, gain, ramp, drift: (num_lengths, num_modes) s in s, and r, p, u in s².
-        loss: (num_lengths, 6, num_modes) coefficients of the loss c ∫ v² dt with
-            v = α v₀ + β v̇₀ + r S/h: c ∫ αα dt, and likewise αβ, ββ, αr, βr, rr; no columns
-            without damping.
+        impulse, gain, ramp, drift: (num_lengths, num_modes) r_v in s, and r_f, p, u in s².
+        loss: (num_lengths, 6, num_modes) coefficients of the loss c ∫ ȧ² dt with
+            ȧ = α ȧ₀ + β ä₀ + r_f ΔQ/h: c ∫ αα dt, and likewise αβ, ββ, αr_f, βr_f, r_f r_f; no
+            columns without damping.
     """
 
     time: Array
@@ -64,7 +64,7 @@ def modal_flow(system: GapSystem, times: Array) -> Flow:
 
 
 def _flow_over(omega2: Array, c: Array, time: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Return s, r, p, u (num_modes,) and loss coefficients (6, num_modes) over times in s."""
+    """Return r_v, r_f, p, u (num_modes,) and loss coefficients (6, num_modes) for times in s."""
     phase = np.sqrt(np.maximum(omega2, 0.0)) * time
     half = _sinc(0.5 * phase)
     impulse, gain = time * _sinc(phase), 0.5 * time**2 * half**2
@@ -92,16 +92,16 @@ def _sinc(x: Array) -> Array:
 
 
 def _damped_flow(omega2: Array, c: Array, time: Array) -> tuple[Array, Array, Array, Array, Array]:
-    """Return s, r, p, u (num_modes,) and loss integrals (6, num_modes) of damped or unstable modes.
+    """Return r_v, r_f, p, u and loss integrals (6, num_modes) of damped or unstable modes.
 
-    A power series of s'' = −c s' − ω² s solves a fraction of the step, which is then doubled.
-    Closed forms would suffer from cancellation for small damping or step.
+    A power series solves r̈_v = −c ṙ_v − ω² r_v over a fraction of the step, which is then doubled
+    repeatedly. Closed forms would suffer from cancellation for small damping or a small step.
     """
     doublings = np.maximum(0.0, np.ceil(np.log2(time * (c + np.sqrt(np.abs(omega2))) + 1e-300)))
     t = time / 2.0**doublings
     older, newer = np.zeros(t.size), t.copy()
     sine, gain, fall, drift = t.copy(), t**2 / 2.0, t**3 / 6.0, t**4 / 24.0
-    # Taylor coefficients of α, β and r in this fraction, for the integrals of their products.
+    # Taylor coefficients of α, β and r_f in this fraction, for the integrals of their products.
     series = np.zeros((3, _TERMS, t.size))
     series[1, 1], series[2, 2] = t, 0.5 * t**2
     for k in range(2, _TERMS):
@@ -113,7 +113,7 @@ def _damped_flow(omega2: Array, c: Array, time: Array) -> tuple[Array, Array, Ar
         series[1, k] = newer
         if k + 1 < _TERMS:
             series[2, k + 1] = newer * t / (k + 1)
-    # α = s' + c s.
+    # α = ṙ_v + c r_v.
     powers = np.arange(1, _TERMS)
     series[0, :-1] = series[1, 1:] * powers[:, None] / t
     series[0] += c * series[1]
@@ -127,7 +127,7 @@ def _damped_flow(omega2: Array, c: Array, time: Array) -> tuple[Array, Array, Ar
         go = np.flatnonzero(doubling < doublings)
         omega2, c, t, sine, gain, fall, drift = numbers[:, go]
         vv, aa = 1.0 - c * sine - omega2 * gain, 1.0 - omega2 * gain
-        # Matrix of (v, v̇, S/h) over a fraction of the step: v = α v₀ + β v̇₀ + r S/h.
+        # Matrix of (ȧ, ä, ΔQ/h) over a fraction of the step: ȧ = α ȧ₀ + β ä₀ + r_f ΔQ/h.
         zero, one = np.zeros(t.size), np.ones(t.size)
         onward = np.array(
             [[vv + c * sine, sine, gain], [-omega2 * sine, vv, sine], [zero, zero, one]]
@@ -162,16 +162,16 @@ def finish_flow(
     a: Array, v: Array, flow: Flow, length: int, force: Array, change: Array, end: Array,
     load: Array,
 ) -> tuple[float, float]:  # fmt: skip
-    """Advance a and v to the end of a step, and return work and damping loss in J.
+    """Advance a and v = ȧ to the end of a step, and return work and damping loss in J.
 
     Args:
         a, v: coordinates and velocities (num_modes,) at the start of the step; they are changed.
         flow: coefficients of steps of several lengths.
         length: index of the length of this step.
-        force: (num_modes,) mean force Q in N/√kg.
-        change: (num_modes,) change S of the load in N/√kg; empty for constant loads.
+        force: (num_modes,) mean load Q in N/√kg.
+        change: (num_modes,) change ΔQ of the load in N/√kg; empty for constant loads.
         end: (num_modes,) a₁.
-        load: (num_modes,) part of Q whose work is returned together with the work of S.
+        load: (num_modes,) part of Q whose work is returned, with the work of ΔQ.
     """
     h, omega2, damping = flow.time[length], flow.omega2, flow.damping
     impulse, gain, ramp = flow.impulse[length], flow.gain[length], flow.ramp[length]
@@ -212,9 +212,10 @@ def modal_energy(a: Array, v: Array, omega2: Array) -> tuple[float, float]:
 
 @njit(**SUMS)
 def compliance(ends: Array, rows: Array, gain: Array) -> Array:
-    """Return C = E diag(r) Rᵀ (num_rows, num_rows) of rows E at the end and mean rows R of a step.
+    """Return the compliance H = S₁ diag(r_f) S̄ᵀ (num_rows, num_rows) in m/N in a step.
 
-    It avoids BLAS so that results are bitwise reproducible.
+    ``ends`` are the rows S₁ at the end of the step, ``rows`` the mean rows S̄, and ``gain`` is r_f.
+    The function avoids BLAS so that results are bitwise reproducible.
     """
     count = rows.shape[0]
     result = np.zeros((count, count))

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contact, friction and dashpot forces f of one time step, constant within it.
 
-With the displacements y₁ = y_free − C f of the rows at the end of the step,
+A step of length h leads from the displacements y₀ of all rows to y₁ = y_free − H f, with y_free
+without these forces and the compliance H. In the step,
 
-- a contact force is the discrete gradient of its energy, f = (V(y₁) − V(y₀))/(y₁ − y₀), times
-  1 + d ṗ of Hunt and Crossley (1975) at the mean rate of the penetration, never adhesive;
-- friction obeys |f| ≤ μN, and f = μN sign(y₁ − y₀) in sliding (Moreau 1988), where N is the
-  prescribed normal force plus the |f| of its contacts;
+- a contact force is the discrete gradient of the contact energy U, f = (U(y₁) − U(y₀))/(y₁ − y₀),
+  times 1 + χ δ̇ at the mean rate δ̇ of the penetration (Hunt and Crossley 1975), never attractive;
+- friction obeys |f| ≤ μ N_l, and f = μ N_l sign(y₁ − y₀) in sliding (Moreau 1988). The normal force
+  N_l is the prescribed one plus the |f| of contacts;
 - a dashpot resists the mean rate, f = (y₁ − y₀)/h.
 
 A semismooth Newton method on the active rows solves the system (Alart and Curnier 1991).
@@ -33,7 +34,8 @@ _MOST_ITERATIONS = 25
 # displacements.
 _CONVERGED, _ROUND_OFF = 1.0e-13, 4.0e-16
 
-# Pivot below which a column depends linearly on earlier columns; the force of its row is kept.
+# Pivot below which a column depends linearly on earlier columns; the force of this row does not
+# change.
 _DEPENDENT = 1.0e-11
 
 
@@ -59,7 +61,7 @@ class Problem(NamedTuple):
 
     free: Array  #: (num_rows,) y_free in m
     force: Array  #: (num_rows,) f in N; the initial guess, then the solution
-    bound: Array  #: (num_frictions,) μN in N
+    bound: Array  #: (num_frictions,) μ N_l in N
     active: Indices  #: (num_rows,) indices of the active rows
     jacobian: Array  #: (num_rows, num_rows) Jacobian of the active rows
     residual: Array  #: (num_rows,) residuals of the active rows
@@ -77,7 +79,7 @@ def row_laws(system: GapSystem) -> Laws:
 
 
 def row_problem(num_rows: int, num_frictions: int) -> Problem:
-    """Return a problem with zero forces."""
+    """Return the problem of a step with zero forces."""
     square = np.zeros((num_rows, num_rows))
     active = np.zeros(num_rows, dtype=np.int64)
     free, force, residual = np.zeros((3, num_rows))
@@ -113,13 +115,13 @@ def contact_response(
 def solve_contact_forces(
     laws: Laws, problem: Problem, compliance: Array, start: Array, time: float
 ) -> bool:
-    """Solve for the contact, friction and dashpot forces of a step.
+    """Compute the contact, friction and dashpot forces of a step.
 
     Args:
         laws: contact and friction laws.
         problem: problem with y_free and an initial guess of the forces, which the solution
             replaces.
-        compliance: C (num_rows, num_rows) in m/N.
+        compliance: H (num_rows, num_rows) in m/N.
         start: y₀ (num_rows,) in m.
         time: h in s.
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Stick-slip of a mass that a spring pulls against dry friction.
 
-The solution is exact for data that are linear in time. z = s_c − s is the lag of the mass behind
-the driven end of the spring. In slip of direction σ, m z̈ + c ż + k z = σ R − p. In stick, ż = ṡ_c
-until |k z + c ż + p| exceeds the static friction. A slip ends when ṡ changes its sign.
+See :mod:`dynamics.drive.stick_slip` for the symbols. The solution is exact for data that are linear
+in time. In a slip, m Δs̈ + c_d Δṡ + k_d Δs = R sign ṡ − f_d + m s̈_c with s̈_c = 0; it ends when ṡ
+changes its sign. In stick, Δṡ = ṡ_c until |k_d Δs + c_d Δṡ + f_d| exceeds the static friction.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from dynamics.kernels.compiled import LOOP
 
 
 class SlidingMass(NamedTuple):
-    """Mass on a spring: m in kg, k in N/m, c in N·s/m, and ratio of static to sliding friction."""
+    """Mass on a spring: m in kg, k_d in N/m, c_d in N·s/m, ratio of static to sliding friction."""
 
     mass: float
     stiffness: float
@@ -27,7 +27,7 @@ class SlidingMass(NamedTuple):
 
 
 class LinearInterval(NamedTuple):
-    """Interval of linear data: ṡ_c in m/s, p at its start in N, ṗ in N/s, and R in N."""
+    """Interval of linear data: ṡ_c in m/s, f_d at the start in N, its rate in N/s, and R in N."""
 
     rate: float
     push: float
@@ -35,10 +35,10 @@ class LinearInterval(NamedTuple):
     friction: float
 
 
-# State: z in m, ṡ in m/s, σ (0 in stick), and the largest lag of this slip in m.
+# State: Δs in m, ṡ in m/s, sign of ṡ (0 in stick), and the largest lag of this slip in m.
 LAG, SPEED, SIGN, MAX_LAG = range(4)
 
-# Sums: work of the driven end, work of p, losses of dashpot and friction in J, and impulse of
+# Sums: work of the driven end, work of f_d, losses of dashpot and friction in J, and impulse of
 # spring and dashpot in N·s.
 WORK, LOAD_WORK, DAMPING_LOSS, FRICTION_LOSS, IMPULSE = range(5)
 
@@ -46,11 +46,11 @@ WORK, LOAD_WORK, DAMPING_LOSS, FRICTION_LOSS, IMPULSE = range(5)
 # and decrease of the lag in one slip in m, and the number of sticks.
 MAX_FORCE, MIN_FORCE, MAX_SPEED, MAX_ACCELERATION, MAX_SLIP, STICKS = range(6)
 
-# Number of phases within an interval after which the mass sticks to its end.
+# Number of phases (stick or slip) in an interval after which the mass sticks until its end.
 _MAX_PHASES = 20
 
-# Number of checks of the phase within an interval, so that short reversals of the speed are found
-# to 1e-5 of it, and number of bisections, which give a time to round-off.
+# Number of times within an interval at which the end of a phase is checked, so that reversals of
+# the speed longer than 1e-5 of the interval are found, and number of bisections of this end.
 _CHECKS, _HALVINGS = 16, 60
 
 # The five points of Lobatto quadrature on [0, 1], and their weights.
@@ -68,16 +68,16 @@ def motion_after(
     else:
         decay, omega2 = 0.5 * body.dashpot / body.mass, body.stiffness / body.mass
         drift = -interval.load_rate / body.stiffness
-        rest = (
+        offset = (
             state[SIGN] * interval.friction - interval.push - body.dashpot * drift
         ) / body.stiffness
-        off, swing = state[LAG] - rest, interval.rate - state[SPEED] - drift
+        initial, initial_rate = state[LAG] - offset, interval.rate - state[SPEED] - drift
         # Imaginary with overcritical damping.
-        beat, kept = np.sqrt(complex(omega2 - decay**2)), np.exp(-decay * time)
-        cosine = kept * np.cos(beat * time).real
-        sine = kept * (time if beat == 0.0 else (np.sin(beat * time) / beat).real)
-        lag = rest + drift * time + off * (cosine + decay * sine) + swing * sine
-        rate = drift + swing * (cosine - decay * sine) - omega2 * off * sine
+        damped, decayed = np.sqrt(complex(omega2 - decay**2)), np.exp(-decay * time)
+        cosine = decayed * np.cos(damped * time).real
+        sine = decayed * (time if damped == 0.0 else (np.sin(damped * time) / damped).real)
+        lag = offset + drift * time + initial * (cosine + decay * sine) + initial_rate * sine
+        rate = drift + initial_rate * (cosine - decay * sine) - omega2 * initial * sine
     pull = body.stiffness * lag + body.dashpot * rate
     return lag, interval.rate - rate, pull + interval.push + interval.load_rate * time
 
@@ -150,9 +150,9 @@ def advance_interval(
     largest: Array,
 ) -> None:
     """Advance the state by a time in s with linear data, phase by phase."""
-    left, turns = time, 0
-    while left > 0.0 and turns < _MAX_PHASES:
-        turns += 1
+    left, phases = time, 0
+    while left > 0.0 and phases < _MAX_PHASES:
+        phases += 1
         gone = phase_duration(body, state, interval, left)
         advance(body, state, interval, gone, sums, largest)
         interval = LinearInterval(
@@ -184,9 +184,9 @@ def march_stick_slip(
         body: the mass.
         step: step of the data in s.
         substeps: number of steps per output.
-        commands, pushes: s_c in m and p in N (num_outputs · substeps + 1,).
+        commands, pushes: s_c in m and f_d in N, each (num_outputs · substeps + 1,).
         frictions: R (num_outputs + 1,) in N during the interval before each output.
-        recorded: array (num_outputs + 1, 3) for z in m, ṡ in m/s and s̈ in m/s².
+        recorded: array (num_outputs + 1, 3) for Δs in m, ṡ in m/s and s̈ in m/s².
         sums: array (num_outputs + 1, 5) for the sums up to each output.
         largest: array (6,) for the extremes.
     """

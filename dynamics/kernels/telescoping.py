@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows and axial forces that change with travels, in the time loop.
 
-Within a step, the displacement of a row changes by B₁ a₁ − B₀ a₀ = B̄ (a₁ − a₀) +
-(B₁ − B₀)(a₀ + a₁)/2. Forces act on the modes by the mean row B̄. The second part times the force is
-the work of the drive, so that the energy balance is exact.
+A step from a₀ to a₁ changes the displacement of a row by B₁ a₁ − B₀ a₀ = B̄ (a₁ − a₀) +
+(B₁ − B₀)(a₀ + a₁)/2, with the rows B₀ at the start and B₁ at the end and their mean B̄. Forces act
+on the modes by B̄. The second term times the force is the work of the drive, so that the energy
+balance is exact.
 """
 
 from __future__ import annotations
@@ -37,17 +38,18 @@ class MovingRows(NamedTuple):
 
 
 class AxialForces(NamedTuple):
-    """Axial forces that move with travels, one for each plane of bending, or change with them.
+    """Axial forces that move with travels, one for each plane of bending, or change in magnitude.
 
     Args:
-        force: (num_forces,) N in N.
+        force: (num_forces,) P_t in N.
         spans: (num_forces, 4) as in :class:`MovingRows`.
         num_modes: (num_forces,) number of modes with a slope at the force.
         modes: (num_forces, most_modes) indices of these modes.
         knots: knots of all forces in m.
         slopes: (num_pieces, 3, most_modes) coefficients of w′, as in
             :class:`dynamics.drive.row_table.MovingAxialForce`.
-        products: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds from 0 to each piece.
+        products: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds̃ from 0 to each
+            piece.
         changed_by: (num_vectors,) index of the travel of each vector.
         factors, vectors: as in :class:`dynamics.drive.row_table.ChangingAxialForce`.
     """
@@ -128,7 +130,10 @@ def moving_axial_forces(system: GapSystem) -> AxialForces:
 
 @njit(**SUMS)
 def find_piece(extensions: Array, span: Indices, knots: Array) -> tuple[int, float, float]:
-    """Return piece, relative position in it, and its length in m at the extension of a travel."""
+    """Return the index of the piece at a travel's extension, the position in it, and its length.
+
+    The position is a fraction of the length, the length is in m.
+    """
     travel, low, high, first = span
     start, extension = low, extensions[travel]
     while high - low > 1:
@@ -145,14 +150,14 @@ def find_piece(extensions: Array, span: Indices, knots: Array) -> tuple[int, flo
 def move_rows(
     extensions: Array, moving: MovingRows, before: Array, after: Array, mean: Array
 ) -> None:
-    """Set the rows (num_rows, num_modes) that change with travels.
+    """Compute the rows (num_rows, num_modes) that change with travels.
 
     Args:
         extensions: (num_travels,) extensions in m at the end of a step.
-        moving: data of these rows.
+        moving: cubics of the rows that change.
         before: B₀ at the start of the step.
-        after: B₁ at the end of the step, to be set.
-        mean: B̄, to be set.
+        after: B₁ at the end of the step; the function sets it.
+        mean: B̄; the function sets it.
     """
     for m in range(moving.number.size):
         row = moving.number[m]
@@ -175,8 +180,8 @@ def add_axial_forces(
         axial: moving axial forces.
         a: (num_modes,) modal coordinates.
         share: factor of force and energy.
-        total: (num_modes,) modal force, to be changed.
-        energies: (num_travels,) reduction of the strain energy in J, to be changed.
+        total: (num_modes,) modal force in N/√kg.
+        energies: (num_travels,) reduction of the strain energy in J.
     """
     coordinates, force = np.zeros((2, axial.modes.shape[1]))
     slopes, products = axial.slopes, axial.products

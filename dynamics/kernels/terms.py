@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Terms of contact laws in compiled loops: force, energy, slope and discrete gradient.
 
-The formulas of the first three are in :mod:`dynamics.contact_term`, which does not import numba:
-the import takes longer than the check of a case.
+The formulas of force, energy and slope are in :mod:`dynamics.contact_term`. It does not import
+numba, since this takes longer than the check of a case.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ _CLOSE = 1.0e-3
 
 @njit(**LOOP)
 def contact_energy(y: Array, terms: Terms) -> float:
-    """Return the elastic energy of all rows in J at the gaps y (num_rows,) in m."""
+    """Return the elastic energy in J of all contacts at displacements y (num_rows,) in m."""
     energy = 0.0
     for t in range(terms.size):
         energy += term_energy(terms[t], y[terms[t]["row"]])
@@ -33,14 +33,14 @@ def contact_energy(y: Array, terms: Terms) -> float:
 
 @njit(**LOOP)
 def discrete_gradient(term: np.void, before: float, after: float) -> tuple[float, float]:
-    """Return (V(y₁) − V(y₀))/(y₁ − y₀) of a term's energy V in N, and its derivative by y₁ in N/m.
+    """Return (U(y₁) − U(y₀))/(y₁ − y₀) of a term's energy U in N, and its derivative by y₁ in N/m.
 
-    Both are free of cancellation for y₁ near y₀ (Gonzalez 1996). There the derivative, which only
-    Newton's method uses, is a midpoint value unless the exponent is 1 or 2.
+    Both are free of cancellation for y₁ near y₀ (Gonzalez 1996). The derivative, which only
+    Newton's method uses, is a midpoint value for y₁ near y₀ unless the exponent is 1 or 2.
 
     Args:
         term: term of a contact law.
-        before, after: gaps y₀ and y₁ in m.
+        before, after: relative displacements y₀ and y₁ in m.
     """
     side, k, n = term["side"], term["stiffness"], term["exponent"]
     p, q = side * before - term["onset"], side * after - term["onset"]

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Ensembles: runs of one system with slightly changed data.
 
-If impacts make a motion chaotic, a single run is a sample. Only features that all members of an
-ensemble share are properties of the system.
+If impacts make a motion chaotic, a single run is a sample. Only what all members of an ensemble
+have in common is a property of the system.
 """
 
 from __future__ import annotations
@@ -38,8 +38,8 @@ class EnsembleMember:
     integrator: Integrator  #: integrator of the motion
     variables: Sequence[str] = MEMBER_VARIABLES  #: names of the variables to store
 
-    def shortened(self, part: float) -> EnsembleMember:
-        """Return the run shortened to a fraction of its duration, in whole output steps."""
+    def shorten(self, part: float) -> EnsembleMember:
+        """Return the member with a fraction of its duration, in whole output steps."""
         outputs = max(1, round(part * self.motion.outputs))
         return replace(
             self, motion=replace(self.motion, duration=outputs * self.motion.output_step)
@@ -88,7 +88,7 @@ def run_members(
     executor: Executor | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> list[xr.Dataset]:
-    """Run the members, and return the stored variables and ``energy_residual`` of each.
+    """Return the stored variables and ``energy_residual`` of each member, computed in parallel.
 
     The result does not depend on the executor.
 

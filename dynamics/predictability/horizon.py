@@ -3,9 +3,9 @@
 
 A small relative change ε of the data makes two runs diverge as ε exp(λ t). They reach a given
 distance at T(ε) = T(1) − ln(ε)/λ, so that data a thousand times more accurate extend the horizon
-only by ln(1000)/λ (Lorenz 1963, *Deterministic nonperiodic flow*). This holds for small distances:
-λ is determined at a small fraction of the range, while larger fractions may be reached at about the
-same time for any ε. A linear system has no horizon: its distance stays proportional to ε.
+only by ln(1000)/λ (Lorenz 1963, *Deterministic nonperiodic flow*). This holds for small distances.
+So the growth rate λ is determined at a small fraction of the range; larger fractions may be reached
+at about the same time for any ε. In a linear system the distance stays proportional to ε.
 """
 
 from __future__ import annotations
@@ -25,7 +25,8 @@ from dynamics.motion import Motion
 from dynamics.predictability.ensemble import EnsembleMember, Vary, check_varied, run_members
 from dynamics.trajectory import Trajectory
 
-# Fractions of the range at which two curves become distinguishable, and independent.
+# Fractions of the range at which two curves become distinguishable, and at which they are
+# independent.
 SHARES = (0.01, 0.20)
 # Fraction of the range up to which the distance is proportional to ε.
 EARLY = 1.0e-4
@@ -39,18 +40,18 @@ _STAGE = 0.5 / len(_PARTS)
 def horizon(members: Array, time: Array, share: float) -> float:
     """Return the time in s at which members (num_members, num_times) diverge; NaN if they do not.
 
-    Members diverge when their spread exceeds a share of the range of member 0. The spread is half
-    the distance between the largest and the smallest member. It is the error of the best single
-    prediction. A standard deviation would be smaller while most members agree.
+    Members diverge when their spread exceeds the fraction ``share`` of the range of member 0. The
+    spread is half the distance between the largest and the smallest value, which is the error of
+    the best single prediction. A standard deviation would be smaller while most members agree.
     """
     spread = 0.5 * np.ptp(members, axis=0)
-    passed = np.flatnonzero(spread > share * np.ptp(members[0]))
-    return float(time[passed[0]]) if passed.size else float("nan")
+    beyond = np.flatnonzero(spread > share * np.ptp(members[0]))
+    return float(time[beyond[0]]) if beyond.size else float("nan")
 
 
 @dataclass(frozen=True, slots=True)
 class Growth:
-    """Line T(ε) through measured horizons."""
+    """Straight line of measured horizons T over ln ε, with the growth rate λ."""
 
     #: λ in 1/s; NaN with fewer than two horizons, or if the increase of horizons with smaller ε is
     #: within the scatter
@@ -60,7 +61,7 @@ class Growth:
 
     @classmethod
     def fit(cls, relatives: Array, times: Array) -> Growth:
-        """Fit a line to horizons T (num,) in s over ln ε by least squares, without NaN horizons."""
+        """Return the least-squares line through the finite ones of the horizons (num,) in s."""
         finite = np.isfinite(times)
         if finite.sum() < 2:
             return cls(np.nan, np.nan, np.nan)
@@ -73,7 +74,7 @@ class Growth:
         return cls(float(-1.0 / slope), float(start), scatter)
 
     def change(self, time: float) -> float:
-        """Return the relative change ε of the loads with a horizon of ``time`` in s."""
+        """Return the relative change ε of the data that has the horizon ``time`` in s."""
         return float(np.exp(self.rate * (self.start - time)))
 
 
@@ -87,18 +88,18 @@ class Horizons:
     times: Array
     of_step: Array  #: horizons (num_shares,) in s of a run with a finer step or tolerance
     growth: Sequence[Growth]  #: line through ``times`` for each share
-    #: ε with the same horizon at the first share as the finer step, by the first line; 0 if the
-    #: finer step does not diverge, NaN without a line
+    #: ε that has the same horizon at the first share as the finer step, by ``growth``; 0 if the run
+    #: with the finer step does not diverge, NaN without a line
     step_change: float
 
     @property
     def limits(self) -> list[Literal["step", "physics", "nothing"]]:
-        """The limit of predictability at each share (num_shares,).
+        """The cause that limits predictability at each share (num_shares,).
 
         ``step``: the finer step has a larger effect than the largest change of the data, so that a
-            finer step extends the horizon. ``physics``: the changes of data have the larger effect.
-            ``nothing``: runs do not diverge to this share within the duration. If the growth is
-            known, its line decides for all shares, since horizons at large shares are random.
+        finer step extends the horizon. ``physics``: the change of the data has the larger effect.
+        ``nothing``: runs do not diverge to this share within the duration. If the growth rate is
+        known, ``step_change`` decides for all shares, since horizons at large shares are random.
         """
         largest = self.relatives[-1]
         limits: list[Literal["step", "physics", "nothing"]] = []
@@ -129,9 +130,9 @@ def measure_horizons(
     """Return the horizons of a motion for a finer step and for changes of each size.
 
     If runs with the largest change do not diverge to the first share, smaller changes are not run.
-    Runs that diverge to all shares end early. Few partners suffice for the growth at a small share;
-    its scatter measures the error. Horizons at large shares are random, and earlier with more
-    partners.
+    Runs that diverge to all shares end early. Few partners suffice for the growth rate at a small
+    share, whose error ``scatter`` measures. Horizons at large shares are random, and become earlier
+    with more partners.
 
     >>> kicked = Motion(ball, duration=1.0, velocity=[3.0])
     >>> horizons = measure_horizons(kicked, [1e-9, 1e-6], "velocity", observer="height")
@@ -173,14 +174,14 @@ def measure_horizons(
         progress(before + _STAGE * part)
 
     def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
-        """Run groups of members, and return their horizons (num_groups, num_shares) in s.
+        """Return the horizons (num_groups, num_shares) in s of groups of members.
 
         ``done`` is the completed fraction before these runs.
         """
         of_groups = np.full((len(groups), len(shares)), np.nan)
         for number, part in enumerate(_PARTS):
             left = [g for g in range(len(groups)) if np.isnan(of_groups[g]).any()]
-            requested = [member.shortened(part) for g in left for member in groups[g]]
+            requested = [member.shorten(part) for g in left for member in groups[g]]
             runs = iter(run_members(requested, executor, partial(report, done + number * _STAGE)))
             for g in left:
                 tips = [next(runs)[observer].values for _ in groups[g]]

@@ -232,7 +232,7 @@ def test_shortened_run_equals_the_start_of_the_whole_run(part: float) -> None:
     """Reference: the whole run."""
     motion = Motion(CHAOTIC, 2.0, 1e-2)
     whole = EnsembleMember(motion, "load", 0.0, FixedStep(1e-3), ("gap", "contact_force"))
-    some, all_ = run_members([whole.shortened(part), whole])
+    some, all_ = run_members([whole.shorten(part), whole])
     assert some.sizes["time"] == 1 + round(part * whole.motion.outputs)
     for name in whole.variables:
         assert np.array_equal(some[name], all_[name][: some.sizes["time"]]), name
