@@ -63,7 +63,7 @@ from runs.pipeline.statics import (
     statics,
 )
 from runs.pipeline.turning import shaper_lines, turning_lines
-from runs.report.formatting import milli, number
+from runs.report.formatting import milli, number, without_round_off
 from runs.report.tables import WIDE, Cell, Column, Table
 
 if TYPE_CHECKING:
@@ -262,7 +262,7 @@ def _clearances(joint: Joint) -> Iterator[str]:
             return
         both = [1e3 * clearance for clearance in joint.clearances(direction)]
         parts = [f"{one:g} {name}" for one, name in zip(both, names, strict=True)]
-        alike = f"± {both[0]:g}" + (" to the sides" if direction == "y" else "")
+        alike = f"± {both[0]:g}" + (", lateral" if direction == "y" else "")
         yield alike if both[0] == both[1] else ", ".join(parts)
 
 
@@ -319,7 +319,7 @@ def axial_forces(boom: Boom, static: Statics | None) -> Table:
     extremes = [_extreme_axial_force(boom, i, state) for i in range(len(boom.segments))]
     columns = [
         Column("segment", [one.name for one in boom.segments]),
-        Column("axial force", [force for force, _ in extremes], ".4g", "kN"),
+        Column("axial force", without_round_off([force for force, _ in extremes]), ".4g", "kN"),
         Column("axial stress", [stress for _, stress in extremes], ".4g", "MPa"),
     ]
     note = "Extreme values over all extensions; cylinder forces at t = 0."
@@ -424,12 +424,12 @@ def _reactions(state: StaticState, system: System) -> Table:
     """Return the table of support and contact reactions and contact compressions."""
     held = list(contact_and_support_reactions(state).values())
     moments: list[Cell] = [one.moment if abs(one.moment) > _NO_MOMENT else "" for one in held]
-    along: list[Cell] = [one.along or "" for one in held]
+    along: list[Cell] = [one or "" for one in without_round_off([one.along for one in held])]
     depths: list[Cell] = ["" if one.depth is None else one.depth for one in held]
     columns = [
         Column("segment", [one.segment for one in held]),
         Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in held]),
-        Column("force", [one.force for one in held], ".4g", "kN"),
+        Column("force", without_round_off([one.force for one in held]), ".4g", "kN"),
         *([Column("axial force", along, ".4g", "kN")] if any(along) else []),
         Column("moment", moments, ".4g", "kN m"),
         Column("contact\npenetration", depths, ".3g", "mm"),

@@ -40,5 +40,5 @@ def print_proofs(
     console.print(proved.governing(case.system), markup=False, highlight=False)
     failed = [one for one in proved.proofs if not one.holds]
     for one in failed:
-        say(message(f"{shorten(file)}: {one.text(case.system)}; {one.remedy}"))
+        say(message(f"{shorten(file)}: {one.text(case.system)}. Remedy: {one.remedy}"))
     return 1 if failed else 0

@@ -48,7 +48,7 @@ class ReducedShell:
     #: :func:`shell_model.stress.fields.gather_fields`
     fields: xr.Dataset | None
     #: largest reduction errors of all segments, ``contact_compliance`` relative to the local
-    #: compliance, NaN without contacts; ``readings``, the relative error of outputs such as the
+    #: compliance, NaN without contacts; ``deflections``, the relative error of outputs such as the
     #: tip. Natural frequencies are accurate up to ``frequency_limit_in_hz``.
     errors: dict[str, float]
     #: local compliances (num_rows,) of the contacts in m/N, see
@@ -129,7 +129,7 @@ def reduce_boom(
         fields=fields,
         errors={
             "contact_compliance": _largest(lost / local),
-            "readings": max(segment.output_error for segment in segments),
+            "deflections": max(segment.output_error for segment in segments),
             "frequency_limit_in_hz": min(segment.frequency_limit for segment in segments),
         },
         local_compliance=local,

@@ -148,9 +148,9 @@ class JointTable(ContactTable, BareJoint):
     """the table of the drive that telescopes the inner segment during the motion; without it the
     extension is constant"""
     lateral_stiffness: Annotated[Positive, In("N/m^n")] | None = None
-    """the contact stiffness to the sides in N/m^n; the same unless given"""
+    """the lateral contact stiffness in N/m^n; the same unless given"""
     lateral_exponent: Exponent | None = None
-    """the exponent n to the sides; the same unless given"""
+    """the exponent n of lateral contact; the same unless given"""
 
     @property
     def elastic_pads_key(self) -> str | None:

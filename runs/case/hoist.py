@@ -33,7 +33,7 @@ class WindTable(HistoryTable):
     """A horizontal force on a load that swings, for example by wind."""
 
     direction: Literal["x", "y"] = "y"
-    """the direction, which stands still: away from the crane at t = 0, or to the side"""
+    """the direction, which stands still: away from the crane at t = 0, or lateral"""
     force: Annotated[Number, In("N")] = 1.0
     """the force in N; a factor, 1 unless given, if the heading of its file has such a unit"""
 

@@ -22,7 +22,7 @@ class LoadTable(HistoryTable):
     segment: str
     """the name of the segment"""
     direction: Literal["z", "y"] = "z"
-    """up, or to the side"""
+    """up, or lateral"""
     x: Place | None = None
     """the x in m of a point load; along the whole segment unless given"""
     start: Place | None = Field(None, alias="from")
@@ -82,7 +82,7 @@ class GroundAccelerationTable(HistoryTable):
     """An acceleration of the ground, which acts as an inertia load on all masses."""
 
     direction: Literal["z", "y"] = "z"
-    """the direction: up, or to the side"""
+    """the direction: up, or lateral"""
     acceleration: Annotated[Number, In("m/s^2")] = 1.0
     """the acceleration in m/s^2; a factor, 1 unless given, if the heading of its file has
     such a unit"""
@@ -180,8 +180,10 @@ class CombinationTable(CaseTable):
     """whether prove and runs take the extremes of the motion under these loads, by the first model
     of beam elements, in place of those at rest"""
     proofs: tuple[ProofName, ...] = PROOFS
-    """the proofs that the combination demands: yield, plate, column, pad, cylinder and pin unless
-    given; deflection compares the tip with limits.tip_at_rest"""
+    """the proofs that the combination demands; a proof compares the design effect with the limit
+    design value (EN 13001-3-1): yield (static strength), plate (plate buckling), column (column
+    buckling), pad (pressure), cylinder (force) and pin (shear) unless given; deflection (static
+    tip deflection) compares with limits.tip_at_rest"""
 
 
 class SpectrumTable(CaseTable):

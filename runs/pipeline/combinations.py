@@ -9,7 +9,7 @@ reduce the stiffness.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -23,20 +23,21 @@ from runs.pipeline.largest_loads import BeamStates, StaticExtreme, beam_note, in
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import WallStress
 from runs.pipeline.wall_buckling import WallBuckling
+from runs.report.formatting import without_round_off
 from runs.report.tables import Column, Table
 
 # Mark of governing values in a table.
-_GOVERNS = " *"
+_GOVERNS = "\N{NO-BREAK SPACE}*"
 
 # Column heading of each kind of result. A key is the start of the names of these results.
 _KINDS = {
     "tip": "tip",
-    "tip to the side": "tip to\nthe side",
-    "stress": "stress",
-    "pad": "pad",
+    "lateral tip": "lateral\ntip",
+    "stress": "bending\nstress",
+    "pad": "pad\npressure",
     "contact": "contact\nforce",
     "cylinder force": "cylinder\nforce",
-    "foot": "foot\nforce",
+    "foot": "foot pin\nreaction",
 }
 
 
@@ -113,6 +114,7 @@ def combination_tables(
     system = case.system
     if not any(one.extremes for one in results):
         return
+    results = _without_round_off(results)
     columns = [Column("combination", [one.name for one in results])]
     for kind, heading in _KINDS.items():
         values = [one.largest(kind) for one in results]
@@ -134,9 +136,33 @@ def combination_tables(
         yield _envelope(results, system)
 
 
+def _without_round_off(results: Sequence[CombinationResult]) -> list[CombinationResult]:
+    """Return results with 0 in place of round-off, relative to the largest result of a unit."""
+    most: dict[str, float] = {}
+    for one in (one for result in results for one in result.extremes):
+        most[one.unit] = max(abs(one.largest), most.get(one.unit, 0.0))
+    return [
+        replace(
+            result,
+            extremes=[
+                one._replace(largest=without_round_off([one.largest], most[one.unit])[0])
+                for one in result.extremes
+            ],
+        )
+        for result in results
+    ]
+
+
 def _marked(one: StaticExtreme, most: float, system: System) -> str:
     text = in_units(one.largest, one.unit, system)
+    # A no-break space keeps the mark in the line of its number.
     return text + (_GOVERNS if abs(one.largest) == most else " " * len(_GOVERNS))
+
+
+def _title(name: str) -> str:
+    """Return the name of a result with the heading of its kind: ``pad pressure, fly``."""
+    kind, comma, part = name.partition(", ")
+    return f"{_KINDS.get(kind, kind)}{comma}{part}".replace("\n", " ")
 
 
 def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
@@ -151,7 +177,7 @@ def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
         max(pair, key=lambda one: abs(one[0].largest))[1] for pair in zip(least, most, strict=True)
     ]
     columns = [
-        Column("result", [*of_name]),
+        Column("result", [_title(name) for name in of_name]),
         Column("minimum", [in_units(one.largest, one.unit, system) for one, _ in least]),
         Column("maximum", [in_units(one.largest, one.unit, system) for one, _ in most]),
         Column("governing", governs),

@@ -6,7 +6,7 @@ The model has beam elements and the compliance of walls under pads, at the initi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -28,7 +28,7 @@ from runs.pipeline.proportions import CHECK_UNITS, tip_cautions
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import StaticResult, instants, positions, static_result
 from runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
-from runs.report.formatting import amount, number
+from runs.report.formatting import amount, number, without_round_off
 from runs.report.tables import Column, Table
 
 # Elements of the longest segment. The error of stresses under a uniform load is below 0.1 %.
@@ -147,16 +147,16 @@ class BeamStates(NamedTuple):
         boom, rests = self.boom, self.rests
         extremes = [_static_extreme("tip", "tip", "m", rests, [rest.tip for rest in rests])]
         if boom.spatial:
-            lateral = [rest.tip_lateral or 0.0 for rest in rests]
-            name = "tip to the side"
-            extremes.append(_static_extreme(name, name, "m", rests, lateral))
+            aside = [rest.tip_lateral or 0.0 for rest in rests]
+            name = "lateral tip"
+            extremes.append(_static_extreme(name, name, "m", rests, aside))
         for segment, fibres, curves in fibre_forces(self.model, self.positions, self.time):
             forces_at_rest = {name: values[:1] for name, values in curves.items()}
             fibre, _ = largest_stresses(segment, fibres, curves, forces_at_rest, self.time)
             stress = abs(fibre.stress)
             used = Utilisation("outer fibre", segment.name, fibre.x, stress, fibre.utilisation)
             name = f"stress, {segment.name}"
-            what = f"{name} at {system.text(fibre.x, 'm', 5)}"
+            what = f"bending {name} at {system.text(fibre.x, 'm', 5)}"
             initial = fibre.at_rest or 0.0
             extremes.append(StaticExtreme(name, what, "Pa", initial, stress, fibre.time, used))
         extremes += self._at_stations(system)
@@ -183,7 +183,7 @@ class BeamStates(NamedTuple):
             along = parts.pop() if "normal" in line.rows else np.zeros(len(self.rests))
             whole = np.linalg.norm([*parts, thrust + along], axis=0)
             name = f"foot, {segment.name}"
-            what = f"foot force at {system.text(x, 'm', 5)}"
+            what = f"foot pin reaction at {system.text(x, 'm', 5)}"
             yield _static_extreme(name, what, "N", self.rests, whole.tolist())
 
     def _at_stations(self, system: System) -> Iterator[StaticExtreme]:
@@ -196,14 +196,14 @@ class BeamStates(NamedTuple):
         ]
         for index, station in enumerate(rests[0].stations):
             loads = [rest.stations[index] for rest in rests]
-            to_side = " to the side" if station.direction == "y" else ""
-            where = f"{system.text(station.x, 'm', 5)}{to_side}"
+            lateral = ", lateral" if station.direction == "y" else ""
+            where = f"{system.text(station.x, 'm', 5)}{lateral}"
             # Stops come after the stations of joints.
             name, part = where, ""
             if index < len(boom.directions) * len(stations):
                 inner, number = stations[index % len(stations)]
                 part = boom.segments[inner].name
-                name = f"{part}, station {number}{to_side}"
+                name = f"{part}, station {number}{lateral}"
             if station.pressure is None:
                 forces = [load.force for load in loads]
                 what = f"contact force at {where}"
@@ -214,7 +214,9 @@ class BeamStates(NamedTuple):
                 Utilisation("pad", part, load.x, load.pressure or 0.0, load.utilisation)
                 for load in loads
             ]
-            yield _static_extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
+            yield _static_extreme(
+                f"pad, {name}", f"pad pressure at {where}", "Pa", rests, pressures, used
+            )
 
 
 def _static_extreme(
@@ -239,26 +241,36 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         extremes: the extremes of this boom.
     """
     used = [one.utilisation.value if one.utilisation else None for one in extremes]
+    most: dict[str, float] = {}
+    for one in extremes:
+        most[one.unit] = max(abs(one.largest), most.get(one.unit, 0.0))
+
+    def shown(values: Iterable[float]) -> list[str]:
+        pairs = zip(values, extremes, strict=True)
+        return [
+            in_units(without_round_off([value], most[one.unit])[0], one.unit, case.system)
+            for value, one in pairs
+        ]
+
     vary = any(one.time > 0.0 for one in extremes)
     columns = [
         Column("", [one.what for one in extremes]),
-        Column("t = 0", [in_units(one.initial, one.unit, case.system) for one in extremes]),
+        Column("t = 0", shown(one.initial for one in extremes)),
     ]
     if vary:
-        largest = [in_units(one.largest, one.unit, case.system) for one in extremes]
         columns += [
-            Column("maximum", largest),
+            Column("maximum", shown(one.largest for one in extremes)),
             Column("time of\nmaximum, s", [f"{one.time:.4g}" for one in extremes]),
         ]
     if any(used):
         columns.append(Column("utilisation", used, ".3g", "%"))
     more = ["Extensions are those at t = 0."] if boom.telescopes else []
     if any(joint.padded for joint in boom.joints):
-        more.append("The plate stresses at the pads are not included; a run with a shell has them.")
+        more.append("Local plate stresses are not included; a run with a shell has them.")
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
     kinds = (
-        "Stresses are outer-fibre stresses. Contact forces act on the outer segment, upwards "
-        "where positive."
+        "Bending stresses are axial stresses in outer fibres. Contact forces act on the outer "
+        "segment, upwards where positive."
     )
     return Table(title, columns, [beam_note(boom), kinds, *more])
 
@@ -267,11 +279,9 @@ def beam_note(boom: Boom) -> str:
     """Return a sentence on the model of the statics."""
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
     walls = (
-        ", with the compliance of walls under pads"
-        if any(one.padded for one in boom.joints)
-        else ""
+        " with the compliance of walls under pads" if any(one.padded for one in boom.joints) else ""
     )
-    return f"Estimate by a {theory} beam{walls}."
+    return f"These are estimates by a{'' if theory == 'Timoshenko' else 'n'} {theory} beam{walls}."
 
 
 def in_units(value: float, unit: str, system: System) -> str:
@@ -300,7 +310,7 @@ def overload_cautions(
         )
     ]
     return far + [
-        f"caution: at rest under the loads at t = {one.time:.4g} s the utilisation is {used}"
+        f"caution: static utilisation under the loads at t = {one.time:.4g} s: {used}"
         for one in extremes
         if (used := one.utilisation) is not None and (used.value or 0.0) > 1.0
     ]

@@ -52,8 +52,8 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     if better:
         listed = "; ".join(f"{what} ({milli(there)} mm)" for _, there, what in better)
         yield (
-            "Remedies, with the static deflection of the tip under these loads; a run with a shell "
-            f"gives the plate stresses at the pads: {listed}."
+            "Remedies, with the static tip deflection under these loads (a run with a shell gives "
+            f"their local plate stresses): {listed}."
         )
 
 
@@ -82,8 +82,8 @@ def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
     if not names or not any(joint.padded for joint in boom.joints):
         return ""
     return (
-        f"Walls under pads are rigid in {join_words(names)}. Shells, calibrated beams and `check` "
-        "include the compliance of these walls."
+        f"Walls under pads are rigid in {join_words(map(repr, names))}. Shells, calibrated beams "
+        "and `check` include the compliance of these walls."
     )
 
 
@@ -107,8 +107,8 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     bearing = f"pads that bear on the corners, bears = 'corner'{without}"
     yield bearing, _with_pads(boom, lambda *_: corner)
     collars = (
-        "collars as thick as the walls on both segments at each pad, over half the height of the "
-        "box to both sides, where two of them per joint are in the way of telescoping"
+        "collars on both segments at each pad, as thick as the walls, over half the height of the "
+        "box to both sides; two of them per joint obstruct telescoping"
     )
     yield collars, _with_collars(boom)
 

@@ -172,7 +172,7 @@ def panel_table(panels: Sequence[PanelBuckling], system: System) -> Table:
         Column("buckling factor", [one.factor for one in panels], ".3g"),
     ]
     note = (
-        "Static state under the largest loads. Walls are long panels on simple supports, with "
+        "Static state under the maximum loads. Walls are long panels on simple supports, with "
         "k = 4 in compression, 23.9 in bending, 5.34 in shear, and their interaction; pad forces "
         "are neglected."
     )

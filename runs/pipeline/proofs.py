@@ -8,6 +8,7 @@ of each part of the boom is kept.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from textwrap import fill
 from typing import NamedTuple
 
 import numpy as np
@@ -29,54 +30,97 @@ from runs.pipeline.panels import (
 )
 from runs.report.tables import Column, Table
 
-# Formula of each proof.
-FORMULAS: Mapping[str, str] = {
-    "yield": (
+# Definition of a proof, for the notes of tables.
+DEFINITION = "A proof compares the design effect with the limit design value (EN 13001-3-1)."
+
+
+class Kind(NamedTuple):
+    """Kind of proof."""
+
+    name: str  #: name in tables and sentences
+    proof: str  #: full name of the proof
+    formula: str  #: formula and source
+    remedy: str  #: remedy if a proof fails
+
+
+# Kinds of proofs by their keys in results.
+KINDS: Mapping[str, Kind] = {
+    "yield": Kind(
+        "static strength",
+        "static strength",
         "√(σ² + 3 τ²) ≤ f_y(t)/γ; σ of outer fibres, τ mean of the wall of thickness t "
-        "(EN 1993-1-1, 6.2.1)"
+        "(EN 1993-1-1, 6.2.1)",
+        "thicker walls there, a larger section or stronger steel",
     ),
-    "plate": (
+    "patch": Kind(
+        "local plate stress",
+        "static strength, local plate stress",
+        "σ_v ≤ f_y/γ; von Mises stress of the shell, mean over half a wall near a station or "
+        "support",
+        "a collar or thicker walls there, longer pads, or pads nearer the webs",
+    ),
+    "plate": Kind(
+        "plate buckling",
+        "elastic stability, plate buckling",
         "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ and χ at √(α_ult/α_cr), α_cr by panel formulas "
-        "(EN 1993-1-5, 10)"
+        "(EN 1993-1-5, 10)",
+        "a thicker, narrower or stiffened wall there",
     ),
-    "patch": "σ_v ≤ f_y/γ; mean von Mises stress of the shell over half a wall near a force",
-    "buckling": (
+    "buckling": Kind(
+        "plate buckling, shell",
+        "elastic stability, plate buckling, shell",
         "σ_v ≤ ρ f_y/γ; α_cr is the lowest factor of the shell, ρ the lower of ρ and χ at "
-        "√(f_y/(σ_v α_cr)) (EN 1993-1-5, 10)"
+        "√(f_y/(σ_v α_cr)) (EN 1993-1-5, 10)",
+        "a thicker, narrower or stiffened wall there, or a collar at the pads",
     ),
-    "column": "N ≤ N_cr/γ with closed contacts; stresses and tip include second-order effects of N",
-    "pad": "F/(length · width) ≤ allowable pressure/γ, for one pad of a pair",
-    "cylinder": "F ≤ capacity/γ",
-    "pin": "F ≤ 0.6 n A f_up/γ, n shear planes (EN 1993-1-8, table 3.10)",
-    "deflection": "tip at rest ≤ limits.tip_at_rest",
-    "fatigue": "Σ n/N ≤ 1, nominal ranges, rainflow and Miner (EN 1993-1-9, 7.1 and A.5)",
-}
-
-
-# Remedy if a proof fails.
-_REMEDIES: Mapping[str, str] = {
-    "yield": "thicker walls there, a larger section or stronger steel",
-    "plate": "a thicker, narrower or stiffened wall there",
-    "patch": "a collar or thicker walls there, longer pads, or pads nearer the webs",
-    "buckling": "a thicker, narrower or stiffened wall there, or a collar at the pads",
-    "column": "larger sections, a smaller extension or less force along the boom",
-    "pad": "longer or wider pads, or a longer overlap",
-    "cylinder": "a larger cylinder, or a longer lever arm to the foot",
-    "pin": "a thicker pin, or more shear planes",
-    "deflection": "larger sections, less play or a longer overlap",
-    "fatigue": "a better detail, its place at less stress, or fewer repeats",
+    "column": Kind(
+        "column buckling",
+        "elastic stability, column buckling",
+        "N ≤ N_cr/γ with closed contacts; stresses and tip include second-order effects of N",
+        "larger sections, a smaller extension or less force along the boom",
+    ),
+    "pad": Kind(
+        "pad pressure",
+        "pad pressure",
+        "F/(length · width) ≤ allowable pressure/γ, for one pad of a pair",
+        "longer or wider pads, or a longer overlap",
+    ),
+    "cylinder": Kind(
+        "cylinder force",
+        "cylinder force",
+        "F ≤ capacity/γ",
+        "a larger cylinder, or a longer lever arm to the foot pin",
+    ),
+    "pin": Kind(
+        "pin shear",
+        "static strength of pins",
+        "F ≤ 0.6 n A f_up/γ, n shear planes (EN 1993-1-8, table 3.10)",
+        "a thicker pin, or more shear planes",
+    ),
+    "deflection": Kind(
+        "static tip deflection",
+        "static tip deflection",
+        "deflection under the loads of the combination ≤ limits.tip_at_rest",
+        "larger sections, less play or a longer overlap",
+    ),
+    "fatigue": Kind(
+        "fatigue strength",
+        "fatigue strength",
+        "Σ n/N ≤ 1, nominal ranges, rainflow and Miner (EN 1993-1-9, 7.1 and A.5)",
+        "a better detail, its place at less stress, or fewer repeats",
+    ),
 }
 
 
 class Proof(NamedTuple):
-    """Demand on a part of the boom, and its resistance.
+    """Design effect on a part of the boom, and its limit design value.
 
     Args:
-        kind: kind of the proof, a key of :data:`FORMULAS`.
+        kind: kind of the proof, a key of :data:`KINDS`.
         part: the part of the boom.
         place: name of the part and of its governing wall or detail.
         x: position of the governing cross-section in m; None for other parts.
-        demand, resistance: in ``unit``; the resistance is divided by its partial factor.
+        demand, resistance: design effect and limit design value, in ``unit``.
         unit: SI unit.
         combination: governing combination and load case, or governing spectrum.
     """
@@ -92,17 +136,17 @@ class Proof(NamedTuple):
 
     @property
     def utilisation(self) -> float:
-        """The demand over the resistance."""
+        """The design effect over the limit design value."""
         return self.demand / self.resistance
 
     @property
     def remedy(self) -> str:
         """The remedy if the proof fails."""
-        return _REMEDIES[self.kind]
+        return KINDS[self.kind].remedy
 
     @property
     def holds(self) -> bool:
-        """True if the demand does not exceed the resistance."""
+        """True if the design effect does not exceed the limit design value."""
         return self.demand <= self.resistance
 
     def text(self, system: System) -> str:
@@ -110,11 +154,12 @@ class Proof(NamedTuple):
         both = (in_units(one, self.unit, system) for one in (self.demand, self.resistance))
         demand, resistance = (one.removesuffix(" 1") for one in both)
         relation = "≤" if self.holds else "exceeds"
-        place = "" if self.place == self.kind else f", {self.place}"
-        place += "" if self.x is None else f" at {system.text(self.x, 'm')}"
+        name, cause = KINDS[self.kind].name, "spectrum" if self.kind == "fatigue" else "combination"
+        place = "" if self.place in name else f", {self.place}"
+        place += "" if self.x is None else f" at x = {system.text(self.x, 'm')}"
         return (
-            f"{self.kind}{place}: {demand} {relation} {resistance} "
-            f"({100.0 * self.utilisation:.3g} %), combination {self.combination!r}"
+            f"{name}{place}: {demand} {relation} {resistance} "
+            f"({100.0 * self.utilisation:.3g} %), {cause} {self.combination!r}"
         )
 
 
@@ -134,7 +179,7 @@ class Proofs(NamedTuple):
             if failed
             else f"All {len(self.proofs)} proofs are satisfied"
         )
-        change = f"; {governs.remedy}" if failed else ""
+        change = f". Remedy: {governs.remedy}" if failed else ""
         return f"{text}. Governing: {governs.text(system)}{change}."
 
 
@@ -327,24 +372,24 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     steels = [one.name for one in boom.segments if one.yield_strength is None]
     if steels and requested_proofs & {"yield", "plate"}:
         names = ", ".join(steels)
-        yield f"No proof: yield and plate buckling of {names}, without yield strength."
+        yield f"No proof of static strength and plate buckling of {names}, without yield strength."
     if "yield" in requested_proofs and not any(state.walls for state in states):
-        yield "No proof: local plate stress at pads, without a shell."
+        yield "No proof of local plate stress, without a shell."
     pressures = any(one.utilisation is not None for one in beam.rests[0].stations)
     if "pad" in requested_proofs and boom.joints and not pressures:
-        yield "No proof: pads, without allowable_pressure."
+        yield "No proof of pad pressure, without allowable_pressure."
     if "cylinder" in requested_proofs and any(one.capacity is None for one in boom.cylinders):
-        yield "No proof: cylinder, without capacity."
+        yield "No proof of cylinder force, without capacity."
     pins = [one.foot.pin for one in boom.segments if one.foot is not None]
     pins += [one.pin for one in boom.cylinders]
     if "pin" in requested_proofs and not any(pins):
-        yield "No proof: pins, without the table pin."
+        yield "No proof of pin shear, without the table pin."
     if not case.spectra:
-        yield "No proof: fatigue, without [[spectrum]]."
+        yield "No proof of fatigue strength, without [[spectrum]]."
     if "deflection" not in requested_proofs:
-        yield "No proof: deflection, which no combination lists."
+        yield "No proof of static tip deflection, since no combination lists deflection."
     elif case.limits is None or case.limits.tip_at_rest is None:
-        yield "No proof: deflection, without limits.tip_at_rest."
+        yield "No proof of static tip deflection, without limits.tip_at_rest."
 
 
 def proof_table(result: Proofs, case: Case) -> Table:
@@ -355,17 +400,18 @@ def proof_table(result: Proofs, case: Case) -> Table:
         pairs = zip(values, proofs, strict=True)
         return [in_units(value, one.unit, system).removesuffix(" 1") for value, one in pairs]
 
-    at = ["" if one.x is None else f"{system.of(one.x, 'm'):.4g}" for one in proofs]
+    # Narrow columns keep the table within 80 characters.
+    at = ["" if one.x is None else f"\n{system.text(one.x, 'm')}" for one in proofs]
+    used = [f"{100.0 * one.utilisation:.3g} % {'✓' if one.holds else '✗'}" for one in proofs]
     columns = [
-        Column("proof", [one.kind for one in proofs]),
-        Column("place", [one.place for one in proofs]),
-        Column(f"x\n{system.label('m')}", at),
-        Column("demand", shown([one.demand for one in proofs])),
-        Column("resis-\ntance", shown([one.resistance for one in proofs])),
-        Column("utilis-\nation", [f"{100.0 * one.utilisation:.3g} %" for one in proofs]),
-        Column("", ["✓" if one.holds else "✗" for one in proofs]),
-        Column("combi-\nnation", [one.combination for one in proofs]),
+        Column("proof of", [fill(KINDS[one.kind].name, 12) for one in proofs]),
+        Column("place, x", [one.place + x for one, x in zip(proofs, at, strict=True)]),
+        Column("design\neffect", shown([one.demand for one in proofs])),
+        Column("limit\nvalue", shown([one.resistance for one in proofs])),
+        Column("utilis-\nation", used),
+        Column("combi-\nnation", [one.combination.replace(", ", ",\n") for one in proofs]),
     ]
     kinds = dict.fromkeys(one.kind for one in proofs)
-    notes = [f"{kind}: {FORMULAS[kind]}." for kind in kinds] + result.notes
-    return Table("Proofs", columns, notes, "proofs", ["✗"])
+    formulas = [f"Proof of {KINDS[kind].proof}: {KINDS[kind].formula}." for kind in kinds]
+    notes = [DEFINITION, *formulas, *result.notes]
+    return Table("Proofs", columns, notes, "proofs", [one for one in used if "✗" in one])

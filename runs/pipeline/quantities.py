@@ -37,7 +37,7 @@ _RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSumma
 
 # Static, dynamic and accuracy quantities.
 QUANTITIES = (
-    Metric("tip_at_rest", "m", "tip at rest", TO_MILLI, "mm"),
+    Metric("tip_at_rest", "m", "static tip deflection (maximum load)", TO_MILLI, "mm"),
     Metric("tip", "m", "tip deflection", TO_MILLI, "mm"),
     Metric("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
     Metric("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
@@ -204,16 +204,16 @@ def static_limit_lines(table: LimitsTable | None, tips: Sequence[float]) -> Iter
     """
     for limit in case_limits(table):
         if not tips or limit.quantity.name not in ("tip", "tip_at_rest"):
-            yield f"Limit {limit}: a run decides it."
+            yield f"Limit {limit}: a run decides."
             continue
         tip = abs(tips[0])
-        rests = f"under the largest loads the tip rests at {limit.format(tip)}"
+        static = f"the static tip deflection (maximum load) is {limit.format(tip)}"
         if not limit.is_met_by(tip):
-            yield f"caution: the limit {limit} is exceeded: {rests}"
+            yield f"caution: the limit {limit} is exceeded: {static}"
         elif limit.quantity.name == "tip":
-            yield f"Limit {limit}: {rests} and moves farther; a run decides it."
+            yield f"Limit {limit}: {static}, and the motion adds to it; a run decides."
         else:
-            yield f"Limit {limit}: {rests}, within the limit."
+            yield f"Limit {limit}: met, {limit.format(tip)}."
 
 
 def check_limits(results: Results) -> Iterator[LimitCheck]:

@@ -41,12 +41,12 @@ HAS_RAINFLOW = find_spec("rainflow") is not None
 # Unit of detail categories in Pa.
 MEGA = 1.0e6
 
-# Strength of each kind of part.
-LIMITS: Mapping[str, str] = {
-    "plate": "yield",
-    "outer fibre": "yield",
-    "pad": "the allowable pressure",
-    "detail": "the fatigue life",
+# Name of the load of each kind of part, and its limit.
+LIMITS: Mapping[str, tuple[str, str]] = {
+    "plate": ("local plate stress", "yield"),
+    "outer fibre": ("bending stress", "yield"),
+    "pad": ("pad pressure", "the allowable pressure"),
+    "detail": ("fatigue damage", "the fatigue life"),
 }
 
 # Number of classes of stored stress ranges.
@@ -333,9 +333,10 @@ class Utilisation(NamedTuple):
         """Return value, location and comparison with 100 % as text; the value is not None."""
         assert self.value is not None
         relation = "exceeds" if self.value > 1.0 else "below"
+        name, limit = LIMITS[self.part]
         return (
-            f"{100.0 * self.value:.3g} % at {self.part}, {self.segment} segment, "
-            f"x = {self.x:.4g} m: {relation} {LIMITS[self.part]}"
+            f"{100.0 * self.value:.3g} % by {name} ({self.segment} segment, x = {self.x:.4g} m): "
+            f"{relation} {limit}"
         )
 
 

@@ -29,10 +29,12 @@ from runs.report.tables import Table
 # Parts of the report in which figures are numbered, in order.
 PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
 
+# Text for stages of the computation with a name of the program.
+_STAGES = {"rows": "contacts and friction"}
 # Text for each error of the reduction of a shell.
 _REDUCTION_ERRORS = {
     "contact_compliance": "reduction error of the local contact compliance {}",
-    "readings": "of the deflections of tip and head {}",
+    "deflections": "of the deflections of tip and head {}",
     "frequency_limit_in_hz": "natural frequencies accurate up to {} Hz",
 }
 
@@ -116,7 +118,10 @@ def _costs(results: Results) -> Mapping[str, str]:
     """Return a text on stages, computing times and reduction errors for each model."""
     costs = {}
     for name, model in results.summary.models.items():
-        parts = [f"{stage} {seconds:.2f} s" for stage, seconds in model.seconds.items()]
+        parts = [
+            f"{_STAGES.get(stage, stage)} {seconds:.2f} s"
+            for stage, seconds in model.seconds.items()
+        ]
         parts += [
             text.format(number(error, 2))
             for key, text in _REDUCTION_ERRORS.items()

@@ -108,9 +108,15 @@ def friction(run: FigureContext) -> list[Figure]:
     for axes, (i, station) in zip(panels, places, strict=True):
         run.line(axes, name, run.time, running_mean(run, force[:, i]), linewidth=1.1, alone=True)
         axes.set(title=station, ylabel="force (kN)")
+    signs = "Positive where it pushes the inner segment up."
+    if any(label.endswith("lateral") for label in run.stations()):
+        signs = (
+            "At lateral stations the force is vertical, positive where it pushes the inner segment "
+            "up; at other stations it is lateral, positive towards larger y."
+        )
     caption = (
-        f"Force of dry friction on {name} at each station, mean over "
-        f"{TO_MILLI * FORCE_WINDOW:g} ms. Positive where it pushes the inner segment up. Where "
+        f"Force of dry friction in {name} at each station, mean over "
+        f"{TO_MILLI * FORCE_WINDOW:g} ms. {signs} Where "
         f"the segments stick, it is less than the coefficient times the normal force."
     )
     title = f"{name}: friction forces up to {highest(np.abs(force).ravel()):.2g} kN"

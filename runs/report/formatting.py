@@ -34,6 +34,8 @@ def number(value: float | None, digits: int = 3) -> str:
 
 
 SHOWN = {"m": ("mm", TO_MILLI), "N": ("kN", TO_KILO), "N m": ("kN m", TO_KILO)}
+# Fraction of the largest magnitude of a column that counts as zero.
+ROUND_OFF = 1.0e-6
 # Decimals of displayed amounts, beyond which digits are round-off.
 _DECIMALS = 9
 SHOWN |= {"Pa": ("MPa", TO_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
@@ -43,6 +45,12 @@ def amount(value: float, unit: str) -> str:
     """Return an amount in SI units as text in its display unit."""
     name, factor = SHOWN[unit]
     return f"{number(round(factor * value, _DECIMALS))} {name}".strip()
+
+
+def without_round_off(values: Sequence[float], most: float | None = None) -> list[float]:
+    """Return values with 0 in place of round-off, relative to the largest of them or ``most``."""
+    most = max(map(abs, values), default=0.0) if most is None else most
+    return [value if abs(value) > ROUND_OFF * most else 0.0 for value in values]
 
 
 def milli(value: float, digits: int = 4) -> str:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -17,14 +18,12 @@ from runs.pipeline.proofs import proof_table
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import StaticResult
 from runs.report.figure_context import extension_note
-from runs.report.formatting import amount, number
+from runs.report.formatting import amount, number, without_round_off
 from runs.report.model_tables import metric_columns
 from runs.report.tables import Cell, Column, Table
 
 # Relative difference below which an effect is negligible.
 NEGLIGIBLE = 0.005
-# Fraction of the largest force in a column below which a force counts as zero.
-ROUND_OFF = 1.0e-9
 
 
 def result_tables(results: Results) -> list[Table]:
@@ -96,7 +95,7 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
 
 def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
     places = dict.fromkeys(station.place for rest in rests.values() for station in rest.stations)
-    columns = [Column("station", [f"x = {place} m" for place in places])]
+    columns = [Column("station", [_station(place) for place in places])]
     for name, rest in rests.items():
         forces = {one.place: one.force for one in rest.stations}
         if forces:
@@ -127,10 +126,8 @@ def _reaction_table(results: Results) -> Table:
 
 def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
     """Yield a column of forces, with 0 in place of round-off; nothing if all forces are 0."""
-    most = max(map(abs, carried), default=0.0)
-    if most > 0.0:
-        cells = [each if abs(each) > ROUND_OFF * most else 0.0 for each in carried]
-        yield Column(title, cells, form, unit)
+    if any(carried):
+        yield Column(title, without_round_off(carried), form, unit)
 
 
 def mode_table(results: Results) -> Table:
@@ -183,9 +180,15 @@ def times(peak: Peak) -> str:
     return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 
+def _station(place: str) -> str:
+    """Return the position of a station, from its name in the results: ``x = 3.8 m, lateral``."""
+    x, *more = re.split("(?=[y#])", place)
+    return ", ".join([f"x = {x} m", *("lateral" if one == "y" else one for one in more)])
+
+
 def _named(what: str, where: str) -> str:
     if what == "contact force":
-        return f"{what}, x = {where} m"
+        return f"{what}, {_station(where)}"
     if what == "deflection":
         return f"maximum dynamic {where} deflection"
     if what == "deflection at rest":
@@ -329,7 +332,7 @@ def pad_table(results: Results) -> Table:
 
 
 def stress_table(results: Results) -> Table:
-    """Return the table of maximum stresses: outer fibres of all models, plates of shells."""
+    """Return the table of bending stresses of all models, and local plate stresses of shells."""
     rows: list[Sequence[Cell]] = []
     for name, motion in results.motions.items():
         walls = {wall.segment: wall for wall in sorted(motion.walls, key=lambda wall: wall.patch)}
@@ -341,19 +344,21 @@ def stress_table(results: Results) -> Table:
     columns = (
         "model",
         "segment",
-        ("outer fibre", ".4g", "MPa"),
+        ("bending stress", ".4g", "MPa"),
         ("at x", ".4g", "m"),
         ("at", ".3f", "s"),
         ("utilisation", ".3g", "%"),
-        ("plate, patch mean", ".4g", "MPa"),
-        ("plate utilisation", ".3g", "%"),
+        ("local plate stress", ".4g", "MPa"),
+        ("its utilisation", ".3g", "%"),
     )
     notes = (
-        "Outer fibre: axial stress from section forces. Plate: von Mises stress with plate "
-        "bending, mean over a patch of half a wall near stations and supports. Utilisation: "
-        "fraction of the yield strength.",
+        "Bending stress: axial stress in an outer fibre, from section forces. Local plate stress: "
+        "von Mises stress with plate bending, mean over a patch of half a wall near pads, other "
+        "contacts and supports. Utilisations are fractions of the yield strength.",
     )
-    return Table.of_rows("stress", "Stress", columns, rows, notes, sparse=True)
+    return Table.of_rows(
+        "stress", "Bending stress and local plate stress", columns, rows, notes, sparse=True
+    )
 
 
 def buckling_table(results: Results) -> Table:
@@ -416,7 +421,7 @@ def life_table(results: Results) -> Table:
     if any(life.life_damage is not None for life in lives):
         columns.append(Column("damage of the life", [one.life_damage for one in lives], ".3g"))
     notes = [
-        "Rainflow ranges of the outer fibre's stress where it varies most. Damage-equivalent "
+        "Rainflow ranges of the bending stress where it varies most. Damage-equivalent "
         "range: one cycle of this range causes the damage of a run, on an S-N curve of slope 3."
     ]
     if len(columns) > 6:

@@ -363,7 +363,7 @@ def describe_one(results: Results, path: Path) -> Figure:
     if above:
         motion = motion.assign(tip=motion["tip_lateral"])
     when, tip = _instant(seen["when"], motion)
-    state = f"{model!r}{above}: {when}{tip}" + (" to the side" if above and tip else "")
+    state = f"{model!r}{above}: {when}{tip}" + (", lateral" if above and tip else "")
     which = f" of joint {seen['joint']}" if seen["joint"] else ""
     title, caption = {
         "boom": (

@@ -85,7 +85,7 @@ def summary_table(results: Results) -> Table | None:
             "Foot pin reaction, maximum", _each(designs, "reaction, across and along"), unit="kN"
         ),
         Column("Bending stress, maximum (utilisation)", bending, unit="MPa"),
-        Column("Plate stress at pads (patch mean, utilisation)", plates, unit="MPa"),
+        Column("Local plate stress, maximum (utilisation)", plates, unit="MPa"),
         Column("Plate buckling factor, lowest (segment)", [_buckling(one) for one in designs]),
         Column("Fatigue damage (Miner)", damages, ".3g"),
     )
@@ -118,7 +118,7 @@ def deviation_note(results: Results) -> str:
     if not deviations:
         return ""
     behind = [name for name in results.summary.models if name not in results.main_models]
-    more = f" Tables and figures below include {join_words(behind)}." if behind else ""
+    more = f" Tables and figures below include {join_words(map(repr, behind))}." if behind else ""
     return (
         f"Deviation of the static tip deflection (maximum load) from {reference}: "
         f"{', '.join(deviations)}.{more}"
@@ -268,12 +268,17 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     strengths = _span(one.yield_strength for one in results.boom.segments)
     if strengths:
         yield f"Stresses: % of the yield strength, {strengths}."
+    if "Local plate stress, maximum (utilisation), MPa" in rows:
+        yield (
+            "Local plate stress: von Mises stress with plate bending, mean over a patch of half a "
+            "wall near pads, other contacts and supports."
+        )
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
             f"Stresses of single elements beside contact lines are larger ({join_words(most)}) and "
-            "grow with mesh refinement; the table of wall forces has their places."
+            "grow with mesh refinement; the table of section forces of walls gives their positions."
         )
 
 
@@ -335,7 +340,10 @@ def limit_table(results: Results) -> Table | None:
         for name in results.main_models
     ]
     first = results.main_models[0]
-    notes = [f"The limits apply to {first}, or to the next model if {first} has no value."]
+    notes = [
+        f"The limits apply to {first}, or to the next model if {first} has no value. Results are "
+        "those of the run; proofs compare the combinations with the limits."
+    ]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 
 

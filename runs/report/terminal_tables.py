@@ -152,6 +152,6 @@ def _model_notes(results: Results) -> Iterator[str]:
             yield (
                 f"{name}: {model.modes} generalised coordinates. Reduction errors: local contact "
                 f"compliance {number(errors['contact_compliance'], 1)}, deflections of tip and "
-                f"head {number(errors['readings'], 1)}. Mesh error of the local compliance: "
+                f"head {number(errors['deflections'], 1)}. Mesh error of the local compliance: "
                 f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}"
             )

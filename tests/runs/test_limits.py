@@ -82,15 +82,15 @@ def test_limits_are_in_the_units_of_the_case() -> None:
 def test_check_compares_limits_with_the_tip_at_rest() -> None:
     """Reference: analytic, q L⁴/(8 E J) = 16 mm; exact words."""
     loose = reading.load(write("tip_at_rest = 0.02\ntip = 0.02\nfirst_frequency = 3.4"))
-    rests = "under the largest loads the tip rests at 16 mm"
+    rests = "the static tip deflection (maximum load) is 16 mm"
     assert limit_sentences(loose) == [
-        f"Limit tip at rest ≤ 20 mm: {rests}, within the limit.",
-        f"Limit tip deflection ≤ 20 mm: {rests} and moves farther; a run decides it.",
-        "Limit first frequency ≥ 3.4 Hz: a run decides it.",
+        "Limit static tip deflection (maximum load) ≤ 20 mm: met, 16 mm.",
+        f"Limit tip deflection ≤ 20 mm: {rests}, and the motion adds to it; a run decides.",
+        "Limit first frequency ≥ 3.4 Hz: a run decides.",
     ]
     tight = reading.load(write("tip_at_rest = 0.01\ntip = 0.015"))
     assert limit_sentences(tight) == [
-        f"caution: the limit tip at rest ≤ 10 mm is exceeded: {rests}",
+        f"caution: the limit static tip deflection (maximum load) ≤ 10 mm is exceeded: {rests}",
         f"caution: the limit tip deflection ≤ 15 mm is exceeded: {rests}",
     ]
 
@@ -143,7 +143,7 @@ def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
     console = Console(width=80, legacy_windows=False)
     with console.capture() as captured:
         output.print_ranges(data, planned, console)
-    shown = f"beam: tip at rest ≤ {1e3 * limit:.4g} mm at 2 of 4 points"
+    shown = f"beam: static tip deflection (maximum load) ≤ {1e3 * limit:.4g} mm at 2 of 4 points"
     assert shown in captured.get().splitlines()
     (axes,) = (axes for axes in sheets[0].axes if "dotted: limit" in axes.get_title(loc="left"))
     line = axes.lines[-1]

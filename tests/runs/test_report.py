@@ -289,9 +289,9 @@ POOR_MESH = (
 @pytest.mark.parametrize(
     ("changes", "line"),
     [
-        ({"modes": 6, "reduction_errors": {"contact_compliance": 0.009, "readings": 0.0}}, ""),
+        ({"modes": 6, "reduction_errors": {"contact_compliance": 0.009, "deflections": 0.0}}, ""),
         (
-            {"modes": 6, "reduction_errors": {"contact_compliance": 0.93, "readings": 0.0}},
+            {"modes": 6, "reduction_errors": {"contact_compliance": 0.93, "deflections": 0.0}},
             POOR_REDUCTION,
         ),
         ({"mesh_error": None}, ""),
@@ -308,7 +308,7 @@ def test_cautions_against_a_poor_shell(
 
 def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     name = str(results.trajectories["model"].values[0])
-    errors = {"contact_compliance": 2.4e-9, "readings": 0.013, "frequency_limit_in_hz": 84.6}
+    errors = {"contact_compliance": 2.4e-9, "deflections": 0.013, "frequency_limit_in_hz": 84.6}
     shell = {"reduction_errors": errors, "mesh_error": 0.26, "seconds": {"reduction": 1.204}}
     page = render(changed(results, name, **shell), Addition(), [], [])
     assert (

@@ -139,7 +139,7 @@ def test_stresses_near_the_yield_strength_are_marked(results: Results) -> None:
     """Reference: by hand, 300 and 330 MPa, then 340 and 374 MPa of 355 MPa."""
     fibre, wall = (
         "Bending stress, maximum (utilisation), MPa",
-        "Plate stress at pads (patch mean, utilisation), MPa",
+        "Local plate stress, maximum (utilisation), MPa",
     )
     near = summary_table(with_stress(results, 300e6))
     found = cells(near)
@@ -158,9 +158,9 @@ def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> 
     """Reference: by hand, as above. Without a yield strength there is no verdict."""
     assert utilisation_verdict(results) == ""
     assert utilisation_verdict(with_stress(results, 340e6)) == (
-        "Utilisation 105 % at plate, outer segment, x = 10 m: exceeds yield; 95.8 % at outer "
-        "fibre, outer segment, x = 2 m: below yield. No safety factor is included. No yield "
-        "strength is given of outer and inner."
+        "Utilisation 105 % by local plate stress (outer segment, x = 10 m): exceeds yield; 95.8 % "
+        "by bending stress (outer segment, x = 2 m): below yield. No safety factor is included. No "
+        "yield strength is given of outer and inner."
     )
 
 
@@ -172,11 +172,16 @@ def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
     told = with_stress(replace(results, case=steel), 300e6)
     unpressed, known = replace(pad, force=0.0, pressure=0.0), replace(pad, utilisation=1.35)
     for one, start, end in (
-        (pad, "Utilisation 93 % at plate", "No allowable pressure is given of pads of inner."),
-        (unpressed, "Utilisation 93 % at plate", "No safety factor is included."),
+        (
+            pad,
+            "Utilisation 93 % by local plate stress",
+            "No allowable pressure is given of pads of inner.",
+        ),
+        (unpressed, "Utilisation 93 % by local plate stress", "No safety factor is included."),
         (
             known,
-            "Utilisation 135 % at pad, inner segment, x = 10 m: exceeds the allowable pressure",
+            "Utilisation 135 % by pad pressure (inner segment, x = 10 m): exceeds the allowable "
+            "pressure",
             "No safety factor is included.",
         ),
     ):
@@ -190,11 +195,11 @@ def test_exhausted_fatigue_life_exceeds_the_limit(results: Results) -> None:
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
     told = answering(results, own={"life": [life]})
     assert utilisation_verdict(told) == (
-        "Utilisation 320 % at detail, inner segment, x = 10 m: exceeds the fatigue life. No "
-        "safety factor is included. No yield strength is given of outer and inner."
+        "Utilisation 320 % by fatigue damage (inner segment, x = 10 m): exceeds the fatigue life. "
+        "No safety factor is included. No yield strength is given of outer and inner."
     )
     terminal = printed(print_results, told, width=250).splitlines()
-    assert terminal[-1].startswith(f"{PLAYED}: utilisation 320 % at detail, inner segment")
+    assert terminal[-1].startswith(f"{PLAYED}: utilisation 320 % by fatigue damage")
     table = summary_table(told)
     assert list(table.strong) == ["3.2"]
     assert cells(table)["Fatigue damage (Miner)"][PLAYED] == "3.2"

@@ -40,7 +40,8 @@ def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
     assert high - low <= 1e-3 * high
     assert len(table) == 3 + 8
     told = capsys.readouterr().out
-    bracket = told[told.index("Bracket of segment[1].length: tip at rest ≤ ") :]
+    title = "Bracket of segment[1].length: static tip deflection (maximum load) ≤ "
+    bracket = told[told.index(title) :]
     assert [row.split()[0] for row in bracket.splitlines() if row.strip().endswith(("✓", "✗"))] == [
         f"{low:.6g}",
         f"{high:.6g}",
@@ -88,7 +89,8 @@ def test_a_bound_on_no_side_is_refused(capsys: pytest.CaptureFixture[str]) -> No
     """Reference: analytic, static tips of lengths of 3 and 5 m."""
     assert protractile("--vary", LENGTHS, "--until", "tip_at_rest<0.5", "--out", "out") == 2
     assert capsys.readouterr().err == (
-        "protractile: case.toml: --until: tip at rest does not pass 500 mm over segment[1].length, "
+        "protractile: case.toml: --until: static tip deflection (maximum load) does not pass "
+        "500 mm over segment[1].length, "
         f"where it is {1e3 * static_tip(3.0):.4g} mm to {1e3 * static_tip(5.0):.4g} mm; give "
         "values of segment[1].length around one place where it does\n"
     )

@@ -56,7 +56,7 @@ def results(*shells: str) -> Results:
         ("stress-largest-force.png", "Stress at the overlap: largest", "Von Mises"),
         ("stress-above-2-1s.png", "Stress at the overlap of joint 2, seen from above", "faces"),
         ("boom-above-first-peak.png", "Boom, seen from above: first peak of the tip at 0.769 s",
-         "+50.0 mm to the side"),
+         "+50.0 mm, lateral"),
         ("overlap-above-1s.png", "Overlap, seen from above: 1.000 s", "Blue: outer"),
         ("boom-largest-deflection.png", "Boom: largest deflection of the tip", "grey: undeformed"),
         ("motion.gif", "Boom in motion, first 1 s", "in 5 s"),

@@ -167,11 +167,11 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
         "at t = 0.1 s (estimate from plates)."
     )
     assert remedies == (
-        "Remedies, with the static deflection of the tip under these loads; a run with a shell "
-        "gives the plate stresses at the pads: pads that bear on the corners, bears = 'corner' "
-        "(-317.9 mm); collars as thick as the walls on both segments at each pad, over half the "
-        "height of the box to both sides, where two of them per joint are in the way of "
-        "telescoping (-333 mm); pads half as wide (width), at twice the pressure (-347.8 mm)."
+        "Remedies, with the static tip deflection under these loads (a run with a shell gives "
+        "their local plate stresses): pads that bear on the corners, bears = 'corner' (-317.9 mm); "
+        "collars on both segments at each pad, as thick as the walls, over half the height of the "
+        "box to both sides; two of them per joint obstruct telescoping (-333 mm); "
+        "pads half as wide (width), at twice the pressure (-347.8 mm)."
     )
     (load,) = case.loads
     sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})

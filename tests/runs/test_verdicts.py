@@ -433,7 +433,7 @@ def test_runs_without_verdicts_show_no_table() -> None:
 
 
 def test_every_run_shows_the_errors_of_its_reduction() -> None:
-    errors = {"contact_compliance": 2.3e-9, "readings": 8.1e-7, "frequency_limit_in_hz": 84.6}
+    errors = {"contact_compliance": 2.3e-9, "deflections": 8.1e-7, "frequency_limit_in_hz": 84.6}
     shell = model_summary(modes=110, reduction_errors=errors, mesh_error=0.0083)
     case = shipped("paper")
     results = Results(case, xr.Dataset(), summary_of({"shell": shell}))

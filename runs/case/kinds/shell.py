@@ -122,7 +122,9 @@ class Shell(ModelTable):
         return super().cannot_telescope
 
     def describe(self) -> str:
-        return f"mesh {self.mesh_size:g} m, contact {self.contact_line}"
+        places = {"near webs": "at pads, else near webs", "across": "across the flanges"}
+        line = places.get(self.contact_line, "over the surface of the overlap")
+        return f"mesh {self.mesh_size:g} m, contact {line}"
 
     def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
         from runs.folder.cache import load_or_compute
