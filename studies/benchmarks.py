@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shell element on published benchmarks and on tests with exact results."""
+"""Accuracy of the shell element on published benchmarks and on tests with exact results."""
 
 from __future__ import annotations
 
@@ -58,13 +58,13 @@ class Sizes:
 def refined(
     what: str, unit: str, edges: Sequence[int], values: Sequence[float], reference: Reference
 ) -> Refined:
-    """Run a benchmark on several meshes; sizes are relative to the finest mesh."""
+    """Return the values of a benchmark on several meshes, with sizes relative to the finest one."""
     sizes = [edges[-1] / n for n in edges]
     return Refined(f"{what}, {edges[-1]} edges", unit, sizes, values, reference)
 
 
 def published(sizes: Sizes) -> list[Refined]:
-    """Run the benchmarks with published values."""
+    """Return the values of benchmarks with published results, on all meshes."""
     stiff_in_shear = partial(benchmarks.pinched_cylinder, shear_correction=SHEAR_RIGID)
     twisted = [benchmarks.twisted_beam(n) for n in sizes.twisted]
     macneal, beam = "MacNeal and Harder 1985", PUBLISHED.twisted_beam
@@ -87,7 +87,7 @@ def published(sizes: Sizes) -> list[Refined]:
 
 
 def plates(sizes: Sizes) -> list[Refined]:
-    """Compare lowest and fourth frequency of simply supported plates, thin and moderately thick."""
+    """Return the first and fourth frequency of thin and moderately thick plates, on all meshes."""
     thin, thick = (SupportedPlate(1.0, 0.8, thickness) for thickness in (THIN, THICK))
     found = []
     for name, plate, exact, source in (
@@ -103,7 +103,7 @@ def plates(sizes: Sizes) -> list[Refined]:
 
 
 def torsion(sizes: Sizes) -> Iterator[Refined]:
-    """Compare torsion constants of an open and of a closed section."""
+    """Yield the torsion constants of an open and a closed section, on all meshes."""
     for name, member, source, allowed in (
         ("angle 100 × 100 × 1 mm", ANGLE, "Σ b t³/3, Saint-Venant 1855", 0.005),
         ("box 100 × 60 × 1 mm", BOX, "4 A² t/Σ b + Σ b t³/3, Bredt 1896", 0.001),
@@ -114,7 +114,7 @@ def torsion(sizes: Sizes) -> Iterator[Refined]:
 
 
 def exactness(box: PlainBox, sizes: Sizes) -> Iterator[Verification]:
-    """Compare cases with exact results: patches under constant strain, a rotated box."""
+    """Compare patches under constant strain and a rotated box with exact results."""
     patch = Patch.of()
     criterion: Criterion = ("analytic", "the field that is held on its edges", 1.0e-11)
     for state in constant_strains():

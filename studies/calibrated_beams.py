@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Accuracy of calibrated beams relative to the shell that calibrates them.
 
-The study runs the paper's boom with friction over plays, and over loads up to ten times the
+The study runs the paper's boom with friction for several plays, and for loads up to ten times the
 paper's, with contact near webs and at pads. It compares textbook beams, the beam with springs, the
 beam with section fields, and shells with different numbers of coordinates. The reference is the
-shell of the same mesh, whose error another study measures (``working_load``).
+shell of the same mesh. The study ``working_load`` measures the error of this shell.
 """
 
 from __future__ import annotations
@@ -54,7 +54,7 @@ class Sizes:
 def move_all(
     systems: Mapping[str, GapSystem], points: Sequence[Point], duration: float
 ) -> dict[str, list[PointMotion]]:
-    """Return the motions of each system at all points, with a duration in s."""
+    """Return the motions of each system at all points, by name; the duration is in s."""
     return {
         name: run_parallel(
             partial(PointMotion.of, duration=duration),
@@ -65,7 +65,7 @@ def move_all(
 
 
 def tip_errors(moved: Sequence[PointMotion], shell: Sequence[PointMotion]) -> Array:
-    """Return the tip's largest distance (num_points,) as a fraction of the shell's range."""
+    """Return the largest deviations (num_points,) of the tip as fractions of the shell's range."""
     return np.array([one.tip_error(other) for one, other in zip(moved, shell, strict=True)])
 
 
@@ -86,7 +86,7 @@ class ModelComparison:
     seconds: tuple[float, float]  #: wall time of the reduction, and of the calibration
 
     def off(self, name: str) -> Array:
-        """Return the errors (num_points,) of the tip."""
+        """Return the errors (num_points,) of the tip, as fractions of the shell's range."""
         return tip_errors(self.moved[name], self.moved[SHELL])
 
     def peak_errors(self, name: str) -> float:
@@ -104,7 +104,7 @@ class ModelComparison:
         return float(np.abs(pressed[1] / pressed[0] - 1.0).max())
 
     def rows(self) -> Iterator[Sequence[Cell]]:
-        """Return a row for every model."""
+        """Yield a row of the table for every model but the shell."""
         seconds = {name: sum(one.seconds for one in moved) for name, moved in self.moved.items()}
         for name, system in self.systems.items():
             if name == SHELL:
@@ -123,7 +123,7 @@ class ModelComparison:
             )
 
     def verifications(self) -> Iterator[Verification]:
-        """Return the verifications of springs and of fields."""
+        """Yield the verifications of the beam with springs and of the beam with section fields."""
         for name, allowed, count in (
             (SPRUNG, SPRINGS, OF_SPRINGS),
             (WITH_FIELDS, FIELDED, OF_FIELDS),
@@ -155,7 +155,7 @@ def calibrated_beam(case: Case, model: Model, fields: bool) -> Model:
 
 
 def measure(case: Case, where: str, sizes: Sizes) -> ModelComparison:
-    """Run all models at all points."""
+    """Return the results of all models at all points, for one type of contact."""
     shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh_size})
     models = {
         SHELL: shell,
@@ -202,7 +202,7 @@ def summary_table(compared: Sequence[ModelComparison], sizes: Sizes) -> Table:
 
 
 def point_table(compared: ModelComparison) -> Table:
-    """Return the table of errors at all points of a type of contact, a column for each model."""
+    """Return the table of errors at all points for a type of contact, a column for each model."""
     names = [name for name in compared.moved if name != SHELL]
     rows = zip(map(str, compared.points), *(100.0 * compared.off(n) for n in names), strict=True)
     return Table.of_rows(

@@ -48,7 +48,7 @@ def study(progress: Progress) -> Iterator[Verification]:
 
 
 def _cylinder_force(boom: Boom) -> float:
-    """Return the cylinder force in N of the level lift, by moment equilibrium."""
+    """Return the cylinder force in N of the lift with a level boom, by moment equilibrium."""
     moment = boom.tip * (GRAVITY * (DEAD * CAGE + PAYLOAD * PEOPLE) + HANDS)
     for segment in boom.segments:
         weight = GRAVITY * segment.mass_per_length * segment.length
@@ -60,7 +60,7 @@ def _cylinder_force(boom: Boom) -> float:
 
 
 def _damage(case: Case) -> Iterator[Verification]:
-    """Yield the fatigue damage at the station of the fly, as people enter the level lift."""
+    """Yield the fatigue damage at the fly's station, as people enter the level lift repeatedly."""
     level = next(one for one in case.load_cases if one.name == "level")
     empty = level.model_copy(update={"name": "empty", "payload": 0.0, "loads": ()})
     cycle = {"name": "people", "load_cases": ("empty", "level"), "repeats": REPEATS}

@@ -51,7 +51,7 @@ class Sizes:
 
 
 class Contact(NamedTuple):
-    """Type of contact: name, case, and length and width in m of the loaded area."""
+    """Type of contact: name, case, and size of the loaded area (length, width) in m."""
 
     name: str
     case: Case
@@ -60,7 +60,7 @@ class Contact(NamedTuple):
 
 
 def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
-    """Return contacts at corners and at pads."""
+    """Return the types of contact: at corners, and at pads of several sizes."""
     corners = []
     for length in sizes.lengths:
         joints = tuple(replace(joint, contact_length=length) for joint in case.joints)
@@ -73,7 +73,7 @@ def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
 
 
 def station_compliances(contact: Contact, part: float) -> Array:
-    """Return the local compliance (num_stations,) in m/N for scaled edge lengths."""
+    """Return the local compliance (num_stations,) in m/N; ``part`` scales all edge lengths."""
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import full_compliance, local_compliance
     from shell_model.contact.rows import ShellContacts
@@ -94,8 +94,8 @@ def station_compliances(contact: Contact, part: float) -> Array:
 def support_compliance(case: Case, parts: Sequence[float]) -> list[float]:
     """Return the local compliance of the outer segment at its last support in m/N for each mesh.
 
-    The force of an elastic support acts on the walls. Half of it acts in the opposite direction at
-    a mesh line of all meshes on either side of the support.
+    The force of an elastic support acts on the walls. A mesh line on each side of the support, the
+    same in all meshes, carries half of the opposite force.
 
     Args:
         case: case of the boom.
@@ -135,7 +135,7 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
 
 
 def plate_verifications(sizes: Sizes) -> Iterator[Verification]:
-    """Compare a wall under a patch beside its edge with plate theory."""
+    """Compare the deflection of a wall under a patch load beside its edge with plate theory."""
     from studies.reference_models.plates import FLANGE
 
     criterion: Criterion = (
@@ -152,7 +152,7 @@ def plate_verifications(sizes: Sizes) -> Iterator[Verification]:
 
 @define_study("contact-size", "Local compliance at contacts")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Study corners and pads of several sizes, a support, and a plate."""
+    """Study contacts at corners and pads of several sizes, a support, and a plate."""
     sizes = sizes or Sizes()
     default = sizes.meshes.index(sizes.default)
     criterion: Criterion = (

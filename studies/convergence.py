@@ -78,7 +78,7 @@ convergence and writes this page to `runs/out/convergence/verification.md`:
 
 
 def verification_table(study: Study) -> Table:
-    """Return the verifications of one study as a table."""
+    """Return the table of the verifications of a study."""
     return Table.of_rows(
         f"verifications-{study.name}",
         study.title,
@@ -88,7 +88,7 @@ def verification_table(study: Study) -> Table:
 
 
 def markdown(studies: Sequence[Study]) -> str:
-    """Return the page of all studies with verifications."""
+    """Return the page of all studies that have verifications, as Markdown."""
     verified = [study for study in studies if study.verifications]
     return "\n".join([INTRODUCTION, *(verification_table(study).markdown() for study in verified)])
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Damping ratios in vibrations of booms with closed contacts, compared with the given ratios."""
+"""Damping ratios of computed vibrations with closed contacts, compared with the given ratios."""
 
 from __future__ import annotations
 
@@ -23,23 +23,23 @@ from runs.report.tables import Table
 from studies.motions import gap_system, model_of, without_friction
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 
-# Booms, and their cases.
+# Case file of each boom.
 BOOMS = {
     "two segments": "friction-walk.toml",
     "three segments": "three-segments.toml",
     "in space": "spatial.toml",
 }
-# Of each boom, all with a linear contact.
+# Models of each boom, all with a linear contact law.
 MODELS = ("kantorovich-24", "timoshenko", "shell")
 MESH_SIZE = 0.2
 
 RATIOS = (0.005, 0.02, 0.05)
 MODES = 3
-# Loads of the cases are numerically equal to their masses.
+# Load factor: the loads of the cases in N/m have the same numbers as the masses in kg/m.
 GRAVITY = 9.80665
 # Number of periods of each mode, and of steps per period.
 PERIODS, STEPS = 1.1, 2000
-# Change of a contact's penetration by the vibration.
+# Relative change of a contact's penetration by the vibration.
 SWING = 0.02
 
 NOTE = (
@@ -59,14 +59,14 @@ class PressedBoom:
 
     @classmethod
     def of(cls, system: GapSystem) -> PressedBoom:
-        """Create the boom without stops, under a load equal to the masses per length."""
+        """Return the boom without stops at rest under its weight."""
         system = replace(without_friction(system), load=-GRAVITY * system.load)
         omega, shapes = closed_contact_modes(system)
         rest = equilibrium(system, system.load)
         return cls(system, rest, omega[:MODES], shapes[:, :MODES])
 
     def measured(self, ratio: float, mode: int) -> tuple[float, float]:
-        """Return a mode's damping ratio by its logarithmic decrement, and the energy residual."""
+        """Return the damping ratio of a mode by its logarithmic decrement, and energy residual."""
         gaps = self.system.rows @ self.rest
         laws = list(zip(self.system.laws, gaps, strict=True))
         pressed = [float(law.force(gap)) != 0.0 for law, gap in laws]

@@ -27,14 +27,14 @@ from runs.pipeline.static_results import Diagram, positions, static_result
 from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
 from studies.study import Criterion, Progress, Verification, define_study
 
-# Stiffness of the paper's boom: N/m on both segments.
+# Distributed loads in N/m on both segments of the paper's boom.
 OUTER, INNER = 83.16, 55.07
-# Stations, the far support and the tip in m, the play in m, the contacts in N/m.
+# Positions in m of the stations, the second support and the tip; play in m; contacts in N/m.
 TAIL, HEAD, SUPPORT, TIP, PLAY, STIFF = 9.0, 10.0, 2.0, 19.0, 0.014, 1.0e9
 MODELS = ("timoshenko", "shell")
 # Places in m between which section forces are compared.
 ALONG_OUTER, ALONG_INNER = 5.5, 14.0
-# N/m on a cantilever.
+# Distributed load in N/m on the cantilever.
 LOAD = -100.0
 
 # Elements of half a metre have moments with errors up to q h²/12, here 1.7 N m.
@@ -44,7 +44,7 @@ LEVERS: Criterion = ("analytic", "lever rule", EXACT)
 
 @define_study("design-results", "Design results")
 def study(progress: Progress) -> Iterator[Verification]:
-    """Compare the paper's boom at rest and a cantilever in motion."""
+    """Compare the paper's boom at rest and a cantilever in motion with closed forms."""
     progress("the paper's boom at rest")
     answers = design_results_at_rest()
     for name in MODELS:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reduced shell, compared with the unreduced shell and another integrator.
+"""Reduced shell, compared with the unreduced shell and another time integrator.
 
 The motion of the paper's boom with friction is regular. On one mesh, the study integrates all
 degrees of freedom by the generalised-α method with decreasing steps, and the reduced shell by the
-program's time step. A reduction with more coordinates separates the errors of reduction and
-integration. The cases are the paper's load with contact near webs, and ten times this load with
+program's integrator. A reduction with more coordinates separates the error of reduction from that
+of integration. The cases are the paper's load with contact near webs, and ten times this load with
 pads.
 """
 
@@ -50,7 +50,7 @@ class Sizes:
     #: Steps of the direct integration in s, fractions of the output step, each half the previous
     #: one.
     steps: Sequence[float] = (1.0e-3, 5.0e-4, 2.5e-4, 1.25e-4, 6.25e-5)
-    #: The same with pads under ``LOAD`` times the load.
+    #: Steps in s of the boom with pads under ``LOAD`` times the load.
     hard_steps: Sequence[float] = (2.5e-4, 1.25e-4)
     #: Options of the reduction with more coordinates.
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0, 8000.0, 40000.0)
@@ -71,7 +71,7 @@ class Run:
 
 
 def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress) -> list[Run]:
-    """Return the motions of the reduced shell, a larger reduction, and the full shell by step.
+    """Return motions of the reduced shell, of one with more coordinates, and of the full shell.
 
     Args:
         case: planar case with prescribed normal forces and a model ``shell``.
@@ -123,7 +123,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress
 
 
 def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterator[Piece]:
-    """Compare all motions of a case with the reduced shell and with the larger reduction.
+    """Compare the motions of the full shell with those of both reduced shells.
 
     Args:
         runs: results of :func:`runs_of`.
@@ -138,7 +138,7 @@ def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterato
         [float(np.abs(run.tip - other.tip).max() / np.ptp(reduced.tip)) for run in runs]
         for other in (reduced, larger)
     )
-    # Of each halving, and by least squares over all.
+    # Order of each halving, and the order of all by least squares.
     halvings = np.log2(np.divide(off_larger[2:-1], off_larger[3:]))
     steps = [run.step for run in direct]
     order = float(np.polyfit(np.log(steps), np.log(off_larger[2:]), 1)[0])

@@ -63,7 +63,7 @@ COPIED = {
 
 
 def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
-    """Yield names and pictures, one after the other.
+    """Yield the name and the image of each picture.
 
     Args:
         runs: folder with the folders of runs.

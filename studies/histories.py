@@ -17,9 +17,9 @@ from studies.study import Criterion, Progress, Verification, define_study
 # Output step, time step and duration in s. A step is a tenth of the smallest 1/ω below.
 OUTPUT_STEP, STEP = 0.02, 2.0e-5
 DURATION = 4.0
-# ω of masses of 1 kg on springs in rad/s: free, of a boom, of the plates of a shell.
+# ω in rad/s of 1 kg on a spring: free, as slow as a boom, as fast as the plates of a shell.
 OMEGAS = (0.0, 2.0, 19.0, 300.0, 5.0e3)
-# ω of the mass whose vibration is reported.
+# ω in rad/s of the mass whose vibration is reported.
 BOOM = 19.0
 # Force in N.
 FORCE = 10.0
@@ -41,8 +41,8 @@ KINKED: Mapping[str, Ramp | PiecewiseLinear] = {
 def response(omega: float, history: Ramp | PiecewiseLinear, time: Array) -> Array:
     """Return the displacement (num_times,) in m of 1 kg from rest under 1 N times a history.
 
-    The mass is on a spring of ω² N/m. The closed form is the sum of the responses to a constant
-    load from t = 0 on, and to a ramp at each kink with the change of slope at the kink.
+    A spring of ω² N/m holds the mass. The closed form is the sum of the responses to a constant
+    load from t = 0 on, and to a ramp from each kink on with the change of slope at the kink.
 
     Args:
         omega: ω in rad/s, 0 without a spring.

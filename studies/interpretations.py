@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of interpretations of the paper's data, and their exclusion by its statements.
+"""Study of interpretations of the paper's data, which statements of the paper may exclude.
 
-The paper leaves open whether the play of 14 mm is 2Δ or Δ, whether the contact stiffness has lost
+The paper does not say whether the play of 14 mm is 2Δ or Δ, whether the contact stiffness has lost
 its exponent in print, which functions the series has at its ends, and which contact law a figure
-has. The study runs and judges every combination with the beam models. The authors cannot have used
-a combination that contradicts a statement.
+has. The study runs every combination with the beam models, and judges it by the statements. The
+authors cannot have used a combination that contradicts a statement.
 """
 
 from __future__ import annotations
@@ -78,8 +78,8 @@ class Interpretation:
     def contact_stiffness(self) -> float:
         """Contact stiffness k in N/mⁿ.
 
-        Its unit depends on n. If n is not the paper's 2, the restored stiffness gives the tangent
-        n k^(1/n) F^(1−1/n) of the quadratic law at the force F of the pads.
+        For n other than the paper's 2, k follows from the tangent stiffness n k^(1/n) F^(1−1/n),
+        which equals that of the quadratic law at the force F of the pads.
         """
         if self.stiffness == "literal":
             return LITERAL
@@ -140,7 +140,7 @@ ALL = tuple(
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Finding on a statement in an interpretation: the verdict with its numbers."""
+    """Verdict on a statement in an interpretation, with the measured numbers."""
 
     verdict: Judgement
     measured: Sequence[float]
@@ -171,7 +171,7 @@ def study(progress: Progress) -> Iterator[Table]:
 def survey(
     interpretations: Sequence[Interpretation], members: int = MEMBERS
 ) -> list[JudgedInterpretation]:
-    """Return interpretations with their findings; two groups of runs are computed at a time.
+    """Return interpretations with their findings; two groups of runs are computed in parallel.
 
     Args:
         interpretations: interpretations. Neighbours that differ only in the base of the series
@@ -194,9 +194,9 @@ def survey(
 def _judge(
     interpretation: Interpretation, paper: Case, members: int, motions: Cache
 ) -> JudgedInterpretation:
-    """Run an interpretation and judge all statements except S9, which compares interpretations.
+    """Return an interpretation with findings on all statements but S9.
 
-    Motions of other interpretations are reused, and new motions are added to them.
+    S9 compares several interpretations. ``motions`` caches the motions that interpretations share.
     """
     changes = perturbations(members, CHANGE, 0)
     runs = [_results(interpretation.case(paper, change), motions) for change in changes]
@@ -309,7 +309,7 @@ def conclude(judged: Sequence[JudgedInterpretation]) -> list[str]:
 
 
 def finding_table(judged: Sequence[JudgedInterpretation]) -> Table:
-    """Return a row for each interpretation: its verdict on each statement, with the numbers."""
+    """Return the table of interpretations: verdict on each statement, with the numbers."""
 
     def cell(finding: Finding) -> str:
         ends = (min(finding.measured), max(finding.measured)) if finding.measured else ()

@@ -42,7 +42,7 @@ class Sizes:
 
 @define_study("mesh", "Meshes of the paper's boom")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Compare frequencies, compliances and tip peaks of the paper's boom on finer meshes."""
+    """Compare frequencies, compliances and tip peaks of the paper's boom on several meshes."""
     sizes = sizes or Sizes()
     case = set_duration(friction_case(), sizes.duration)
     results = []

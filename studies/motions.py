@@ -39,7 +39,7 @@ STEP = 2.0e-5
 _Task = TypeVar("_Task")
 _Found = TypeVar("_Found")
 
-# Frequency for the flexibility of a station in Hz: below all elastic modes, above rigid motion.
+# Frequency in Hz for the compliance of a station: below all elastic modes, above rigid motions.
 SLOW = 5.0
 
 
@@ -81,7 +81,7 @@ def gap_system(case: Case, boom: Boom, model: Model) -> GapSystem:
 
 
 def build_all(case: Case, models: Mapping[str, Model]) -> dict[str, BuiltModel]:
-    """Return the gap systems of several models of a case; each shell is reduced once."""
+    """Return several built models of a case by name; each shell is reduced once."""
     from mpi4py import MPI
 
     boom = build_boom(case)
@@ -107,7 +107,7 @@ def trajectories(case: Case) -> list[Trajectory]:
 
 
 def run_parallel(move: Callable[[_Task], _Found], tasks: Iterable[_Task]) -> list[_Found]:
-    """Return the results of tasks, which run in parallel on all cores."""
+    """Return ``move`` of each task; the tasks run in parallel on all cores."""
     with ThreadPoolExecutor(os.cpu_count()) as pool:
         return list(pool.map(move, tasks))
 

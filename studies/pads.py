@@ -17,16 +17,16 @@ from studies.study import Verification
 
 
 def with_pads(case: Case, length: float, width: float) -> Case:
-    """Return the case with pads of a size in m at all joints."""
+    """Return the case with pads of a length and a width in m at all joints."""
     pad = PadSize(length, width)
     joints = tuple(replace(joint, pad=pad) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
 
 
 def upper_rows(system: GapSystem) -> Array:
-    """Return rows (num_stations, num_modes) of the mean approach above each station.
+    """Return rows (num_stations, num_modes) of the mean approach at the top of each station.
 
-    The mean is weighted by the contact laws of the points.
+    The contact stiffness of each point is its weight in the mean.
     """
     above = np.array(
         [sum(term.stiffness for term in law.terms if term.side > 0.0) for law in system.laws]
@@ -40,7 +40,7 @@ def pad_verifications(
 ) -> Iterator[Verification]:
     """Compare magnitude and position of a pad's resultant force with statics.
 
-    The row of a pad times a rigid motion is the work of the pad's unit force.
+    The product of a pad's row and a rigid motion is the work of a unit force on the pad.
 
     Args:
         case: case with the pads.
@@ -60,7 +60,7 @@ def pad_verifications(
 
 
 def rigid_motion(system: GapSystem, tail: float, tip: float) -> Array:
-    """Return the rigid motion (num_modes,) of the inner segment with its ends at heights in m."""
+    """Return the rigid motion (num_modes,) of the inner segment that raises its ends, by m each."""
     free = np.flatnonzero(system.omega2 == 0.0)
     rows = np.array([system.observers[name].row[free] for name in ("tail", "tip")])
     state = np.zeros(system.num_modes)

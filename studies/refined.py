@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Convergence of values on successively finer meshes, and their extrapolation (Roache 1994)."""
+"""Convergence of values on successively finer meshes, and their limit (Roache 1994)."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ class Refined:
 
     @property
     def order(self) -> float:
-        """Observed order on the three finest; NaN without monotonic convergence."""
+        """Observed order on the three finest meshes; NaN without monotonic convergence."""
         if len(self.values) < 3:
             return math.nan
         coarse, medium, fine = self.values[-3:]
@@ -66,7 +66,7 @@ class Refined:
 
     @property
     def best(self) -> float:
-        """Limit of refinement; without convergence, the value of the finest mesh."""
+        """Extrapolated value; without convergence, the value of the finest mesh."""
         return self.limit if self.converges else self.values[-1]
 
     @property

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rule of thumb for a beam's error relative to the shell, and its scatter.
+"""Rule of thumb for the error of a beam relative to the shell, and the scatter of this error.
 
 The beam lacks a fraction δ of the tip's static deflection: the deflections by shear and by the
 local compliance of walls. A mass that falls through the play onto a spring models the effect on the
@@ -10,9 +10,9 @@ fraction of its range is
     δ (1/√(1 + s²) + n μ ψ)
     ψ = ½ (χ + s/(1 + s²)) / (s + χ),   μ = 2 (s + χ) √(1 + s²) / (s²/2 + 1 + √(1 + s²))
 
-with χ = π − arctan s. ψ is the relative error of the period over δ. μ is the period times the
-highest speed of the tip, over its range. The study measures the accuracy of the rule on booms of
-other proportions than the paper's, with the friction of the paper.
+with χ = π − arctan s. ψ is the relative error of the period divided by δ. μ is the period times the
+largest speed of the tip, divided by its range. The study measures the accuracy of the rule on booms
+with proportions other than the paper's, and with the paper's friction.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ BOOMS: Mapping[str, Proportions] = {
 
 
 def boom_case(given: Proportions) -> Case:
-    """Return the paper's case with friction, of these proportions, under its weight at 1 m/s²."""
+    """Return the paper's case with friction and given proportions, under its weight at 1 m/s²."""
     case = friction_case()
     walls = given.walls * OUTER_WALL, given.walls * INNER_WALL
     width = HEIGHT / given.aspect
@@ -118,20 +118,20 @@ def boom_case(given: Proportions) -> Case:
     return found if given.pad is None else with_pads(found, *given.pad)
 
 
-# Compliance of a wall near its web, in 1/(E t): c₀ + c₁ ln of the box's width over the pressed
-# length.
+# Compliance of a wall near its web, in 1/(E t): c₀ + c₁ ln(b/l), with the width b of the box and
+# the loaded length l.
 NEAR_WEBS = 0.20, 0.70
-# Excess of the bending frequency with springs, over its squared ratio to the flange's.
+# Relative error of the bending frequency f of beams with springs over (f/flange frequency)².
 FLANGES = 0.065
 # Relative excess of the shear deflection over a Timoshenko beam: webs have non-uniform shear.
 UNEVEN = 0.09
-# A mode of the shell corresponds to the beam's if its frequency is as near, as a part.
+# Relative difference of frequencies up to which a mode of the shell corresponds to one of the beam.
 _NEAR = 0.15
-# Permitted geometric mean of the ratios of measured errors to the rule, and error of springs.
+# Permitted deviation of the mean ratio of errors to the rule from 1; error of beams with springs.
 MEAN_OFF, PEAK = 0.25, 0.005
 # Permitted relative error of the compliance of walls under pads.
 WALLS = 0.08
-# Rules above this value mean that the tip's motion is unpredictable.
+# The motion of the tip is unpredictable if the rule gives a larger error.
 UNPREDICTABLE = 0.5
 
 
@@ -163,7 +163,7 @@ class Rule:
 
     @classmethod
     def of(cls, given: Proportions, case: Case) -> Rule:
-        """Create the rule from the beams of the boom without play, and from their statics."""
+        """Return the rule for a boom, from beams without play and their static deflections."""
         boom = build_boom(case)
         bonded = [
             model_of(case, name).system_without_play(boom)
@@ -171,7 +171,7 @@ class Rule:
         ]
         tips = [static_tip(system) for system, _ in filter(None, bonded)]
         inner = boom.segments[1]
-        # Where tail and head press, from the start of the inner segment.
+        # Positions of the contact forces at tail and head, from the start of the inner segment.
         tail = 0.0 if given.pad is None else 0.5 * given.pad[0]
         head = given.overlap - tail
         arm, weight = head - tail, inner.load * inner.length
@@ -196,7 +196,7 @@ class Rule:
         return self.bending + (1.0 + UNEVEN) * self.shear + self.pressed
 
     def missing_part(self, name: str) -> float:
-        """Return δ of a kind of beam."""
+        """Return the fraction δ of the static deflection that a kind of beam lacks."""
         known = self.bending + (0.0 if name == EULER else self.shear)
         return 1.0 - known / self.deflection
 
@@ -219,7 +219,7 @@ class Rule:
 
 
 def station_compliances(given: Proportions, case: Case) -> Array:
-    """Return the compliance (2,) in m/N of both segments' walls at tail and head, on one side."""
+    """Return the compliance (2,) in m/N of the walls of both segments at tail and head."""
     if given.pad is not None:
         return np.diag(contact_compliance(build_boom(case)))[:: len(EACH_SIDE)]
     material = case.material
@@ -233,7 +233,7 @@ def station_compliances(given: Proportions, case: Case) -> Array:
 
 @dataclass(frozen=True, slots=True)
 class BoomErrors:
-    """Errors of a boom's beams against its shell at all points."""
+    """Errors of the beams of a boom relative to its shell, at all points."""
 
     rule: Rule  #: of it
     points: Sequence[Point]  #: play and load
@@ -255,7 +255,7 @@ def flange_frequency(case: Case) -> float:
 
 
 def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
-    """Return the lowest frequency in Hz of the free inner segment with a large tip motion."""
+    """Return the lowest bending frequency in Hz of the free inner segment, by beam and by shell."""
     own, shown = _moving_tip(beam), _moving_tip(shell)
     bending = min(own)
     near = {f: moves for f, moves in shown.items() if abs(f / bending - 1.0) < _NEAR}
@@ -263,14 +263,14 @@ def inner_bending(shell: GapSystem, beam: GapSystem) -> dict[str, float]:
 
 
 def _moving_tip(system: GapSystem) -> dict[float, float]:
-    """Return the modes with large tip amplitudes: amplitude by frequency in Hz."""
+    """Return the tip amplitudes of the modes in which the tip moves much, by frequency in Hz."""
     frequencies, moves = system.omega / (2.0 * np.pi), np.abs(system.observers["tip"].row)
     much = (frequencies > 0.0) & (moves > 0.1 * moves.max())
     return dict(zip(frequencies[much].tolist(), moves[much].tolist(), strict=True))
 
 
 def measure(given: Proportions, sizes: Sizes) -> BoomErrors:
-    """Run the beams and the shell of a boom."""
+    """Return the errors of the beams of a boom, from motions of beams and shell."""
     case = boom_case(given)
     rule = Rule.of(given, case)
     fine = {"mesh_size": sizes.mesh_size, "contact_tolerance": sizes.contact_tolerance}
@@ -297,7 +297,7 @@ def measure(given: Proportions, sizes: Sizes) -> BoomErrors:
 
 
 def wall_compliances(given: Proportions, sizes: Sizes) -> tuple[Array, Array]:
-    """Return the compliance (2,) of tail and head in m/N under pads, by plates and by the shell.
+    """Return compliances (2,) of walls in m/N at tail and head, by plate theory and by the shell.
 
     The load is a pair of forces that presses the walls of both segments apart.
     """
@@ -312,7 +312,7 @@ def wall_compliances(given: Proportions, sizes: Sizes) -> tuple[Array, Array]:
 
 
 def ratios(found: Sequence[BoomErrors], name: str, tips: bool) -> Array:
-    """Return the ratios (num_ratios,) of a beam's errors to the rule, for all booms and points."""
+    """Return the ratios (num_ratios,) of a beam's errors to those of the rule, for all points."""
     pairs = [
         (
             off,
@@ -329,7 +329,7 @@ def ratios(found: Sequence[BoomErrors], name: str, tips: bool) -> Array:
 
 
 def boom_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
-    """Return a table of δ for each beam, by the rule and by the shell without play."""
+    """Return the table of δ for each beam, by the rule and by the shell without play."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
         rule, given = one.rule, sizes.booms[name]
@@ -380,7 +380,7 @@ def scatter_table(found: Sequence[BoomErrors], sizes: Sizes) -> Table:
 
 
 def springs_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
-    """Return a table of the largest errors with springs, with the share of the flanges."""
+    """Return the table of the largest errors of beams with springs, and the flanges' share."""
     rows: list[Sequence[Cell]] = []
     for name, one in found.items():
         bending, flange = one.bending[SHELL], flange_frequency(boom_case(sizes.booms[name]))
@@ -407,7 +407,7 @@ def springs_table(found: Mapping[str, BoomErrors], sizes: Sizes) -> Table:
 
 
 def wall_table(found: Mapping[str, tuple[Array, Array]], sizes: Sizes) -> Table:
-    """Return a table of the compliance of walls under pads, by plates and by the shell."""
+    """Return the table of the compliance of walls under pads, by plate theory and by the shell."""
     rows: list[Sequence[Cell]] = []
     for name, (plates, shell) in found.items():
         stations = zip(1.0e9 * plates, 1.0e9 * shell, 100.0 * (plates / shell - 1.0), strict=True)

@@ -36,7 +36,7 @@ ELEMENT, TERMS, MESH_SIZE = 0.2, 12, 0.4
 CLAMP, HINGE, END, FIXED = (
     Support(0.0, "clamped"), Support(0.0), Support(LENGTH), Support(LENGTH, "clamped"),
 )  # fmt: skip
-# Supports, and the critical force over π² E J/L²; β = tan β of the column clamped and hinged.
+# Supports, and the critical force over π² E J/L²; for clamped and hinged ends β = tan β.
 EULER: Mapping[str, tuple[tuple[Support, ...], float]] = {
     "cantilever": ((CLAMP,), 0.25),
     "hinged": ((HINGE, END), 1.0),
@@ -68,19 +68,19 @@ class Model:
 
 
 def elements(boom: Boom, theory: Theory = "euler-bernoulli") -> tuple[GapSystem, float | None]:
-    """Return beam elements of either theory, without rotary inertia."""
+    """Return beam elements without rotary inertia, and their critical factor."""
     models = finite_element_segments(boom, ELEMENT, theory, rotary_inertia=False)
     return gap_system(boom, models), critical_factor(boom, models)
 
 
 def series(boom: Boom) -> tuple[GapSystem, float | None]:
-    """Return the series with the complete base."""
+    """Return the series with the complete base, and its critical factor."""
     models = kantorovich_segments(boom, [TERMS], "complete", rotary_inertia=False)
     return gap_system(boom, models), critical_factor(boom, models)
 
 
 def shell(boom: Boom) -> tuple[GapSystem, float | None]:
-    """Return the reduced shell of a box."""
+    """Return the reduced shell of a box, and its critical factor."""
     reduced = reduce_boom(boom, ShellOptions(mesh_size=MESH_SIZE), MPI.COMM_SELF)
     return reduced.system, reduced.critical_factor
 

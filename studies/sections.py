@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Polygonal sections of flat plates: properties, compliance of rings, motion of booms."""
+"""Polygonal sections of flat plates: section properties, compliance of rings, motion of booms."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0)
 
-# Outer and inner sections in place of the paper's.
+# Outer and inner sections that replace the boxes of the paper.
 SHAPES: Mapping[str, tuple[PolygonSection, PolygonSection]] = {
     "hexagon": (
         hexagon(0.50, 0.45, 0.25, 0.0065, 0.0065, 0.0065),
@@ -47,8 +47,8 @@ SHAPES: Mapping[str, tuple[PolygonSection, PolygonSection]] = {
     ),
 }
 
-# Of the outer sections, by the program sectionproperties 3.10.2, in m⁴, m² and m: second moments as
-# they are, the others extrapolated from half and a quarter of the thickness to thin walls
+# Properties of the outer sections by the program sectionproperties 3.10.2, in m⁴ and m². All but
+# the second moments are extrapolated to thin walls, from half and a quarter of the thickness
 # (tests/geometry/test_sections_elsewhere.py).
 PROPERTIES = (
     "second_moment_of_area", "lateral_second_moment_of_area", "torsion_constant", "shear_area",
@@ -61,18 +61,18 @@ ELSEWHERE: Mapping[str, Sequence[float]] = {
 }
 CENTRE_OF_U = -8.64726e-3
 
-# A short ring bends as bars do.
+# Length and edge length of a ring in m; a short ring bends like bars.
 RING, RING_MESH = 0.02, 0.01
-# Length of the rotated cantilevers, in m.
+# Length and edge length of the rotated cantilevers in m.
 ARM, ARM_MESH = 4.0, 0.2
-# Around each station, of this thickness in m.
+# Thickness in m of the collars around each station.
 COLLAR = 0.010
 MESH_SIZE, TOLERANCE = 0.1, 0.01
-# In s. The contacts before the peak change it by 0.03 % from 1e-5 s to here.
+# Time step in s. A step of 1e-5 s changes the first peak by 0.03 %.
 STEP = 5.0e-7
-# Of first peaks from beams', with collars.
+# Permitted deviations of first peaks of shells with collars from those of beams.
 ALLOWED = {"hexagon": 0.015, "octagon": 0.015, "U": 0.02}
-# Beyond the first peak, in s.
+# Duration of the motion in s, longer than the time of the first peak.
 DURATION = 0.8
 
 NOTE = (
@@ -140,7 +140,7 @@ def ring_of_bars(section: Section, length: float) -> float:
         stretch = STEEL.youngs_modulus * length * plate.thickness / plate.length
         bend = stretch * plate.thickness**2 / 12.0
         y, z = plate.tangent
-        # Of the ends' displacements and turns: the stretch, and both turns against the chord.
+        # Rows of the bar's elongation, and of the rotations of both ends relative to the chord.
         chord = np.array([-z, y]) / plate.length
         strains = np.array(
             [

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Error of the shell relative to a solid for walls of growing thickness.
+"""Error of the shell relative to a solid for walls of increasing thickness.
 
-A short pair of boxes has constant mid-lines and walls of increasing thickness. Every quantity of
-both models is the limit of refinement. So only the error of the theory remains: walls of a shell
-meet at mid-lines, but a solid has corners of finite size. Both models use a quarter of the segment,
-and the same measured displacements.
+A short pair of boxes has constant mid-lines and walls of increasing thickness. Quantities of both
+models are extrapolated to infinitely fine meshes. So only the error of shell theory remains: walls
+of a shell meet at mid-lines, but a solid has corners of finite size. Both models consist of a
+quarter of each segment, and measure the same displacements.
 """
 
 from __future__ import annotations
@@ -36,13 +36,13 @@ from studies.reference_models.solid import SolidFamily, assemble_solid, mesh_qua
 from studies.refined import Refined, refined_table
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 
-# Distances in m of the mid-lines, which are the same for all wall thicknesses.
+# Height and width in m of the boxes between mid-lines, the same for all wall thicknesses.
 OUTER = (0.40, 0.30)
 INNER = (0.31, 0.21)
 # Positions in m of the outer box's end, and of both ends of the inner one.
 HEAD, TAIL, TIP = 2.0, 1.5, 3.5
 
-# Pads of 0.1 m in the inner box's corners at its tail, pressed along three lines (Simpson's rule).
+# Pads of 0.1 m in the corners of the inner box at its tail, loaded at three x (Simpson's rule).
 PAD_WIDTH = 0.06
 PADDED = {TAIL: 1.0 / 6.0, TAIL + 0.05: 4.0 / 6.0, TAIL + 0.1: 1.0 / 6.0}
 
@@ -63,7 +63,7 @@ class Probe(NamedTuple):
 
 
 def pad_squeeze(outline: SectionNodes) -> Row:
-    """Return the row of the distance of the flanges at pads in the corners, in m."""
+    """Return the row of the distance in m between the flanges, at pads in the corners."""
     half = 0.5 * outline.section.size("y")
     rows = (
         side * weight * flange_deflection(outline, side, y)
@@ -89,7 +89,7 @@ PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
 
 @dataclass(frozen=True, slots=True)
 class Quarter:
-    """Symmetry class of a segment's motions."""
+    """Quarter of a segment, for one symmetry class of its motions."""
 
     model: Shell  #: a quarter of a shell or of a solid, with the energies of the whole segment
     rows: Mapping[str, Array]  #: name of a probe → (num_dofs,)
@@ -226,7 +226,7 @@ class Quantity(NamedTuple):
     allowed: float = ALLOWED  #: permitted error of the thinnest walls
 
     def of(self, answers: Sequence[Mapping[SymmetryClass, Mapping[str, float]]]) -> float:
-        """Return the value of the quantity in one of the models."""
+        """Return the value of the quantity from the measurements of both segments in a model."""
         return answers[self.segment][self.family][self.probe]
 
 
@@ -302,7 +302,7 @@ def _refined(
     sizes: Sequence[_Size],
     parts_of: Callable[[int, _Size], Mapping[SymmetryClass, Quarter]],
 ) -> dict[Quantity, Refined]:
-    """Return every quantity on every mesh."""
+    """Return the values of each quantity on all meshes of a model."""
     values = [
         [
             {family: part.measure() for family, part in parts_of(number, size).items()}
@@ -321,14 +321,14 @@ def _refined(
 
 
 def order(comparisons: Sequence[Comparison], what: Quantity) -> float:
-    """Return the exponent of the thickness in the shell's error, from the two thickest walls."""
+    """Return the exponent p of the shell's error ~ thicknessᵖ, from the two thickest walls."""
     thin, thick = comparisons[-2:]
     growth = thick.error(what) / thin.error(what)
     return math.log(growth) / math.log(thick.wall / thin.wall) if growth > 0.0 else math.nan
 
 
 def slenderness_at(comparisons: Sequence[Comparison], what: Quantity, limit: float) -> str:
-    """Return the ratio of thickness to width with a given error, by a power law of two walls."""
+    """Return the ratio of thickness to width at which the error is ``limit``, by interpolation."""
     errors = [abs(one.error(what)) for one in comparisons]
     ratios = [one.slenderness(what) for one in comparisons]
     above = [error > limit for error in errors]
@@ -336,15 +336,15 @@ def slenderness_at(comparisons: Sequence[Comparison], what: Quantity, limit: flo
         return f"> {ratios[-1]:.3f}"
     if above[0]:
         return f"< {ratios[0]:.3f}"
-    # The last crossing: an error that changes its sign is small in between.
+    # Take the last crossing, since an error that changes its sign is small where it does.
     last = max(i for i in range(1, len(above)) if above[i] and not above[i - 1])
     part = math.log(limit / errors[last - 1]) / math.log(errors[last] / errors[last - 1])
     return f"{ratios[last - 1] * (ratios[last] / ratios[last - 1]) ** part:.3f}"
 
 
-# A thick and slender box, which behaves as a rod because its section cannot breathe.
+# A slender box with thick walls, which behaves as a rod because its section hardly deforms.
 BAR = box("bar", 0.0, 2.0, (0.10, 0.08), 0.03)
-# Of sums of 1e5 terms that cancel, which compilers order differently.
+# Round-off of sums of 1e5 terms that cancel, whose order depends on the compiler.
 ROUND_OFF = 1.0e-8
 
 
@@ -426,7 +426,7 @@ def error_table(comparisons: Sequence[Comparison]) -> Table:
 
 
 def refinements(comparisons: Sequence[Comparison]) -> Table:
-    """Return tables of the convergence of both models."""
+    """Return the table of the convergence of both models."""
     models = [model for one in comparisons for model in (one.shell, one.solid)]
     found = [model[what] for what in EVERY for model in models]
     return refined_table("solid-index", "Both models on ever finer meshes", found, "edges × {:g}")

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Elastic drives: cycles of stick-slip, and the effect of the lag on the motion of the boom.
 
-A model moves the boom with the commanded extension. A second run with the actual extension, which
-lags behind the command, shows the error.
+A model moves the boom with the commanded extension. A second run uses the actual extension, which
+lags behind the command; the difference is the error.
 """
 
 from __future__ import annotations
@@ -28,12 +28,12 @@ from runs.pipeline.models import MotionPlan, build
 from runs.report.tables import Table
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 
-# m in kg, k in N/m, R in N, and the ratio of static friction to R.
+# Mass in kg, stiffness in N/m, sliding friction in N, and ratio of static to sliding friction.
 MASS, STIFFNESS, FRICTION, STICKING = 500.0, 1.0e5, 1000.0, 1.5
 SPEED = 0.05
 RATIOS = (0.01, 0.1, 0.5)
 
-# Of the drive of the paper's boom in N/m, damped by 0.5 %, with static friction of 0.3.
+# Stiffnesses in N/m of the drive of the paper's boom; damping ratio 0.5 %, static friction 0.3.
 ROPES = (2.0e5, 1.0e6, 5.0e6)
 GRAVITY = 9.80665
 
@@ -43,7 +43,7 @@ CYCLE = "sticking until the spring is taut, slipping on a circle"
 
 @define_study("stick_slip", "Elastic drives with stick and slip")
 def study(progress: Progress) -> Iterator[Piece]:
-    """Compare cycles, critical speeds and a stiff drive with closed forms; measure the lag."""
+    """Compare cycles, critical speeds and a stiff drive with closed forms, and measure the lag."""
     progress("a mass on a spring")
     yield from _cycle()
     yield from map(_critical, RATIOS)
@@ -70,7 +70,7 @@ def _follow_drive(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotio
 
 
 def _cycle() -> Iterator[Verification]:
-    """Compare ten cycles at a constant speed without damping with the closed form."""
+    """Compare ten undamped cycles at constant speed with the closed form."""
     omega, slack = np.sqrt(STIFFNESS / MASS), (STICKING - 1.0) * FRICTION / STIFFNESS
     radius, first = np.hypot(slack, SPEED / omega), STICKING * FRICTION / STIFFNESS / SPEED
     slipping = 2.0 / omega * (np.pi - np.arctan(slack * omega / SPEED))
@@ -93,7 +93,7 @@ def _cycle() -> Iterator[Verification]:
 
 
 def _critical(ratio: float) -> Verification:
-    """Compare the critical speed by bisection; below it the segment sticks again."""
+    """Compare the critical speed with bisection; below this speed the segment sticks again."""
     pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
     expected = critical_speed(pulled, FRICTION)
     low, high = 0.5 * expected, 2.0 * expected
@@ -107,7 +107,7 @@ def _critical(ratio: float) -> Verification:
 
 
 def _stiff() -> Verification:
-    """Compare the force of a drive of 1e9 N/m in the middle of the first half of an S-curve."""
+    """Compare the force of a drive of 1e9 N/m at a quarter of an S-curve with a closed form."""
     way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
     pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
     found = move_segment(pulled, way, time, np.full(time.size, FRICTION))
@@ -118,7 +118,7 @@ def _stiff() -> Verification:
 
 
 def _one_way(stiffness: float) -> list[float]:
-    """Return the lag and the errors of force and tip in percent for one stiffness."""
+    """Return lag and errors of force and tip for a stiffness in N/m, as percentages."""
     case = _weighted_case(stiffness)
     boom = build_boom(case)
     plan = MotionPlan.of(build(case, boom, case.models[0]).system, case, case.models[0])

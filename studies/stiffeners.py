@@ -78,7 +78,7 @@ def stiffened_segments(boom: Boom, sizes: Sizes) -> tuple[dict[str, Segment], di
     for t in sizes.diaphragms:
         plates = (Diaphragm(inner.start, t),)
         inners[f"diaphragm in the tail, {1e3 * t:g} mm"] = replace(inner, diaphragms=plates)
-    # Both rise.
+    # Collar and diaphragm together, both with their largest thickness.
     both = replace(inner, collars=(Collar(tail, sizes.collars[-1]),), diaphragms=plates)
     return outers, inners | {"the thickest of both": both}
 
@@ -91,7 +91,7 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
         held = replace(segment, supports=tuple(Support(x) for x in sizes.pins))
         standing = shell_alone(held, sizes.mesh, stations)
     tops, bottoms = (
-        # Above its webs, where pads near the webs press.
+        # Points above the webs, where pads near the webs press.
         [
             flange_deflection(outline, side, 0.5 * outline.section.size("y"))
             for outline in map(standing.outline, stations)
@@ -104,7 +104,7 @@ def measure(segment: Segment, what: str, stations: Sequence[float], sizes: Sizes
     free = shell.rigid_motions().shape[1]
     frequencies = natural_frequencies(shell, free + sizes.frequencies)[free:]
     name = f"{segment.name}, {what}"
-    # The part of the compliance that a translation along x causes.
+    # The translation of all nodes along x, of which the mass is measured.
     slide = np.zeros(shell.free.size)
     slide[shell.node_dofs[:, 0]] = 1.0
     mass = quadratic_form(shell.mass, slide)
@@ -122,9 +122,9 @@ def _timoshenko(segment: Segment, x: float) -> float:
 
 
 def racking(outline: SectionNodes) -> Row:
-    """Return the racking of the section: rotation of the webs less rotation of the flanges.
+    """Return the row of the racking of a section: rotation of webs less rotation of flanges.
 
-    Its row is twice the row of the twist, with reversed signs at the flanges.
+    It is twice the row of the twist, with reversed signs at the flanges.
     """
     along_y = set(outline.dofs[:, 1].tolist())
     return Row({dof: (-2.0 if dof in along_y else 2.0) * w for dof, w in outline.twist().items()})
@@ -133,7 +133,7 @@ def racking(outline: SectionNodes) -> Row:
 def racking_stiffness(
     section: BoxSection, material: Material, thickness: float, size: float
 ) -> float:
-    """Return a diaphragm's contribution to the racking stiffness in N m per radian.
+    """Return the racking stiffness in N·m/rad that a diaphragm adds to a box.
 
     Args:
         section: section of a box of length 1 m, with the diaphragm in the middle.
@@ -150,12 +150,12 @@ def racking_stiffness(
 
 
 def ring_flexibility(section: BoxSection, young: float, collar: float, size: float) -> float:
-    """Return the compliance of a ring of box under opposite forces on its flanges, in m²/N.
+    """Return the compliance in m²/N of a ring of a box under opposite forces on its flanges.
 
     Args:
         section: section of a ring whose length is a twentieth of its perimeter.
         young: Young's modulus in Pa; Poisson's ratio is 0, so that plates bend like beams.
-        collar: thickness in m that is added all around.
+        collar: thickness in m of a collar around the ring.
         size: size of the mesh in m.
     """
     length = 0.1 * (section.width + section.height)
@@ -174,13 +174,12 @@ def ring_flexibility(section: BoxSection, young: float, collar: float, size: flo
 def frame_flexibility(section: BoxSection, young: float, collar: float) -> float:
     """Return the compliance of :func:`ring_flexibility` by Timoshenko beams as thick as the plates.
 
-    A flange is a shear-flexible beam of span b that carries P in its middle. The corner moment
-    P b² / 8 (b + h) at its ends gives flange and web the same slope there. The webs shorten under
-    P / 2 each.
+    A flange is a shear-flexible beam of span b under P at midspan. At the corners the moment
+    P b² / 8 (b + h) gives flange and web the same slope. Each web shortens under P / 2.
     """
     b, h, t = section.width, section.height, section.flange + collar
     bending = 24.0 * (b**3 / 48.0 - b**4 / (64.0 * (b + h))) / t**3
-    # Twice b / (4 κ G t), with κ = 5/6 and G = E/2.
+    # Shear deflection of both flanges, twice b / (4 κ G t), with κ = 5/6 and G = E/2.
     shear = 1.2 * b / t
     return (bending + shear + 0.5 * h / t) / young
 
@@ -188,7 +187,7 @@ def frame_flexibility(section: BoxSection, young: float, collar: float) -> float
 def _piece(
     material: Material, section: BoxSection, length: float, **stiffeners: tuple[object, ...]
 ) -> Segment:
-    """Return a free piece of box."""
+    """Return a box segment without supports."""
     return Segment.of_section("piece", 0.0, length, material, section, **stiffeners)
 
 

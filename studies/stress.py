@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of stresses: away from contacts against a beam, near contacts by mesh refinement.
+"""Accuracy of stresses: compared with a beam away from contacts, on finer meshes near contacts.
 
 The inner segment of the paper's boom is in equilibrium under its load and contact forces, so that
 its moments and contact forces are statically determinate.
@@ -104,7 +104,7 @@ class InnerSegmentState:
     def top(self, x: float) -> tuple[float, float]:
         """Return the mean σ_x over the width of the top flange in Pa, and the value of a beam.
 
-        σ = M z / J, with the mean of M over the row of elements that holds x.
+        The beam has σ = M z / J, with the mean of M over the row of elements that contains x.
         """
         segment = self.boom.segments[INNER]
         assert segment.section is not None
@@ -118,7 +118,7 @@ class InnerSegmentState:
         return float(found), moment * 0.5 * section.size("z") / section.second_moment_of_area
 
     def shear(self, x: float) -> tuple[float, float]:
-        """Return the shear force of the webs in N, and the shear force from equilibrium."""
+        """Return the shear force of the webs in N at x, and the shear force from equilibrium."""
         segment = self.boom.segments[INNER]
         forces = wall_forces(self.stress, 0.0, 0, x)
         row = self.stress.row(0, x)
@@ -133,7 +133,7 @@ class InnerSegmentState:
 
 
 def contact_forces(boom: Boom) -> dict[float, tuple[int, float]]:
-    """Return side and strength in N of the contact forces on the inner segment by x.
+    """Return side and magnitude in N of the contact forces on the inner segment, by x in m.
 
     They follow from equilibrium. Under the upward load the inner segment presses upwards at the
     head of the outer segment, and downwards at its own tail.

@@ -78,7 +78,7 @@ class Study:
 
 
 def wide_console() -> Console:
-    """Return the console for tables. Without a terminal its width does not limit them."""
+    """Return the console for tables, which is wide enough for them without a terminal."""
     console = Console()
     return console if console.is_terminal else Console(width=WIDE)
 

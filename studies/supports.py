@@ -27,18 +27,18 @@ from studies.reference_models.statics import static_response
 from studies.second_order import STEEL
 from studies.study import Criterion, Progress, Verification, define_study
 
-# Thick walls: the section has little distortion.
+# Section with thick walls, so that it hardly distorts.
 BOX = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
 LENGTH = 10.0
-# 0.3 m below the axis at 2.5 m, from the ground 1.8 m below it.
+# Cylinder from the ground, 1.8 m below the axis, to a lug 0.3 m below the axis at x = 2.5 m.
 CYLINDER = Cylinder(0, x=2.5, depth=0.3, ground=(1.0, -1.8), stiffness=2.0e7)
 TIP_LOAD = -5.0e3
-# Of a hinge in N·m/rad; E J / L is 3.7e7.
+# Rotational stiffness of a hinge in N·m/rad; E J / L is 3.7e7.
 ROTATION = 2.0e7
-# In N·s/m: of a support, of a cylinder, of each of two stations.
+# Damping in N·s/m of a support, of a cylinder, and of each of two stations.
 DASHPOT = 2.0e3
 
-# Beams of rigid cross-sections; series lack the kink of moments at the lug; walls are flexible.
+# Permitted errors of beams, series (no kink of moments at the lug), shells and decrements.
 EXACT, SERIES, WALLS, DECREMENT = 1.0e-6, 1.0e-3, 5.0e-3, 1.0e-4
 LEVERS: Criterion = ("analytic", "lever arms", EXACT)
 
@@ -149,7 +149,7 @@ def _turning(progress: Progress) -> Iterator[Verification]:
 
 
 def _swinging(progress: Progress) -> Iterator[Verification]:
-    """Compare rigid booms on springs k and dashpots c with closed forms.
+    """Compare the decrements of rigid booms on springs k and dashpots c with closed forms.
 
     A boom on a hinge has ω = r √(k/I), ζ = c r/2√(k I) and δ = 2πζ/√(1 − ζ²). A segment on both
     stations of a joint, in vertical motion, has ω = √(2k/m) and ζ = c/√(2k m).

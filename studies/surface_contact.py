@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contact over the whole overlap, compared with contact at the stations, on the paper's boom.
+"""Contact over the whole overlap, compared with contact at the stations, for the paper's boom.
 
-Without friction the motion is chaotic after the first contacts. So only the first peak is compared.
+Without friction the motion is chaotic after the first contacts: only the first peak is compared.
 With friction the tip is compared over the whole run.
 """
 
@@ -66,7 +66,7 @@ class ContactModel(NamedTuple):
 
 @define_study("surface-contact", "Contact over the whole overlap")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Compare surface and stations, penalties, quadratures, and pads of several sizes."""
+    """Compare contact over surfaces and at stations, penalties, quadratures, and pad sizes."""
     sizes = sizes or Sizes()
     case = friction_case()
     shell = shell_of(case).model_copy(update={"mesh_size": sizes.mesh, "contact_tolerance": "any"})
@@ -139,7 +139,7 @@ def _density(case: Case, system: GapSystem) -> float:
 
 
 def _peaks(contacts: Sequence[ContactModel], notes: Sequence[str], sizes: Sizes) -> Table:
-    """Return the first tip peaks without and with friction, and their changes.
+    """Return the table of the first tip peaks without and with friction, and their changes.
 
     The changes are relative to the first type of contact.
     """
@@ -173,7 +173,7 @@ def _verifications(case: Case, system: GapSystem) -> Iterator[Verification]:
     n, k = upper.exponent, upper.stiffness * len(joint.stations)
 
     def forces(tail: float, slope: float) -> Array:
-        """Return the contact forces on the inner segment for a height of its tail and a slope."""
+        """Return the contact forces in N on the inner segment, for tail height in m and slope."""
         high = clearance + tail
         gaps = system.rows @ rigid_motion(system, high, high + slope * (boom.tip - start))
         return np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Tapered cantilevers, compared with closed forms.
 
-All dimensions of the section decrease linearly, so that A ∝ ξ² and J ∝ ξ⁴, with ξ = 1 at the clamp
-and ξ = α at the tip.
+All dimensions of the section decrease linearly along the boom, so that A ∝ ξ² and J ∝ ξ⁴, with
+ξ = 1 at the clamp and ξ = α at the tip.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def frequency() -> float:
         matrix = np.array(rows)
         return float(np.linalg.det(matrix / np.abs(matrix).max(axis=0)))
 
-    # The first sign change from small λ on.
+    # Take the smallest λ at which the determinant changes its sign.
     places = np.linspace(2.0, 10.0, 200)
     signs = np.sign([determinant(place) for place in places])
     first = int(np.flatnonzero(signs[1:] != signs[:-1])[0])

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Cantilever under an axial force that moves with a telescoping segment.
 
-If a column is in compression up to x = a, it buckles like a column of the length a. Under a
-transverse load at the head it bends as a beam-column up to a, and without axial force beyond a.
+A column in compression up to x = a buckles like a column of the length a. Under a transverse load
+at the head it bends as a beam-column up to a, and as a beam beyond a.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def _verifications(
     criterion: Criterion = ("analytic", "beam-column, Timoshenko and Gere 1961", ALLOWED)
     for time, x in ((0.0, START), (1.0, END)):
         row = system.observers["head"].row
-        # Check of a travel by a single segment.
+        # Check a travel of the single segment.
         own = np.flatnonzero(row)
         stiffness = system.at_time(time).stiffness[np.ix_(own, own)]
         head = float(row[own] @ np.linalg.solve(stiffness, row[own]))

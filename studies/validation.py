@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of measurements, published benchmarks and other programs.
+"""Comparison with measurements, published benchmarks and other programs.
 
-``docs/validation.md`` has its rows. It also lists results that cannot be computed, with reasons.
+``docs/validation.md`` contains the results. It also lists published results that this program
+cannot compute, with reasons.
 """
 
 from __future__ import annotations
@@ -29,11 +30,11 @@ from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
 from studies.study import Kind, Piece, Progress, Verification, define_study
 
-# DROPBEAR: the beam in m and kg, and what it is assumed to carry at its free end in kg.
+# DROPBEAR: the size of the beam in m, and the assumed mass in kg of sensors at its free end.
 BEAM_LENGTH, BEAM_WIDTH, BEAM_THICKNESS = 0.501, 0.051, 0.00666
 BEAM_STEEL = Material(2.0e11, 0.3, 7850.0)
 ACCELEROMETERS = 0.06
-# Means of the transducer in V at six roller positions, and the measured first frequencies in Hz.
+# Mean transducer voltages at six roller positions in V, and measured first frequencies in Hz.
 VOLTS = np.array([1.23, 1.65, 2.08, 2.50, 2.94, 3.37])
 MEASURED = np.array([26.4, 28.15, 30.8, 33.9, 37.5, 41.95])
 DROPBEAR = "DROPBEAR data set 8, Vereen et al. 2023"
@@ -44,19 +45,19 @@ BOXES = (
     (16.7, 1.055, 0.825, 0.02082), (15.7, 0.8745, 0.6585, 0.02802), (14.69, 0.757, 0.5335, 0.02109),
 )  # fmt: skip
 ALUMINIUM = Material(70.0e9, 0.33, 2700.0)
-# Parts of the fly that are retracted, and the first frequencies of its chart in Hz.
+# Fractions of the fly that are retracted, and the first frequencies in Hz that a chart gives.
 RETRACTED, CHART = (0.05, 0.35), (0.89, 1.40)
-# Factor of the stiffness of rigid pieces, and how far these grip their neighbours in m.
+# Stiffness factor of rigid pieces, and length in m over which they overlap their neighbours.
 RIGID, GRIP = 30.0, 0.1
 BOOM_LIFT = "Simscape boom lift, MathWorks 2023"
 
-# NAFEMS R0015: a square of 10 m, and its material.
+# NAFEMS R0015: side of the square in m, and its material.
 SIDE, NAFEMS_STEEL = 10.0, Material(200.0e9, 0.3, 8000.0)
 
 
 @define_study("validation", "Measurements, published benchmarks and other programs")
 def study(progress: Progress) -> Iterator[Piece]:
-    """Compute all rows; comparisons with measurements are first."""
+    """Yield all comparisons; comparisons with measurements are first."""
     for what, rows in (
         ("a measured beam on a moving roller", moving_roller),
         ("a boom lift", boom_lift),
@@ -68,9 +69,9 @@ def study(progress: Progress) -> Iterator[Piece]:
 
 
 def moving_roller() -> Iterator[Verification]:
-    """Compare first frequencies over roller positions, x = offset + scale · voltage.
+    """Compare the first frequency of a beam at several roller positions with measurements.
 
-    Offset and scale are fitted.
+    The position is x = offset + scale · voltage, with fitted offset and scale.
     """
 
     def frequencies(parameters: Array) -> Array:
@@ -100,9 +101,9 @@ def roller_frequency(x: float) -> float:
 
 
 def boom_lift() -> Iterator[Verification]:
-    """Compare the frequency of the most retracted boom lift with another program.
+    """Compare the first frequency of the retracted boom lift with another program.
 
-    The tip mass is fitted at the least retraction.
+    The tip mass is fitted to the frequency of the extended boom lift.
     """
     mass = brentq(lambda mass: lift_frequency(RETRACTED[0], mass) - CHART[0], 10.0, 2000.0)
     what = f"first frequency, {100 * RETRACTED[1]:g} % retracted, {mass:.0f} kg at the tip"
@@ -111,7 +112,7 @@ def boom_lift() -> Iterator[Verification]:
 
 
 def lift_frequency(retracted: float, mass: float) -> float:
-    """Return the first frequency in Hz for a retraction of the overlaps and a tip mass in kg."""
+    """Return the first frequency in Hz for a retracted fraction of the fly and a tip mass in kg."""
     boxes = [
         (FOOT * length, BoxSection(*(FOOT * (size - wall) for size in sizes), *[FOOT * wall] * 2))
         for length, *sizes, wall in BOXES
@@ -130,7 +131,7 @@ def lift_frequency(retracted: float, mass: float) -> float:
     ends = np.cumsum([0.0, *(length for length, _, _ in pieces)])
     segments = []
     for number, (_, second, area) in enumerate(pieces):
-        # Rigid pieces grip their neighbours.
+        # Rigid pieces overlap their neighbours.
         start, end = ends[number] - GRIP * (number % 2), ends[number + 1] + GRIP * (number % 2)
         tip = number == len(pieces) - 1
         segments.append(
@@ -149,7 +150,7 @@ def lift_frequency(retracted: float, mass: float) -> float:
 
 
 class Oscillators(NamedTuple):
-    """Masses on springs to an accelerated base, in the frame of the base."""
+    """Masses on springs on an accelerated base, with displacements relative to the base."""
 
     mass: float  #: of each in kg
     stiffness: float  #: of each in N/m
@@ -158,9 +159,9 @@ class Oscillators(NamedTuple):
     damping_ratio: float = 0.0
 
     def system(self, friction: float = 0.0, laws: Sequence[Gap] = ()) -> GapSystem:
-        """Return the system of masses, with friction in N on the first mass and its contact laws.
+        """Return the system of masses, with friction in N and contact laws of the first mass.
 
-        With a second mass the approach is the sum of both displacements.
+        With a second mass, the approach is the sum of both displacements.
         """
         n = len(self.accelerations)
         scale = 1.0 / np.sqrt(self.mass)
@@ -184,7 +185,7 @@ class Oscillators(NamedTuple):
 
 
 def code_aster() -> Iterator[Verification]:
-    """Compute SDND100, 102 and 104 of Code_Aster's manual of validation V5.01."""
+    """Compare SDND100, 102 and 104 of Code_Aster's validation manual V5.01."""
     yield from released_slider()
     yield impact_pair()
     yield from rubbing_mass()
@@ -219,7 +220,7 @@ def impact_pair() -> Verification:
 
 
 def rubbing_mass() -> Iterator[Verification]:
-    """Compare the mean power of wear from 4 to 12 s of 1 kg on a shaken plane (SDND104).
+    """Compare the mean wear power of 1 kg on a shaken plane, from 4 to 12 s (SDND104).
 
     The power is the friction force, μ = 0.1 times 10 N, times the sliding speed.
     """
@@ -233,9 +234,9 @@ def rubbing_mass() -> Iterator[Verification]:
 
 
 def nafems() -> Iterator[Verification]:
-    """Compute FV12, FV32 and FV52 of NAFEMS R0015 by the shell.
+    """Compare FV12, FV32 and FV52 of NAFEMS R0015 with the shell.
 
-    The reference of FV52 is a model of 4 × 4 × 1 bricks with fixed lower edges, within 2 %.
+    The reference of FV52 has an error of 2 %: a model of 4 × 4 × 1 bricks with fixed lower edges.
     """
     for name, values, kind, source, references, allowed in (
         ("FV12, free thin plate", free_plate(), "external", "NAFEMS R0015, closed form",

@@ -27,7 +27,7 @@ from studies.study import Piece, Progress, define_study
 # Thickness of the plates over their width.
 THIN = 0.005
 
-# π² D/t³ in Pa.
+# π² D/t³ in Pa, with the bending stiffness D of a plate.
 UNIT = np.pi**2 * STEEL.youngs_modulus / (12.0 * (1.0 - STEEL.poissons_ratio**2))
 
 NOTES = (
@@ -65,7 +65,7 @@ class LoadedPlate:
     source: str
 
     def shell(self, n: int, count: int = 1) -> Array:
-        """Return the lowest factors (count,) of the shell with n edges across the plate."""
+        """Return the lowest buckling coefficients (count,) by a shell with n edges across."""
         points, triangles = grid(rectangle(self.aspect, 1.0), round(n * self.aspect), n)
         shell = StaticShell(points, triangles, THIN, STEEL)
         held = hold(shell.node_dofs[:, [X, Y]]) | hold(shell.rotation_dofs[:, Z])
@@ -96,10 +96,10 @@ class LoadedBox:
 
     Args:
         name: label in tables.
-        section: its walls.
-        length: in m.
-        bending: stress in Pa at z = 1 m, positive in tension.
-        compression: in Pa.
+        section: section of the box.
+        length: length in m.
+        bending: bending stress in Pa at z = 1 m, positive in tension.
+        compression: uniform compressive stress in Pa.
     """
 
     name: str
@@ -117,14 +117,14 @@ class LoadedBox:
         return _supported(self.section, self.length, n)
 
     def shell(self, n: int, count: int = 1) -> tuple[SegmentShell, BucklingModes]:
-        """Return the shell and its modes, with n edges across the widest wall."""
+        """Return the shell and its buckling modes, with n edges across the widest wall."""
         shell = self.supported(n)
         return shell, buckling_modes(shell, self.membrane_forces(shell), count)
 
     def pressed(self, n: int) -> tuple[SegmentShell, Array, Array]:
         """Return the shell, its loads (num_owned,) at both ends, and its membrane forces in N/m.
 
-        The supports keep the width of the ends, so that stresses near the ends are not uniform.
+        The supports prevent transverse strain of the ends, so that stresses vary near them.
         """
         shell = self.supported(n)
         start, end = (shell.row(shell.outline(x).mean_displacement(X)) for x in (0.0, self.length))
@@ -146,10 +146,10 @@ class LoadedBox:
 
 @dataclass(frozen=True, slots=True)
 class PressedBox:
-    """Box on the same supports, under patch loads in the middle of the upper edges of both webs.
+    """Box on the supports of :class:`LoadedBox`, under patch loads at midspan on both webs.
 
     Args:
-        section: its walls, with thick flanges.
+        section: section of the box, with thick flanges.
         length: a in m.
         patch: length of the load in m.
     """
@@ -161,7 +161,7 @@ class PressedBox:
     def shell(self, n: int) -> float:
         """Return k_F = F h/(π² D) of a web by a shell with n edges over its height.
 
-        The shell under the load gives the membrane forces.
+        The membrane forces are those of the same shell under the load.
         """
         shell = _supported(self.section, self.length, n)
         middle, half = 0.5 * self.length, 0.5 * self.patch
@@ -173,7 +173,7 @@ class PressedBox:
 
     @property
     def fitted(self) -> float:
-        """The coefficient k_F of EN 1993-1-5, 6.4 (1), a fitted formula."""
+        """The coefficient k_F by the formula of EN 1993-1-5, 6.4 (1)."""
         return float(6.0 + 2.0 * (self.section.height / self.length) ** 2)
 
 
@@ -208,12 +208,12 @@ BOXES = (
     LoadedBox("box of unequal walls in bending", UNEQUAL, 1.2, bending=_STRESS / 0.3),
     LoadedBox("the same in both", UNEQUAL, 1.2, 0.5 * _STRESS / 0.3, 0.5 * _STRESS),
 )
-# About as long as its walls and the column itself buckle alike.
+# Column of a length for which walls and whole column buckle at about the same stress.
 COLUMN = LoadedBox("column of box section", STOUT, 22.0 * 0.3, compression=_STRESS)
 
-# First factors of boxes with loads at their ends by CalculiX 2.20, by the number of edges across a
-# wall. It ran with a tenth of the stress of the tube and five times the stress of the column, since
-# it does not find factors below 1.
+# Lowest factors of boxes with loads at their ends by CalculiX 2.20, by the number of edges across a
+# wall. Runs had a tenth of the stress of the tube and five times the stress of the column, since
+# CalculiX does not find factors below 1.
 CALCULIX = (
     (BOXES[0], {8: 0.7870369, 16: 0.7482351, 32: 0.7425086}),
     (COLUMN, {4: 6.954725, 8: 6.95531, 16: 6.955495}),

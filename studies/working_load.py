@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Mesh error of the default mesh under high contact forces.
+"""Error of the default mesh under high contact forces.
 
-The study runs the paper's boom with friction and constant sections. Plays are up to the paper's,
-loads up to ten times the paper's, the order of the weight. Each point is computed on the default
-mesh, and with all edges half and twice as long. One reduction serves all points of a mesh, since
-only contact laws and loads differ.
+The study runs the paper's boom with friction and constant sections. Plays are at most the paper's;
+loads are up to ten times the paper's, of the order of the weight. Each pair of play and load is
+computed on the default mesh, and on meshes with edges half and twice as long. One reduction serves
+all pairs on a mesh, since only contact laws and loads differ.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from studies.study import Piece, Progress, Verification, define_study
 # Permitted errors of the first peak, and of the tip as a part of its range.
 PEAK, TIP = 0.002, 0.02
 TIP_OF_RANGE = "tip, part of its range"
-# Number of outputs over which a pad's force is averaged: single impacts take microseconds.
+# Number of outputs over which a pad's force is averaged, since single impacts last microseconds.
 HELD = 20
 
 
 class Point(NamedTuple):
-    """Point of the study: play in m, and load relative to the paper's load."""
+    """A play in m, and a ratio of the load to the paper's load."""
 
     play: float
     load: float
@@ -45,7 +45,7 @@ class Point(NamedTuple):
 
     @classmethod
     def each(cls, plays: Sequence[float], loads: Sequence[float]) -> list[Point]:
-        """Return the points of all combinations of plays and loads."""
+        """Return a point for each pair of a play and a load."""
         return [cls(*one) for one in product(plays, loads)]
 
 
@@ -77,7 +77,7 @@ class PointMotion:
 
     @classmethod
     def of(cls, system: GapSystem, duration: float, num_peaks: int = 1) -> PointMotion:
-        """Create the motion from rest, with a duration in s."""
+        """Compute the motion from rest over a duration in s."""
         begin = perf_counter()
         motion = move(system, duration)
         seconds = perf_counter() - begin
@@ -90,7 +90,7 @@ class PointMotion:
         return cls(tip, peaks, np.abs(means).max(axis=0), seconds)
 
     def tip_error(self, reference: PointMotion) -> float:
-        """Return the largest distance of the tip, as a fraction of the range of the reference."""
+        """Return the largest deviation of the tip, as a fraction of the reference's range."""
         return float(np.abs(self.tip - reference.tip).max() / np.ptp(reference.tip))
 
     def peak_errors(self, reference: PointMotion) -> Array:
@@ -100,8 +100,8 @@ class PointMotion:
     def changes(self, finer: PointMotion) -> Array:
         """Return the relative changes (num_peaks + 2,) from this motion to a finer mesh.
 
-        The first ones are changes of peaks. The last two are the change of station forces relative
-        to the largest force, and the change of the tip relative to its range.
+        First come the changes of the peaks. The last two are the change of station forces relative
+        to the largest force, and the change of the tip deflection relative to its range.
         """
         forces = np.abs(self.forces - finer.forces).max() / finer.forces.max()
         return np.append(self.peak_errors(finer), [forces, self.tip_error(finer)])
@@ -119,7 +119,7 @@ class ContactType(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class ContactResults:
-    """Type of contact on every mesh."""
+    """Results for a type of contact on every mesh."""
 
     touch: ContactType  #: the way
     #: Point → its motions, from the coarsest mesh to the finest.
@@ -127,11 +127,11 @@ class ContactResults:
 
     @property
     def changes(self) -> Array:
-        """Changes (num_points, num_peaks + 2) from the default to the finest mesh, or NaN."""
+        """Changes (num_points, num_peaks + 2) from default to finest mesh; NaN without a peak."""
         return np.array([meshes[-2].changes(meshes[-1]) for meshes in self.moved.values()])
 
     def worst(self, which: int) -> tuple[float, Point]:
-        """Return the largest change of a kind over all points, and its point; or NaN."""
+        """Return the largest change over all points, and its point; ``which`` is its column."""
         changes = self.changes[:, which]
         points = list(self.moved)
         if np.isnan(changes).all():
@@ -141,7 +141,7 @@ class ContactResults:
 
     @property
     def verifications(self) -> list[Verification]:
-        """The verifications of first peaks, if any, and tips, against the finest mesh."""
+        """The verifications of first peaks and tip deflections against the finest mesh."""
         found = []
         for what, which, allowed in (("first tip peak", 0, PEAK), (TIP_OF_RANGE, -1, TIP)):
             compared = int(np.isfinite(self.changes[:, which]).sum())
@@ -155,13 +155,13 @@ class ContactResults:
 
 
 def set_point(system: GapSystem, point: Point) -> GapSystem:
-    """Return the system with the play and the load of a point, in unchanged coordinates."""
+    """Return the system with the play and load of a point; the coordinates stay the same."""
     laws = [law.scale_clearances(0.0).with_clearance(0.5 * point.play) for law in system.laws]
     return replace(system, laws=laws, load=point.load * system.load)
 
 
 def in_space(case: Case) -> Case:
-    """Return the case in space: half of the load also acts sideways, with lateral play."""
+    """Return the case with lateral play, in which half of the load also acts sideways."""
     joints = tuple(replace(joint, lateral_play=joint.play) for joint in case.joints)
     segments = tuple(
         segment.model_copy(update={"lateral_load": 0.5 * segment.load}) for segment in case.segments
@@ -170,7 +170,7 @@ def in_space(case: Case) -> Case:
 
 
 def measure(touch: ContactType, sizes: Sizes) -> ContactResults:
-    """Run all points of a type of contact, on all meshes."""
+    """Return the results of all points for a type of contact, on all meshes."""
     boom, shell = build_boom(touch.case), shell_of(touch.case)
     systems = [gap_system(touch.case, boom, scale_mesh(shell, part)) for part in sizes.meshes]
     tasks = [set_point(system, point) for point in touch.points for system in systems]
@@ -182,7 +182,7 @@ def measure(touch: ContactType, sizes: Sizes) -> ContactResults:
 
 
 def contact_types(case: Case, sizes: Sizes) -> list[ContactType]:
-    """Return contact near webs, by pads, and in space."""
+    """Return the types of contact: near webs, by pads, and in space."""
     every = Point.each(sizes.plays, sizes.loads)
     return [
         ContactType("points-webs", "near webs", case, every, sizes.duration),

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cost of the time step and of a shell: ``python -m studies.cost.bench``.
+"""Cost of the time step and of ensembles: ``python -m studies.cost.bench``.
 
-One process measures everything. Compared methods take turns, so that other load of the machine
-affects all of them.
+One process measures all times. Compared methods take turns, so that other programs on the machine
+slow all of them alike.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ OUT = Path("runs/out/bench")
 # Goal for the wall time in s of the ensemble of series.
 ENSEMBLE_GOAL = 10.0
 
-# Steps in s, and solvers with at most the same error.
+# Steps in s, and the solvers that are compared at the same error or less.
 LEVELS = (
     (1.0e-3, ("LSODA", "DOP853", "odeint")),
     (1.0e-4, ("LSODA", "DOP853", "Radau", "odeint")),
@@ -92,7 +92,7 @@ class Sizes:
 
 
 class Method(NamedTuple):
-    """Integration method for the series: name in the table, and function."""
+    """Integration method for the series: name in the table, and function that integrates."""
 
     solver: str
     tolerance: str  #: relative tolerance, or step, as text
@@ -106,12 +106,12 @@ def five_terms(case: Case) -> GapSystem:
 
 
 def off(tip: Array, exact: Array) -> float:
-    """Return the largest error of a tip deflection (num_times,) over the exact range."""
+    """Return the largest error of a tip deflection (num_times,), as a fraction of the range."""
     return float(np.abs(tip - exact).max() / np.ptp(exact))
 
 
 def errors(sizes: Sizes) -> Table:
-    """Measure errors and costs for several steps, on models with friction and regular motion."""
+    """Return the table of errors and costs for several steps, of models with regular motion."""
     case, rows = friction_case(), []
     boom = build_boom(case)
     for name in sizes.models:
@@ -150,7 +150,7 @@ def errors(sizes: Sizes) -> Table:
 
 
 def compare(case: Case, sizes: Sizes) -> Table:
-    """Compare the time step with generic solvers at the same error or less."""
+    """Return the table that compares the time step with generic solvers of at most its error."""
     system = five_terms(case)
     motion, row = Motion(system, sizes.early, OUTPUT_STEP), system.observers["tip"].row
     rates, rows, failed = compiled_rates(system), [], []
@@ -196,7 +196,7 @@ def compare(case: Case, sizes: Sizes) -> Table:
 
 
 def ensembles(case: Case, sizes: Sizes) -> Table:
-    """Measure the cost of ensembles for several numbers of threads."""
+    """Return the table of the cost of ensembles for several numbers of threads."""
     cores = len(os.sched_getaffinity(0))
 
     def run(whole: GapSystem, count: int, integrator: Integrator, threads: int) -> None:
@@ -231,7 +231,7 @@ def ensembles(case: Case, sizes: Sizes) -> Table:
 
 
 def bench(sizes: Sizes, folder: Path, console: Console) -> None:
-    """Measure, print, and write ``bench.json`` and ``bench.md``."""
+    """Measure all costs, print the tables, and write ``bench.json`` and ``bench.md``."""
     case = case_file.load(str(PAPER))
     parts: list[Callable[[], Table]] = [
         partial(errors, sizes),

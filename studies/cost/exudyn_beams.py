@@ -29,7 +29,7 @@ from exudyn.itemInterface import (
 
 
 def build(given: dict[str, Any]) -> tuple[Any, int]:
-    """Return the assembled system of slender beam elements, and the sensor of its tip."""
+    """Return the assembled system of slender beam elements, and the number of its tip sensor."""
     mbs = exu.SystemContainer().AddSystem()
     ground = mbs.AddMarker(
         MarkerNodeCoordinate(nodeNumber=mbs.AddNode(NodePointGround()), coordinate=0)
@@ -94,7 +94,7 @@ def move(given: dict[str, Any], step: float) -> dict[str, Any]:
     settings.timeIntegration.endTime = given["duration"]
     settings.timeIntegration.numberOfSteps = round(given["duration"] / step)
     settings.timeIntegration.verboseMode = 0
-    # Below the default of 1e-8, which round-off of the stiff axes does not let converge.
+    # Looser than the default of 1e-8, which round-off of the axial stiffness makes impossible.
     settings.timeIntegration.newton.relativeTolerance = 1.0e-6
     settings.solution.file.write = False
     settings.solution.sensors.writePeriod = given["output_step"]

@@ -22,10 +22,10 @@ Rates = Callable[[float, Array], Array]
 METHODS = ("LSODA", "DOP853", "Radau")
 SOLVERS = (*METHODS, "odeint")
 
-# Relative tolerances, of which the loosest one with at most our error is used.
+# Relative tolerances; the comparison uses the loosest one with at most the error of the time step.
 TOLERANCES = 10.0 ** np.arange(-3.0, -13.5, -0.5)
-# Ratio of absolute and relative tolerance: of 1, 0.01, 1e-3, 1e-4 and 1e-5 the fastest one of LSODA
-# for the same energy residual.
+# Ratio of absolute to relative tolerance. Of 1, 0.01, 1e-3, 1e-4 and 1e-5, LSODA is fastest with
+# this one at equal energy residual.
 ABSOLUTE = 1.0e-3
 
 
@@ -85,7 +85,7 @@ def array_rates(system: GapSystem) -> Rates:
 
 
 def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance: float) -> Array:
-    """Return states (num_times, num_states) of a motion from rest at the output times, by scipy."""
+    """Return the states (num_times, num_states) of a motion from rest, by a solver of scipy."""
     times = OUTPUT_STEP * np.arange(round(duration / OUTPUT_STEP) + 1)
     start = np.zeros(num_states)
     tolerances = {"rtol": tolerance, "atol": ABSOLUTE * tolerance}
@@ -98,8 +98,8 @@ def generic(name: str, rates: Rates, num_states: int, duration: float, tolerance
 def match_tolerance(error: Callable[[float], float], target: float) -> tuple[float | None, float]:
     """Return the largest of ``TOLERANCES`` with an error of at most ``target``, and the error.
 
-    Bisection assumes that the error decreases with the tolerance. If all tolerances have larger
-    errors, the result is None and the smallest error.
+    The bisection assumes that the error decreases with the tolerance. If no tolerance suffices, the
+    result is None and the smallest error.
 
     Args:
         error: function that returns the error of a tolerance.

@@ -4,7 +4,7 @@
     python -m studies.cost.live [CASE ...]
 
 The command changes four sliders of each case, 50 times by a click and 50 times by a drag. For each
-stage of the results it prints the median and the 95th percentile of the latency in ms.
+stage of the results, it prints median and 95th percentile of the latency in ms.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ MOVE = """(() => {{
 
 
 def measure(page: Page, address: str, movements: int) -> dict[str, list[float]]:
-    """Return the latencies in ms of each stage after the last movement of each change."""
+    """Return the latencies in ms by stage, from the last movement of each change."""
     page.open(address, 1200)
     page.wait_for("document.body.dataset.answered == number")
     starts = page.evaluate(

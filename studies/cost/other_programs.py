@@ -32,16 +32,16 @@ from studies.reference_models import impacting_beam
 FOLDER = Path(__file__).parent
 OTHER_CODES = FOLDER.parents[1] / "build" / "other-codes" / "bin" / "python"
 
-# Largest errors of both, as a part of the range of the tip.
+# Permitted errors of both programs, as fractions of the range of the tip.
 LEVELS = (0.02, 0.004)
 STEPS = (1.0e-3, 5.0e-4, 2.0e-4, 1.0e-4, 5.0e-5, 2.0e-5, 1.0e-5)
-# A contact of this stiffness in N/m and this damping in s/m stands for the restitution 0.
+# Stiffness in N/m and damping in s/m of a contact that represents a restitution of 0.
 SOFT = PowerContact(1.0e7, 1.0, damping=5.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Program:
-    """Another program, and the path of its interpreter."""
+    """Another program, with the path of its Python interpreter."""
 
     name: str
     module: str  #: of Python
@@ -75,7 +75,7 @@ class Problem:
         return float(np.abs(places - self.exact).max() / np.ptp(self.exact[:, -1]))
 
     def elsewhere(self) -> list[tuple[float, float, list[float]]]:
-        """Return step in s, error and wall time in s of each run of the other program."""
+        """Return step in s, error and wall times in s of each run by the other program."""
         done = subprocess.run(
             [str(self.program.python), str(FOLDER / self.script)],
             input=json.dumps({**self.given, "steps": self.steps}),
@@ -87,14 +87,14 @@ class Problem:
         return [(one["step"], self.off(np.array(one["places"])), [one["seconds"]]) for one in runs]
 
     def here(self, most: int, budget: float) -> list[tuple[float, float, list[float]]]:
-        """Return step in s, error and wall time in s of each run of this program."""
+        """Return step in s, error and wall times in s of each run by this program."""
         errors = [self.off(self.move(step)) for step in STEPS]
         seconds = time_in_turns([partial(self.move, step) for step in STEPS], most, budget)
         return list(zip(STEPS, errors, seconds, strict=True))
 
 
 def telescoped_beams() -> Problem:
-    """Return the beams of the paper without friction, up to the chaotic part of the motion."""
+    """Return the motion of the paper's beams without friction, before it becomes chaotic."""
     duration, case = 0.3, friction_case()
     boom, (model,) = build_boom(case), select_kind(BeamElements, [model_of(case, "beam-fe")])
     system = without_friction(gap_system(case, boom, model))
@@ -133,7 +133,7 @@ def telescoped_beams() -> Problem:
 
 
 def ball_on_beam() -> Problem:
-    """Return a ball that falls on a cantilever, up to the first lift-off after chatter."""
+    """Return the motion of a ball on a cantilever, up to the first lift-off after chatter."""
     duration, step = 0.03, 1.0e-6
     mass, stiffness = impacting_beam.beam(impacting_beam.ELEMENTS)
     height = impacting_beam.HEIGHT
@@ -168,7 +168,7 @@ PROBLEMS = {"telescoped beams": telescoped_beams, "ball on a beam": ball_on_beam
 
 
 def other_programs(most: int, budget: float, problems: Sequence[str] = tuple(PROBLEMS)) -> Table:
-    """Return the largest step of each program for each permitted error, and its cost.
+    """Return the table of the largest step of each program for each permitted error, with costs.
 
     Args:
         most, budget: repetitions of runs, as in :func:`studies.cost.timing.time_in_turns`.
@@ -199,7 +199,7 @@ def _at_levels(
     ours: Sequence[tuple[float, float, list[float]]],
     theirs: Sequence[tuple[float, float, list[float]]],
 ) -> Iterator[Sequence[Cell]]:
-    """Yield a row of each program for each level of error that both reach."""
+    """Yield a table row of each program for each permitted error that both reach."""
     for level in LEVELS:
         found = [next((run for run in runs if run[1] <= level), None) for runs in (ours, theirs)]
         if found[0] is None or found[1] is None:

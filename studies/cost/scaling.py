@@ -37,8 +37,8 @@ from studies.study import wide_console
 SIZED = {"paper": "paper.toml", "friction": "paper-friction.toml"}
 OUT = Path("runs/out/scaling")
 
-# Goals: exponent of time against size, wall s of the default mesh's reduction and of ten seconds of
-# its motion, wall s and GB of a million degrees of freedom a segment.
+# Goals: exponent of time over size; wall times in s of the default mesh's reduction and of ten
+# seconds of its motion; wall time in s and memory in GB of 1e6 degrees of freedom per segment.
 EXPONENT_GOAL = 1.2
 DEFAULT_GOAL, MOTION_GOAL = 5.0, 1.5
 MILLION_GOALS = 300.0, 8.0
@@ -102,7 +102,7 @@ def measure(sizes: Sizes) -> Iterator[Table]:
     yield _buckling(sizes)
     dofs, last, (seconds, peak) = [run["dofs"] for run in runs], runs[-1], MILLION_GOALS
     wall = _exponent(dofs, [run["total_seconds"] for run in runs])
-    # Memory of processes at their start, without shells.
+    # The memory of processes at their start, without shells.
     memory = _exponent(dofs, [run["peaks"]["fields"] - run["idle"] for run in runs])
     yield Table.of_rows(
         "scaling-goals",
@@ -118,7 +118,7 @@ def measure(sizes: Sizes) -> Iterator[Table]:
 
 
 def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str) -> Table:
-    """Return the time of each stage of each run."""
+    """Return the table of the wall time of each stage of each run."""
     columns = {
         "case": "", "mesh m": ".2g", "ranks": ".0f", "dofs a segment": ".0f",
         **{f"{stage} s": ".2f" for stage in STAGES}, "all s": ".2f", "modes": ".0f",
@@ -139,7 +139,7 @@ def _stages(name: str, title: str, runs: Sequence[Mapping[str, Any]], note: str)
 
 
 def _buckling(sizes: Sizes) -> Table:
-    """Return cost and lowest factor of the buckling of a bent segment, for sizes and ranks."""
+    """Return the table of cost and lowest buckling factor of a bent segment, by size and ranks."""
     rows = []
     for mesh in sizes.buckling:
         runs = [_measure_run(ranks, "buckle", mesh) for ranks in sizes.ranks]
@@ -166,7 +166,7 @@ def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
 
 
 def _measure_run(ranks: int, *what: object) -> dict[str, Any]:
-    """Return the results of a run in separate processes."""
+    """Return the measurements of a run in separate processes."""
     launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks), "--oversubscribe"]
     if launcher and shutil.which("mpirun") is None:
         raise FileNotFoundError("several ranks take mpirun, which is not installed")
@@ -265,7 +265,7 @@ def _buckle(size: str) -> None:
 
 
 def _motion(system: GapSystem, duration: float, step: float) -> list[float]:
-    """Return step in s, wall time in s, time of a step in ns, contact changes, residual."""
+    """Return step in s, wall time in s, time per step in ns, contact changes, energy residual."""
     # The first output compiles the loop.
     FixedStep(step)(Motion(system, 1.0e-3))
     start = perf_counter()
@@ -284,7 +284,7 @@ def _peak() -> float:
 
 
 def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
-    """Measure, print, and write ``scaling.json`` and ``scaling.md``."""
+    """Measure all costs, print the tables, and write ``scaling.json`` and ``scaling.md``."""
     data = {"sizes": asdict(sizes)}
     write_tables(folder, "scaling", "What a shell costs", data, measure(sizes), console)
 

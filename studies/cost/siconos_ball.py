@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A ball that falls on a cantilever in Siconos: ``python siconos_ball.py < GIVEN.json``.
+"""Ball that falls on a cantilever, in Siconos: ``python siconos_ball.py < GIVEN.json``.
 
 The interpreter needs Siconos, but not this project. For each step, the script prints the motion of
 ball and tip, and the wall time in s.
@@ -19,7 +19,7 @@ from siconos import kernel
 def move(given: dict[str, Any], step: float) -> dict[str, Any]:
     """Return the positions of ball and tip in m, and the wall time in s, for a step in s.
 
-    The scheme is Moreau-Jean with θ = ½ and the restitution 0.
+    The scheme is Moreau-Jean with θ = ½ and a coefficient of restitution of 0.
     """
     mass, stiffness = (np.array(given[name]) for name in ("mass", "stiffness"))
     n = len(mass)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Cost of telescoping during the motion.
+"""Cost of telescoping during a motion.
 
-The paper's boom extends by 4 m during the motion; the same boom with the same pads at a fixed
-extension is the reference.
+The paper's boom extends by 4 m during the motion. The reference is the same boom with the same pads
+at a fixed extension.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ CASE = CASES / "drawn-out.toml"
 MODELS = ("kantorovich-5", "beam-fe", "timoshenko", "shell")
 DURATION = 10.0
 
-# Goals: processor time relative to a fixed extension, and processor time in s from a shell's mesh
-# to its system.
+# Goals: processor time as a multiple of that at a fixed extension, and processor time in s of the
+# reduction of a shell.
 BEAM_GOAL, SHELL_GOAL, BUILT_GOAL = 3.0, 5.0, 15.0
 
 # Lateral resistance: prescribed normal forces of pads in N, or dashpots in N·s/m.
@@ -44,7 +44,7 @@ _PAD = 0.1
 
 
 class Cost(NamedTuple):
-    """Processor time in s for a system and for its motion, and the number of modes."""
+    """Processor times in s of the construction and the motion of a system; number of modes."""
 
     modes: int
     built: float
@@ -91,7 +91,7 @@ def telescoping(models: Sequence[str] = MODELS, duration: float = DURATION) -> T
 def _cases(duration: float, values: Mapping[str, Any]) -> tuple[Case, Case]:
     """Return the cases with telescoping and at a fixed extension."""
     case = case_file.load(str(CASE))
-    # A flat boom without a drive needs the forces.
+    # Without a drive, friction of a planar boom needs given normal forces.
     joints = tuple(replace(joint, normal_forces=(0.0, 0.0)) for joint in case.joints)
     case = case.model_copy(update={"joints": joints})
     times = {"time.duration": duration, "joint.drive.time": duration}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Wall times of compared runs, measured in turns, and tables of results."""
+"""Measurement of wall times of runs that take turns, and writer of tables."""
 
 from __future__ import annotations
 
@@ -24,12 +24,12 @@ NOISE = (
 def time_in_turns(
     runs: Sequence[Callable[[], object]], most: int, budget: float
 ) -> list[list[float]]:
-    """Return the wall times of each run in s. All runs take turns.
+    """Return the wall times in s of each run; the runs take turns.
 
     Args:
         runs: functions to time.
         most: largest number of repetitions of each run.
-        budget: total wall time in s of the repetitions of one run; no repetition starts after it.
+        budget: wall time in s of all repetitions of a run, after which no repetition starts.
     """
     seconds: list[list[float]] = [[] for _ in runs]
     for _ in range(most):

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Examples of the paper, integrated by numerical methods of 1997 and by this program.
+"""Motions of the paper's examples by numerical methods of 1997 and by this program.
 
 The paper integrates beam elements by the modal technique in 4375 steps for 7 s, with contact and
 friction forces on a few modes. It does not state the scheme, the number of modes, or whether
-contact forces were iterated. This study tries all combinations.
+contact forces were iterated. This study computes all combinations.
 """
 
 from __future__ import annotations
@@ -37,13 +37,13 @@ STEPS = (3.2e-3, 1.6e-3, 0.8e-3)
 PAPER_STEP = STEPS[1]
 # Numbers of modes of both segments in the modal technique.
 MODES = (6, 8, 10, 12, 14)
-# Relative changes of loads, since each run is a sample.
+# Relative changes of the loads of ensemble members.
 MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
 
 
 @dataclass(frozen=True, slots=True)
 class Numerics:
-    """Numerical method of 1997: scheme, step, and iterated or lagged contact forces."""
+    """Numerical method of 1997: scheme, step, and either iterated or lagged contact forces."""
 
     scheme: Scheme  #: scheme of the steps
     iterated: bool  #: whether gaps and friction agree with the end of a step, or lag by one
@@ -74,7 +74,7 @@ class ModelRun:
 
     @classmethod
     def of(cls, run: Trajectory, put_in: float = 0.0, unconverged: float = 0.0) -> ModelRun:
-        """Return the run of a trajectory; ``put_in`` is the input energy in J, if known."""
+        """Return the run of a trajectory; ``put_in`` in J is, if 0, the largest work of its loads."""
         kinetic, strain, contact, work, *losses = (run.data[name].values for name in ENERGIES)
         present = kinetic + strain + contact + sum(losses)
         tip, head = (run.data[place].values for place in ("tip", "head"))
@@ -83,7 +83,7 @@ class ModelRun:
 
     @property
     def balance(self) -> Array:
-        """The error (num_times,) of the energy balance over the input energy; NaN if unknown."""
+        """The error (num_times,) of the energy balance, as a fraction of the input energy."""
         return self.gained / self.put_in
 
     def at(self, time: Array) -> ModelRun:
@@ -94,7 +94,7 @@ class ModelRun:
 
     @property
     def first_peak(self) -> float:
-        """Largest deflection of the tip in the first second in m."""
+        """The largest deflection of the tip in m in the first second."""
         return float(self.tip[self.time <= 1.0].max())
 
     @property
@@ -113,13 +113,13 @@ class Sample:
 
     @property
     def elements(self) -> ModelRun:
-        """Run of the finite elements with play."""
+        """The run of the finite elements with play."""
         return self.models[-1]
 
     def peaks(self, cutoff: float) -> tuple[float, float]:
-        """Return the distances of slow peaks within six seconds and later (S3).
+        """Return the largest distance of slow peaks in the first six seconds, and later (S3).
 
-        If the energy of a model diverges, they are infinite and NaN.
+        If the energy of a model diverges, the distances are infinite and NaN.
         """
         if min(one.divergence_time for one in self.models) < np.inf:
             return np.inf, np.nan
@@ -134,7 +134,7 @@ class Sample:
         return early <= DIVERGENCE < late
 
     def tip_distances(self) -> tuple[float, float]:
-        """Return the largest relative distance of two tips within six seconds and later (S7)."""
+        """Return the largest relative distance of two tips in the first six seconds, and later."""
         distance = _largest_difference([one.tip for one in self.models])
         early = self.elements.time <= CONFORMITY
         return float(distance[early].max()), float(distance[~early].max())
@@ -151,7 +151,7 @@ class Sample:
 
 @dataclass(frozen=True, slots=True)
 class Example:
-    """Example of the paper with its models and accurate members."""
+    """Example of the paper, with its models and with accurate motions of an ensemble."""
 
     case: Case  #: its file's
     systems: Mapping[str, GapSystem]  #: systems of its models by name
@@ -162,14 +162,14 @@ class Example:
 
     @classmethod
     def of(cls, case: Case, members: int) -> Example:
-        """Create an example with accurate solutions of several ensemble members."""
+        """Return an example with accurate motions of several ensemble members."""
         boom = build_boom(case)
         names = (*SERIES, ELEMENTS, BONDED)
         systems = {name: gap_system(case, boom, model_of(case, name)) for name in names}
         cutoff = slow_cutoff(boom, case.time)
         assert cutoff is not None
         runs = run_parallel(
-            # As a run of the case moves the model.
+            # The same motion as in a run of the case.
             lambda one: ModelRun.of(one[1].integrator(vary_motion(one[1].motion, "load", one[0]))),
             [
                 (factor, MotionPlan.of(systems[name], case, model_of(case, name)))
@@ -198,7 +198,7 @@ class Example:
         ]
 
     def with_accurate_series(self, samples: Sequence[Sample]) -> list[Sample]:
-        """Return the samples with an accurate series, as from a general solver with many steps."""
+        """Return the samples with accurate motions of the series, as by a general solver."""
         members = [self.accurate[i % MEMBERS % len(self.accurate)] for i in range(len(samples))]
         return [
             replace(one, models=[*(run.at(one.elements.time) for run in series), one.elements])
@@ -227,5 +227,5 @@ def _move(
 
 
 def _largest_difference(curves: Sequence[Array]) -> Array:
-    """Return the largest difference (num_times,) of any two tips over the largest range."""
+    """Return the largest difference (num_times,) of any two tips, as a fraction of the range."""
     return np.asarray(np.ptp(np.array(curves), axis=0) / max(np.ptp(one) for one in curves))

@@ -27,11 +27,11 @@ from dynamics.motion import Motion
 from dynamics.trajectory import Output, Trajectory
 from studies.study import Verification
 
-# Rounds of gaps and friction within a step, and of gaps alone.
+# Maximum numbers of iterations in a step: of gaps with friction, and of gaps alone.
 ROUNDS, NEWTON = 8, 30
 # Tolerance of penetrations in m.
 TOLERANCE = 1.0e-13
-# Limit of coordinates in √kg·m, beyond which a motion diverges.
+# Modal coordinates in √kg·m above which a motion counts as divergent.
 DIVERGED = 1.0e5
 
 
@@ -60,7 +60,7 @@ class SchemeRun:
 
 
 def lowest(system: GapSystem, modes: int) -> GapSystem:
-    """Return the system truncated to its lowest modes, as in the modal technique."""
+    """Return the system with only its lowest modes, as in the modal technique."""
     kept = np.argsort(system.omega2, kind="stable")[:modes]
     return replace(
         system,
@@ -206,7 +206,7 @@ def _fill_motion(
 
 
 PER_PERIOD = 10
-# Steps for the measurement of a root.
+# Number of steps for the measurement of an eigenvalue.
 STEPS = 100
 
 SOURCE = "roots of the amplification matrix, Bathe 1996"
@@ -219,8 +219,8 @@ def textbook_root(scheme: Scheme, phase: float) -> complex:
     Bathe (1996, section 9.4).
 
     Args:
-        scheme: one of the three.
-        phase: ω h.
+        scheme: one of the three schemes.
+        phase: ω h, the circular frequency times the step.
     """
     if scheme == NEWMARK:
         return complex(np.exp(2.0j * np.arctan(0.5 * phase)))
@@ -268,7 +268,7 @@ def amplitude_loss(root: complex) -> float:
 
 
 def verifications() -> Iterator[Verification]:
-    """Return the verifications of period and amplitude of each scheme, at ten steps per period."""
+    """Yield the verifications of period and amplitude of each scheme, at ten steps per period."""
     phase = 2.0 * np.pi / PER_PERIOD
     for scheme in (NEWMARK, WILSON, CENTRAL):
         roots = measured_root(scheme, phase), textbook_root(scheme, phase)
@@ -288,5 +288,5 @@ def verifications() -> Iterator[Verification]:
 
 
 def _rotating_root(roots: object) -> complex:
-    """Return the eigenvalue with a positive angle."""
+    """Return the eigenvalue with a positive imaginary part."""
     return complex(max(np.asarray(roots), key=lambda root: root.imag))

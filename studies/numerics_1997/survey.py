@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Numerical methods of 1997 that reproduce the paper's statements S3, S7, S8 and S10.
+"""Survey of the numerical methods of 1997 that reproduce the statements S3, S7, S8 and S10.
 
-The measures follow :mod:`runs.paper.rules`. The modal technique integrates beam elements and the
-series; a general solver with at most 2000 steps also integrates the series.
+:mod:`runs.paper.rules` defines the measures. The modal technique integrates beam elements and the
+series. A general solver with at most 2000 steps also integrates the series.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ LARGEST_TIP = 10.0
 
 @dataclass(frozen=True, slots=True)
 class Solved:
-    """Motion up to the last step of a general solver."""
+    """Motion by a general solver up to its last step."""
 
     time: Array  #: (num_steps + 1,) in s
     #: (num_steps + 1, num_modes).
@@ -75,7 +75,7 @@ WITHOUT, WITH = CASES / "paper.toml", CASES / "paper-friction.toml"
 
 # Tolerances of the general solver, from rough to fine.
 TOLERANCES = (1.0e-2, 1.0e-3, 1.0e-4, 1.0e-6, 1.0e-8)
-# Interval in s around the 7 s after which the paper's elements with friction diverged.
+# Interval in s around 7 s, when the beam elements of the paper with friction diverged.
 ABOUT = 1.0
 
 
@@ -85,7 +85,7 @@ Way = tuple[str, float, str, bool]
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Results on one statement by numerical methods of 1997."""
+    """Results for one statement by numerical methods of 1997."""
 
     shown: bool  #: whether most runs with some numerics show it
     why: str  #: which, and in how many runs
@@ -120,7 +120,7 @@ class Survey:
 
     @cached_property
     def outcomes(self) -> dict[str, Outcome]:
-        """Results on each statement."""
+        """The results for each statement."""
         free, frictional = (
             named(self.without, self.free),
             named(self.with_friction, self.frictional),
@@ -172,7 +172,7 @@ class Survey:
 def named(
     example: Example, samples: Mapping[Numerics, Sequence[Sample]]
 ) -> dict[str, Sequence[Sample]]:
-    """Return the samples by the name of their method, also with accurately solved series."""
+    """Return the samples by name of the method, also those with accurate motions of the series."""
     return {str(how): found for how, found in samples.items()} | {
         f"{how}, the series solved accurately": example.with_accurate_series(found)
         for how, found in samples.items()
@@ -185,7 +185,7 @@ def diverges_near_7_s(sample: Sample) -> bool:
 
 
 def reach(example: Example, friction: bool) -> dict[Way, float]:
-    """Return the end time in s of the general solver at each tolerance, for both series."""
+    """Return the time in s that the general solver reaches, for each tolerance and series."""
     return {
         (method, tolerance, model, friction): float(
             solve(example.systems[model], INTERVAL, method, tolerance, SERIES_STEPS).time[-1]
@@ -200,7 +200,7 @@ def share(shows: Iterable[bool]) -> float:
 
 
 def _most(samples: Mapping[str, Sequence[Sample]], shows: Callable[[Sample], bool]) -> Outcome:
-    """Return the numerical method that reproduces a statement most often."""
+    """Return the results of the numerical method that reproduces a statement most often."""
     shares = {how: share(map(shows, found)) for how, found in samples.items()}
     best = max(shares, key=lambda how: shares[how])
     often = f"in {100.0 * shares[best]:.0f} % of runs"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of statements that an accurate solution contradicts, by numerical methods of 1997."""
+"""Tables of the study of statements that accurate solutions contradict, by methods of 1997."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ POINTS = 1000  # of a curve in a figure
 
 @define_study("numerics-1997", TITLE)
 def study(progress: Progress) -> Iterator[Piece]:
-    """Run both examples with all schemes, numbers of modes and steps, iterated or lagged."""
+    """Study both examples with all schemes, steps, numbers of modes, and types of iteration."""
     survey = Survey.of(progress)
     yield from tables(survey)
     yield from verifications()
@@ -63,7 +63,7 @@ def outcome_table(survey: Survey) -> Table:
 
 
 def free_table(survey: Survey) -> Table:
-    """Return the table without friction: a row for each method and an accurate solution."""
+    """Return the table of motions without friction: a row for each method, and an accurate one."""
     example = survey.without
     peak = np.mean([one.elements.first_peak for one in example.accurate])
     rows: list[Sequence[Cell]] = []
@@ -88,7 +88,7 @@ def free_table(survey: Survey) -> Table:
 
 
 def frictional_table(survey: Survey) -> Table:
-    """Return the table with friction, with the rows of :func:`free_table`."""
+    """Return the table of motions with friction, with the rows of :func:`free_table`."""
     rows: list[Sequence[Cell]] = []
     example = survey.with_friction
     for how, samples in (("solved accurately", example.accurate), *survey.frictional.items()):
@@ -163,14 +163,14 @@ def plots(survey: Survey) -> Iterator[Plot]:
 
 
 def _energies(runs: Sequence[ModelRun]) -> tuple[str, str]:
-    """Return text on the energy: the time of its divergence, or the gain or loss."""
+    """Return texts on the energy of runs: the time of divergence, and the gain or loss."""
     breaks = [run.divergence_time for run in runs]
     ends = [TO_PERCENT * run.balance[-1] for run in runs]
     return _span(breaks), _span([end for end in ends if end < TO_PERCENT])
 
 
 def _parting(peaks: Sequence[tuple[float, float]]) -> tuple[float, float, float]:
-    """Return median peak distances before and after six seconds, and the share of S3, in %."""
+    """Return median distances of peaks before and after six seconds, and the share of S3, in %."""
     early, late = np.median(peaks, axis=0)
     shown = share(before <= DIVERGENCE < after for before, after in peaks)
     return TO_PERCENT * float(early), TO_PERCENT * float(late), TO_PERCENT * shown

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reference models for verification: other shells, solids, the unreduced shell."""
+"""Reference models for verification, for example solids, plates and the unreduced shell."""

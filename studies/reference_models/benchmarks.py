@@ -18,7 +18,7 @@ from shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
 from studies.reference_models.static_shell import StaticShell, hold
 
 X, Y, Z = 0, 1, 2
-# In place of 5/6: negligible shear strain.
+# Shear correction in place of 5/6, which makes shear strain negligible.
 SHEAR_RIGID = 100.0
 
 
@@ -33,7 +33,7 @@ class TwistedBeam(NamedTuple):
 
 
 class Published(NamedTuple):
-    """Published values, with the names of the functions of this module."""
+    """Published values; the fields have the names of the functions of this module."""
 
     scordelis_lo_roof: float
     pinched_cylinder: float
@@ -45,10 +45,10 @@ PUBLISHED = Published(0.3024, 1.8248e-5, 0.0940, TwistedBeam(5.4245e-3, 1.7532e-
 
 
 def grid(surface: Callable[[Array, Array], Array], n: int, m: int) -> tuple[Array, Indices]:
-    """Return triangles between points on a surface, with alternating diagonals.
+    """Return points and triangles on a surface, with alternating diagonals.
 
-    ``surface`` returns positions (num, 3) for two parameters (num,) from 0 to 1. The grid has n and
-    m edges along them: points ((n + 1)(m + 1), 3) and triangles (2 n m, 3).
+    ``surface`` returns positions (num, 3) for two parameters (num,) from 0 to 1. With n and m edges
+    along them, the grid has points ((n + 1)(m + 1), 3) and triangles (2 n m, 3).
     """
     first, second = np.meshgrid(
         np.linspace(0.0, 1.0, n + 1), np.linspace(0.0, 1.0, m + 1), indexing="ij"
@@ -63,7 +63,7 @@ def grid(surface: Callable[[Array, Array], Array], n: int, m: int) -> tuple[Arra
 
 
 def scordelis_lo_roof(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
-    """Return the sag of the middle of the free edges of a barrel vault under its own weight.
+    """Return the deflection at mid-length of the free edges of a barrel vault under its weight.
 
     Scordelis and Lo (1964): radius 25, length 50, thickness 0.25, half angle 40°, diaphragms at
     both ends. The mesh is a quarter with n edges along each side.
@@ -86,7 +86,7 @@ def scordelis_lo_roof(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
 def pinched_cylinder(
     n: int, drilling: float = DRILLING_OF_CURVED, shear_correction: float = SHEAR_CORRECTION
 ) -> float:
-    """Return the displacement under two opposite forces of 1 on the middle of a cylinder.
+    """Return the displacement of two opposite forces of 1 at mid-length of a cylinder.
 
     Radius 300, length 600, thickness 3, diaphragms at its ends (Flügge 1960; Belytschko et al.
     1985). The mesh is an eighth. The published value belongs to a shell without shear strain, in
@@ -115,7 +115,7 @@ def pinched_cylinder(
 
 
 def hemisphere(n: int, drilling: float = DRILLING_OF_CURVED) -> float:
-    """Return the displacement of the equator of a hemisphere under two pairs of forces of 2.
+    """Return the displacement of a force at the equator of a hemisphere: two pairs of forces of 2.
 
     Radius 10, thickness 0.04, a hole of 18° at the pole. The mesh is a quarter with n edges per
     side.

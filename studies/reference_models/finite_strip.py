@@ -4,8 +4,8 @@
 Supports keep the shape of the ends of a member, and permit warping and rotation. The member buckles
 in m half-waves along x: transverse displacements are proportional to sin(mπx/L), axial
 displacements to cos(mπx/L). Across a strip in-plane displacements are linear, the deflection is
-cubic, and the plate is a Kirchhoff plate. The method has no mesh, interpolation or plate theory of
-the shell.
+cubic, and the plate is a Kirchhoff plate. The method shares neither mesh nor interpolation nor
+plate theory with the shell.
 """
 
 from __future__ import annotations
@@ -82,7 +82,7 @@ class Strips(NamedTuple):
         across = self.last[i] - self.first[i]
         width = float(np.linalg.norm(across))
         c, s = across / width
-        # Of one edge: u, in the strip's plane, normal to it, turn.
+        # Degrees of freedom of an edge: along x, in the plane of the strip, normal to it, rotation.
         one = np.array([[1.0, 0, 0, 0], [0, c, s, 0], [0, -s, c, 0], [0, 0, 0, 1.0]])
         turn = np.kron(np.eye(2), one)
         plane = young / (1.0 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, 0.5 * (1 - nu)]])
@@ -109,7 +109,7 @@ def _row(dof: int) -> Array:
 def _shapes(p: float, width: float) -> tuple[Array, Array, Array, Array, Array]:
     """Return rows (8,) of u, v, w, w′ and w″ at a fraction p of the width of a strip."""
     u, v = ((1.0 - p) * _row(n) + p * _row(n + 4) for n in (0, 1))
-    # Hermite's cubics: the turn about x is the slope of the deflection.
+    # Hermite's cubics, in which the rotation about x is the slope of the deflection.
     w = np.zeros((3, 8))
     w[:, 2] = 1 - 3 * p**2 + 2 * p**3, (6 * p**2 - 6 * p) / width, (12 * p - 6) / width**2
     w[:, 3] = width * (p - 2 * p**2 + p**3), 1 - 4 * p + 3 * p**2, (6 * p - 4) / width

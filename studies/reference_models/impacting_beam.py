@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A ball that falls on the tip of a cantilever, with data of a Siconos tutorial."""
+"""Ball that falls on the tip of a cantilever, with the data of a Siconos tutorial."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ SPEED, HEIGHT, DURATION = -2.0, 1.0e-6, 0.06
 
 
 def beam(elements: int) -> tuple[Array, Array]:
-    """Return mass and stiffness of Euler-Bernoulli elements; the tip's unknowns are first."""
+    """Return mass and stiffness matrix of Euler-Bernoulli elements, with the tip's rows first."""
     length, area = 1.0 / elements, np.pi * RADIUS**2
     bend, turn = length, length**2
     # Upper triangles, of which the lower ones are the mirror image.
@@ -38,8 +38,8 @@ def beam(elements: int) -> tuple[Array, Array]:
 def moreau_jean(step: float, duration: float = DURATION) -> Array:
     """Return the positions (num_steps + 1, 2) of ball and tip in m by Moreau-Jean with θ = ½.
 
-    If the predicted gap is closed, Newton's impact law with the restitution 0 applies to the
-    velocity at the end of the step (Acary and Brogliato 2008).
+    If the predicted gap is closed, Newton's impact law with a coefficient of restitution of 0
+    determines the velocity at the end of the step (Acary and Brogliato 2008).
     """
     mass, stiffness = beam(ELEMENTS)
     n = len(mass)
@@ -61,7 +61,7 @@ def moreau_jean(step: float, duration: float = DURATION) -> Array:
 
 
 def falling(elements: int, stop: Gap, duration: float) -> Motion:
-    """Return the motion of ball and beam over a duration in s, with a contact law."""
+    """Return the motion of ball and beam, before integration, for a contact law and duration."""
     omega2, shapes = eigh(*beam(elements)[::-1])
     tip, ball = np.append(shapes[0], 0.0), np.eye(omega2.size + 1)[-1]
     system = GapSystem(

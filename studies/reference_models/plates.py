@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Flat plates with known solutions: constant strain, vibration, load on a patch."""
+"""Flat plates with exact solutions: constant strain, vibration, load on a patch."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ Field = Callable[[Array, Array], Array]
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 PATCH_THICKNESS = 0.05
 
-# Columns are the patch's x and y and its normal in space: no axis lies along one of space.
+# Columns are the directions of x, y and normal of the patch, oblique to all axes of space.
 OBLIQUE = np.asarray(Rotation.from_rotvec([0.7, -1.1, 0.4]).as_matrix())
 
 
@@ -33,7 +33,7 @@ def rigidities(thickness: float) -> tuple[float, float]:
 
 
 def rectangle(length: float, width: float) -> Field:
-    """Return positions (num, 3) in m on [0, length] × [0, width] for parameters from 0 to 1."""
+    """Return the map of two parameters (num,) to positions (num, 3) in m on a rectangle."""
     return lambda x, y: np.stack([length * x, width * y, np.zeros_like(x)], axis=1)
 
 
@@ -43,10 +43,11 @@ class ConstantStrain:
 
     Args:
         name: label in tables.
-        displacement: (num, 3) along the plate's x, y and normal in m, at x, y (num,) in m.
-        rotation: (num, 3) about them in rad.
-        membrane, bending: (2, 2) ε, and κ in 1/m.
-        shear: (2,) γ.
+        displacement: function of x and y (num,) in m that returns displacements (num, 3) in m along
+            x, y and the normal of the plate.
+        rotation: function of x and y that returns rotations (num, 3) in rad about these axes.
+        membrane, bending: strains ε and curvatures κ in 1/m, (2, 2) each.
+        shear: shear strains γ (2,).
     """
 
     name: str
@@ -58,7 +59,7 @@ class ConstantStrain:
 
     @property
     def couple(self) -> Array:
-        """The couple (3,) in N·m/m² in equilibrium: e3 × Q with the shear force Q."""
+        """The couple (3,) per area in N·m/m² that equilibrium needs: e3 × Q for shear force Q."""
         q1, q2 = rigidities(PATCH_THICKNESS)[1] * self.shear
         return np.array([-q2, q1, 0.0])
 
@@ -134,7 +135,7 @@ class Patch:
         return cls(points, triangles, StaticShell(points, triangles, PATCH_THICKNESS, STEEL))
 
     def exact(self, state: ConstantStrain) -> Array:
-        """Return the known solution (num_dofs,)."""
+        """Return the exact solution (num_dofs,) in m and rad."""
         shell = self.shell
         solution = np.zeros(shell.num_dofs)
         for places, dofs, field in (
@@ -146,7 +147,7 @@ class Patch:
         return solution
 
     def solve(self, state: ConstantStrain) -> Array:
-        """Return the solution (num_dofs,) with the known solution prescribed at the edges."""
+        """Return the shell's solution (num_dofs,), with the exact solution given at the edges."""
         shell, exact = self.shell, self.exact(state)
         held: dict[int, float] = {}
         for places, dofs in (
@@ -179,8 +180,8 @@ class SupportedPlate:
 
     def frequencies(self, n: int, count: int) -> Array:
         """Return the lowest frequencies (count,) in Hz of a shell with n edges along each side."""
-        # The drilling tie and the wall's inertia have frequencies of their own, from
-        # √(12 DRILLING G/ρ)/(2π t) on: in a thick plate a soft tie comes too near.
+        # Drilling stiffness and inertia of the plate add frequencies above
+        # √(12 DRILLING G/ρ)/(2π t), which must not be low: thick plates need more stiffness.
         shell = StaticShell(
             *grid(rectangle(self.length, self.width), n, n),
             self.thickness,
@@ -211,7 +212,7 @@ class SupportedPlate:
         square = mass * inertia
         linear = mass * (plate * k2 + shear) + inertia * shear * k2
         constant = shear * plate * k2**2
-        # The lower root, written without a difference of nearly equal numbers.
+        # The lower root, in a form without the difference of nearly equal numbers.
         omega2 = 2.0 * constant / (linear + np.sqrt(linear**2 - 4.0 * square * constant))
         return self._lowest(np.sqrt(omega2), count)
 
@@ -241,7 +242,7 @@ class PressedPlate:
     end: tuple[float, float]
 
     def shell(self, size: float) -> float:
-        """Return the mean deflection of the patch in m/N under a uniform unit force, by the shell.
+        """Return the mean deflection of the patch in m/N by the shell, under a uniform load of 1 N.
 
         Args:
             size: edge length in m; sides and patch corners are at whole multiples of it.
@@ -279,5 +280,5 @@ class PressedPlate:
         return float((given * np.outer(*means) ** 2).sum())
 
 
-# Nearly the outer flange of the paper's boom, under a pad beside its web.
+# Plate like the outer flange of the paper's boom, under a pad beside its web.
 FLANGE = PressedPlate(0.6, 0.3, 6.64e-3, (0.25, 0.025), (0.35, 0.075))

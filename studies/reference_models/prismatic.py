@@ -75,7 +75,7 @@ class Member:
         points, triangles = grid(surface, m, count)
         if self.closed:
             column = np.arange(len(points)) % (count + 1)
-            # The last point around is the first one.
+            # On a closed section, the last point is the first one.
             same = np.arange(len(points)) - np.where(column == count, count, 0)
             kept = column < count
             number = np.cumsum(kept) - 1
@@ -87,7 +87,7 @@ class Member:
 
         End sections rotate without distortion and are free to warp. The rate of twist is measured
         between the quarter points, away from local bending at the ends. The mesh has n edges across
-        each wall and m along x, a multiple of four.
+        each wall and m along x; m is a multiple of four.
         """
         shell = StaticShell(*self.mesh(n, m), self.thickness, STEEL)
         turn = np.cross([1.0, 0.0, 0.0], shell.nodes)
@@ -109,7 +109,7 @@ class Member:
         return torque / (STEEL.shear_modulus * rate)
 
 
-# Two legs of 100 mm, and a box of 100 mm by 60 mm.
+# An angle section with two legs of 100 mm, and a box of 100 mm by 60 mm.
 ANGLE = Member([(0.1, 0.0), (0.0, 0.0), (0.0, 0.1)], False, 0.001, 1.0)
 BOX = Member([(-0.03, -0.05), (0.03, -0.05), (0.03, 0.05), (-0.03, 0.05)], True, 0.001, 1.0)
 
@@ -157,7 +157,7 @@ class PlainBox:
     def compliance(
         self, size: float, supports: Sequence[float], x: float, y: float, drilling: float = DRILLING
     ) -> float:
-        """Return the vertical compliance in m/N of the top flange at x, at the points ±y.
+        """Return the vertical compliance in m/N of the top flange at the points (x, ±y).
 
         Args:
             size: target edge length in m.

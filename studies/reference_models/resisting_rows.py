@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contact and friction forces of one implicit step, accurate to round-off.
 
-The rows have the displacements z = free − C p, with their forces p and the compliance C of a step.
-A contact row follows its law, p = F(z), with F as in (4) of Rusiński and Wyciślok (1997). A
-friction row obeys |p| ≤ μN, and p = μN sign(z − place) if it moves from its place. Both laws are
-monotone, so that the forces minimise a convex function. Sweeps over the rows (Gauss-Seidel) reduce
-it, and Newton's method finds the minimum for the right active rows.
+Rows are contacts and frictions. Their displacements are z = z₀ − C p, with the displacements z₀
+without forces, the forces p and the compliance C of a step. A contact row follows its law p = F(z),
+F as in (4) of Rusiński and Wyciślok (1997). A friction row sticks at z_s while |p| ≤ μN, and slips
+with p = μN sign(z − z_s). Both laws are monotone, so that the forces minimise a convex function.
+Gauss-Seidel sweeps over the rows reduce it; Newton's method then finds the minimum.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ _MOST_NEWTON = 100
 # terms of the contacts' laws, one on each side of a row at most; of friction rows (num_frictions,)
 # μN in N and the displacements in m at which they stick.
 Problem = tuple[Array, Array, Terms, Array, Array]
-# Round-off of a displacement, as parts of the terms of its sum.
+# Round-off of a displacement, as a fraction of the terms that add up to it.
 _ROUND_OFF = 32.0 * float(np.finfo(np.float64).eps)
 
 
@@ -37,9 +37,9 @@ class ResistingRows:
 
     Args:
         laws: laws of the contact rows, without damping.
-        frictions: frictions of the rows that follow, with prescribed normal forces.
+        frictions: frictions of the following rows, with prescribed normal forces.
         compliance: (num_rows, num_rows) C in m/N, for displacements at the time of the forces.
-        onward: ratio of the displacement over the whole step to the displacement at this time.
+        onward: ratio of the displacement at the end of the step to that at the time of the forces.
 
     Attributes:
         displacements: displacements (num_rows,) of the rows in m at the end of the step.
@@ -88,7 +88,7 @@ class ResistingRows:
 
 @njit(**LOOP)
 def resist(problem: Problem, force: Array) -> bool:
-    """Improve ``force`` (num_rows,) in N until it solves the problem; False if it does not.
+    """Iterate ``force`` (num_rows,) in N to the solution; return True if it converges.
 
     A force is positive if it opposes a positive displacement. The initial values are a guess.
     """
@@ -101,7 +101,7 @@ def resist(problem: Problem, force: Array) -> bool:
             answer, slope[j] = _answer(problem, force, j)
             left[j] = answer - force[j]
             converged = converged and _excess(compliance, free, force, left[j], j) <= 1.0
-            # The sweep continues from this result.
+            # The next sweep starts from this result.
             force[j] = answer
         if converged:
             return True
@@ -119,7 +119,7 @@ def resist(problem: Problem, force: Array) -> bool:
 
 @njit(**LOOP)
 def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
-    """Return the largest residual of a row in m, and the slopes of the rows' responses."""
+    """Store residuals in N and slopes in N/m of all rows; return the largest residual in m."""
     compliance, free, _, _, _ = problem
     worst = 0.0
     for j in range(free.size):
@@ -131,7 +131,7 @@ def _defect(problem: Problem, force: Array, left: Array, slope: Array) -> float:
 
 @njit(**LOOP)
 def _excess(compliance: Array, free: Array, force: Array, change: float, j: int) -> float:
-    """Return the ratio of a change of the force of row j to its round-off."""
+    """Return the ratio of the displacement of row j by a change of its force to round-off."""
     reach = abs(free[j])
     for k in range(free.size):
         reach += abs(compliance[j, k] * force[k])
@@ -140,7 +140,7 @@ def _excess(compliance: Array, free: Array, force: Array, change: float, j: int)
 
 @njit(**LOOP)
 def _answer(problem: Problem, force: Array, j: int) -> tuple[float, float]:
-    """Return the force of row j for given other forces, and its slope over the displacement."""
+    """Return the force of row j in N for given other forces, and its derivative in N/m."""
     compliance, free, terms, bound, place = problem
     alone = free[j]
     for i in range(free.size):

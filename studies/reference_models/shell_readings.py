@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Readings of shells that serve proofs alone."""
+"""Outputs of shells for verification only."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from shell_model.segment.cross_section import Row, SectionNodes, quadratic
 
 
 def flange_deflection(outline: SectionNodes, side: float, y: float) -> Row:
-    """Return the row of the mean u_z in m at both ±y, on the top (side 1) or bottom (−1)."""
+    """Return the row of the mean u_z in m at (±y) on the top (side 1) or bottom flange (−1)."""
     face = outline.section.face("z", side)
     nodes, along = outline.along(outline.section.plates[face.plate])
     rows = []

@@ -20,7 +20,7 @@ from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, gram
 
-# In Hz, in place of zero, for a segment without support along x: far below all elastic modes.
+# Frequency in Hz, far below all elastic modes, for the statics of a segment that can move along x.
 STATIC = 0.01
 
 
@@ -41,7 +41,7 @@ def shell_alone(segment: Segment, size: float, places: Sequence[float] = ()) -> 
 
 
 def at_rest(shell: SegmentShell, forces: Array) -> Array:
-    """Return static displacements (num_dofs, num_forces) under forces of the same shape in N."""
+    """Return static displacements in m under forces in N, both (num_dofs, num_forces)."""
     solve = ShiftedSolver(shell, STATIC)
     moved = solve(forces)
     solve.destroy()
@@ -49,7 +49,7 @@ def at_rest(shell: SegmentShell, forces: Array) -> Array:
 
 
 def compliances(shell: SegmentShell, *rows: Row) -> list[float]:
-    """Return the compliance (num_rows,) of each row under its unit force in m/N."""
+    """Return the compliance (num_rows,) in m/N of each row: its displacement under a unit force."""
     forces = np.column_stack([shell.row(row) for row in rows])
     moved = at_rest(shell, forces)
     return [

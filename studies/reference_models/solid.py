@@ -29,7 +29,7 @@ from shell_model.segment.attachments import Attachments
 from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.shell import ON_LINE, Plates, Shell
 
-# Ratio of an edge to the one before it; effects decay more slowly at places than at corners.
+# Length ratios of successive edges along x and around; effects decay more slowly along x.
 _GROWTH_ALONG = 3.0
 _GROWTH_AROUND = 4.0
 
@@ -100,7 +100,7 @@ def mesh_quarter(
 
 
 def _growing(length: float, smallest: float, largest: float, growth: float) -> Array:
-    """Return edge lengths that grow up to the largest."""
+    """Return edge lengths in m over a length, which grow from the smallest up to the largest."""
     edges = [min(smallest, largest)]
     while sum(edges) < length:
         edges.append(min(growth * edges[-1], largest))
@@ -108,7 +108,7 @@ def _growing(length: float, smallest: float, largest: float, growth: float) -> A
 
 
 def _across(distance: float, wall: float, size: float, splits: int, layers: int) -> Array:
-    """Return the planes from the middle of the box to the outside of a wall."""
+    """Return the mesh planes in m from the middle of the box to the outer face of a wall."""
     clear = _growing(0.5 * (distance - wall), wall, size, _GROWTH_AROUND)[::-1]
     edges = [np.repeat(clear / splits, splits), np.full(layers, wall / layers)]
     return np.concatenate([[0.0], np.cumsum(np.concatenate(edges))])
@@ -151,7 +151,7 @@ class SolidFamily(Shell):
 
     Args:
         fixed: (num_fixed,) constrained degrees of freedom.
-        section: the walls.
+        section: section of the segment.
         midpoints: positions (num_midpoints, 3) on the mid-surfaces of the whole segment in m.
         means: rows (3 num_midpoints, num_dofs) of the mean displacements over the thickness there.
     """
@@ -189,7 +189,7 @@ class SolidFamily(Shell):
         return SectionNodes(x, self.midpoints[at], 3 * at[:, None] + np.arange(3), self.section)
 
     def row(self, weights: Row) -> Array:
-        """Return the row (num_dofs,) of an operator on means, for the motions of the class."""
+        """Return the row (num_dofs,) of an operator on means, for motions of the symmetry class."""
         of_means = np.zeros(self.means.shape[0])
         of_means[list(weights)] = list(weights.values())
         of_means = self.means.T @ of_means
@@ -208,7 +208,7 @@ def solid_forms(space: Any, material: Material) -> SolidForms:
     domain = space.mesh
     shear, nu = material.shear_modulus, material.poissons_ratio
     mu, lame, density = (
-        # Constants, not numbers: the compiled form then serves every material.
+        # With constants in place of numbers, one compiled form serves every material.
         fem.Constant(domain, PETSc.ScalarType(value))
         for value in (shear, 2.0 * shear * nu / (1.0 - 2.0 * nu), material.density)
     )
@@ -267,14 +267,14 @@ def _means(mesh: SolidMesh, nodes: Array, family: SymmetryClass) -> tuple[Array,
     places, quarter = _quarter_means(mesh, nodes)
     parts: list[tuple[Array, csr_matrix]] = []
     for signs, sides in zip(family.signs[:, :3], _SIDES, strict=True):
-        # A place in a mirror counts once.
+        # A point in a plane of symmetry counts once.
         mine = ~((on_plane(places, 1) & (sides[1] < 0)) | (on_plane(places, 2) & (sides[2] < 0)))
         image = diags(np.tile(signs, len(places))) @ quarter
         parts.append((places[mine] * sides, image[np.repeat(mine, 3)]))
     return np.concatenate([at for at, _ in parts]), csr_matrix(vstack([rows for _, rows in parts]))
 
 
-# Of the quarters, in the order of ``SymmetryClass.signs``.
+# Signs of y and z in the quarters, in the order of ``SymmetryClass.signs``.
 _SIDES = np.array([(1, 1, 1), (1, -1, 1), (1, 1, -1), (1, -1, -1)])
 
 
@@ -288,7 +288,7 @@ def _quarter_means(mesh: SolidMesh, nodes: Array) -> tuple[Array, csr_matrix]:
     stencils = list(_stencils(number.shape[1], number.shape[2], mesh.layers))
     stencil = np.repeat(np.arange(len(stencils)), [weights.size for *_, weights in stencils])
     j, k, weights = (np.concatenate(part) for part in zip(*stencils, strict=True))
-    # Outlines are read at mesh planes, not between them.
+    # Outlines are available only at mesh planes.
     taken = number[::2, j, k]
     places = np.empty((len(taken), len(stencils), 3))
     places[:, :, 0] = mesh.planes[0][:, None]

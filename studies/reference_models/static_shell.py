@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static shell with any triangle mesh, on one process.
+"""Static shell with any mesh of triangles, on one process.
 
-Degrees of freedom are components in space, so that supports, loads and outputs do not depend on the
-frames of the facets.
+Degrees of freedom are components along x, y and z, so that supports, loads and outputs do not
+depend on the coordinate systems of the facets.
 """
 
 from __future__ import annotations
@@ -25,10 +25,10 @@ from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
 from shell_model.segment.shell import ON_LINE, Plates, Shell
 from shell_model.segment.solver import times
 
-# Permitted residual as a part of the load.
+# Permitted residual of a solution as a fraction of the load.
 _UNBALANCED = 1.0e-3
 
-# Degree of freedom → the prescribed value in m or rad.
+# Prescribed value in m or rad by degree of freedom.
 Held = Mapping[int, float]
 
 
@@ -89,7 +89,7 @@ class StaticShell:
     def hold_at(
         self, axis: int, place: float, along: Sequence[int], about: Sequence[int] = ()
     ) -> dict[int, float]:
-        """Return constraints of displacements and rotations of all nodes at a coordinate in m."""
+        """Return constraints of displacements along and rotations about axes, at a place in m."""
         turned = np.abs(self.rotation_nodes[:, axis] - place) < ON_LINE
         moved = self.node_dofs[self.at(axis, place)]
         return hold(moved[:, list(along)]) | hold(self.rotation_dofs[turned][:, list(about)])
@@ -190,6 +190,6 @@ class StaticShell:
 
 
 def hold(dofs: Indices, values: float | Array = 0.0) -> dict[int, float]:
-    """Return constraints of degrees of freedom at a value or at values of the same shape."""
+    """Return constraints that prescribe a value, or a value for each degree of freedom."""
     values = np.broadcast_to(np.asarray(values, dtype=float), dofs.shape)
     return dict(zip(dofs.ravel().tolist(), values.ravel().tolist(), strict=True))

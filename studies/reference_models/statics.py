@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Static quantities that serve proofs alone."""
+"""Static quantities for verification only."""
 
 from __future__ import annotations
 

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Motion of the unreduced shells, the reference of the reduction.
+"""Motion of the unreduced shells, the reference for the reduction.
 
-Each segment moves by the generalised-α method; its matrix is factorised once. A step has three
-parts: a back-substitution for each segment without contact and friction; a small problem with
-constant compliance for the forces of contact and friction rows; and the displacements by these
-forces. Forces act at the time of the equilibrium equation of the method. Friction opposes the
-displacement over the whole step, and sticking rows do not move, except for round-off.
+Each segment is integrated by the generalised-α method; its matrix is factorised once. A step has
+three parts: a back-substitution for each segment without contact and friction; a small problem with
+constant compliance for the forces of contacts and frictions; and the displacements by these forces.
+Forces act at the time at which the method satisfies equilibrium. Friction opposes the displacement
+over the whole step, and sticking rows do not move, except for round-off.
 
 The generalised-α method (Chung and Hulbert 1993) is
 
@@ -89,7 +89,7 @@ class GeneralisedAlpha:
 
     @property
     def reach(self) -> float:
-        """Factor c in s² of an acceleration a_{n+1} in d*."""
+        """Factor c in s² of the acceleration a_{n+1} in d*."""
         return (1.0 - self.force_shift) * self.beta * self.step**2
 
     @property
@@ -124,14 +124,14 @@ class SegmentStepper:
         self.compliance = gram(shell.comm, rows.T.toarray(), self._columns)
         self._load, self._scratch = shell.mass.createVecs()
         self._load.array[:] = load
-        # d, v, a of the last step; x and d* of this one.
+        # d, v and a of the previous step; x and d* of the current one.
         self._d, self._v, self._a, self._x, self._star = (self._load.duplicate() for _ in range(5))
         for vector in (self._d, self._v):
             vector.set(0.0)
         self._start()
 
     def free_response(self) -> None:
-        """Solve for d* without forces on rows; a step has only this solution of a large system."""
+        """Solve for d* without forces on rows, the only solution of a large system in a step."""
         alpha, h = self._alpha, self._alpha.step
         part = (1.0 - alpha.force_shift) * h
         self._d.copy(self._x)
@@ -191,8 +191,7 @@ class SegmentStepper:
 
 RADIUS = 0.8
 
-# The largest energy residual of a valid result: the method dissipates energy if its
-# steps are long.
+# Largest energy residual of a valid result; with long steps the method dissipates energy.
 LOSS_BOUND = 1.0e-2
 
 # Number of checks of the energies during a motion.
@@ -237,7 +236,7 @@ def integrate_directly(
     radius: float = RADIUS,
     energy_bound: float = LOSS_BOUND,
 ) -> DirectMotion:
-    """Move the unreduced shells from rest. Collective.
+    """Return the motion of the unreduced shells from rest. Collective.
 
     Args:
         full: a flat boom with constant loads and prescribed normal forces.
@@ -294,7 +293,7 @@ def _march(
     substeps: int,
     energy_bound: float,
 ) -> DirectMotion:
-    """Compute ``substeps`` steps for each of the outputs."""
+    """Return the motion of all outputs, with ``substeps`` steps for each."""
     rows = ResistingRows(
         [contact.law for contact in full.rows.contacts],
         [friction.law for friction in full.rows.frictions],
