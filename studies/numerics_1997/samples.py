@@ -74,7 +74,7 @@ class ModelRun:
 
     @classmethod
     def of(cls, run: Trajectory, put_in: float = 0.0, unconverged: float = 0.0) -> ModelRun:
-        """Return the run of a trajectory; ``put_in`` in J is, if 0, the largest work of its loads."""
+        """Return the run of a trajectory; without ``put_in``, the work of loads replaces it."""
         kinetic, strain, contact, work, *losses = (run.data[name].values for name in ENERGIES)
         present = kinetic + strain + contact + sum(losses)
         tip, head = (run.data[place].values for place in ("tip", "head"))
