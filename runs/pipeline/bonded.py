@@ -24,7 +24,7 @@ _RIGID_FRACTION = 1.0e-6
 def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
     """Return the bonded system, and its modes (num_modes, num_bonded_modes) in those of ``system``.
 
-    Only the stations on the ground remain.
+    The contacts of stops on the ground are kept.
 
     >>> from runs.pipeline.bonded import bonded_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],

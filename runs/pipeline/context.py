@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 
 def ignore_progress(model: str, stage: str, part: float) -> None:
-    """Ignore a progress report; the reporter of runs without display."""
+    """Ignore a progress report, in runs without a display of progress."""
 
 
 @dataclass(frozen=True, slots=True)

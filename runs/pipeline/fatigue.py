@@ -67,7 +67,7 @@ def details(case: Case, boom: Boom) -> Iterator[Detail]:
 
 
 def detail_damages(case: Case) -> list[tuple[Detail, Damage]]:
-    """Return the detail with the largest damage of each name, with the damage by all spectra.
+    """Return, for each name of details, the one with the largest damage by all spectra.
 
     The result is empty without spectra or without the package ``rainflow``.
 

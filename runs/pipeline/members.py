@@ -100,7 +100,7 @@ def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> Ensembl
 
 
 def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
-    """Return tip and head of all ensembles in a single-precision dataset; None without ensembles.
+    """Return tip and head deflections of all ensembles in single precision; None without ensembles.
 
     Args:
         ensembles: ensembles by model name, with the same members and times.

@@ -53,7 +53,7 @@ def metrics(kind: type) -> dict[str, Metric]:
 
 
 def records(kind: type) -> dict[str, type[Record]]:
-    """Return the :class:`Record` class of each field of a class that may hold a record."""
+    """Return, by field name, the :class:`Record` class of each field that may hold a record."""
     return {
         name: one
         for name, hint in get_type_hints(kind).items()

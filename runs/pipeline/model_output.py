@@ -52,7 +52,7 @@ class ShellOutput:
 
     @property
     def modes(self) -> xr.Dataset | None:
-        """The modes with closed contacts as ``state``, their frequencies in Hz as ``time``."""
+        """The fields with contact modes as ``state`` and frequencies in Hz as ``time``, or None."""
         if "contact_mode" not in self.fields.dims:
             return None
         return self.fields.drop_vars(["state", "time"]).assign(

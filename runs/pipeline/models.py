@@ -74,7 +74,7 @@ def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[L
 
 
 def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Iterator[Travel]:
-    """Yield a travel for each change of axial forces, which moves no contact."""
+    """Yield a :class:`Travel` without moving contacts for each change of axial forces."""
     deflections = [dict(line.deflections) for line in lines]
     # Contacts count as stiff as the softest segment, so that no direction lacks stiffness.
     least = min(system.omega2[system.omega2 > 0.0], default=1.0)
@@ -136,7 +136,7 @@ class MotionPlan:
         return cls(motion, FixedStep(step), load)
 
     def warm(self) -> None:
-        """Compile the time loop by a run to the first output, so that wall times exclude it.
+        """Compile the time loop by a run to the first output; wall times exclude this compilation.
 
         All motions of a process share the compiled loop.
         """

@@ -71,13 +71,13 @@ def wall_part(beam: BeamStates) -> float | None:
 
 
 def deflection_advice(beam: BeamStates | None) -> str:
-    """Return advice on a large deflection: to change pads if their walls govern, or check units."""
+    """Return the advice to change the pads if walls under them govern, else to check the units."""
     governing = beam is not None and (wall_part(beam) or 0.0) > GOVERNING_SHARE
     return "walls under pads cause most of it; change the pads" if governing else CHECK_UNITS
 
 
 def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
-    """Return a sentence that names the beams with rigid walls under pads; empty if none has."""
+    """Return a sentence that names the beams with rigid walls under pads; empty without them."""
     names = [model.name for model in models if not (model.bonded or model.needs_shell)]
     if not names or not any(joint.padded for joint in boom.joints):
         return ""

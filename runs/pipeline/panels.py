@@ -139,7 +139,7 @@ def nominal_wall_stresses(
 def _walls(
     segment: Segment, section: Section, diagram: Diagram, part: slice, x: Array
 ) -> Iterator[WallStresses]:
-    """Yield the stresses of each wall of a section at x (num_places,), a part of a diagram."""
+    """Yield the stresses of each wall of a section at x (num_places,), the places of ``part``."""
     names = ("moment", "lateral_moment", "shear", "lateral_shear", "torque")
     moment, lateral, shear, aside, torque = (
         np.array(diagram.curves[name][part]) if name in diagram.curves else np.zeros(x.size)

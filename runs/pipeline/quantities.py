@@ -196,7 +196,7 @@ def case_limits(table: LimitsTable | None) -> list[Limit]:
 
 
 def static_limit_lines(table: LimitsTable | None, tips: Sequence[float]) -> Iterator[str]:
-    """Yield a sentence on each limit of a case; it compares limits of the tip with statics.
+    """Yield a sentence on each limit of a case; limits of the tip are compared with static values.
 
     Args:
         table: limits of the case.

@@ -119,7 +119,7 @@ def instants(system: GapSystem, duration: float) -> list[float]:
 
 
 def extended_instants(system: GapSystem, duration: float) -> list[float]:
-    """Return the times in s of the largest and smallest extension, and of extreme loads meanwhile.
+    """Return times in s of extreme extensions, and of extreme loads while these extensions last.
 
     Args:
         system: gap system whose ``load`` includes all constant loads.
@@ -253,7 +253,7 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
 
 
 def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> float:
-    """Return the reduction of the play by walls in m: mean approach, right less left."""
+    """Return the play in m that bulging walls close: mean approach on the right less the left."""
     right, left = (
         [gaps[row] for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
     )

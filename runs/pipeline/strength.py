@@ -341,7 +341,7 @@ class Utilisation(NamedTuple):
 
 
 def utilisations(results: Results, model: str) -> dict[str, Utilisation]:
-    """Return the part with the largest utilisation of each kind; without strengths, by load."""
+    """Return, for each kind of part, the one with the largest utilisation, or load if unknown."""
     governing: dict[str, Utilisation] = {}
     for one in _loads(results, model):
         other = governing.setdefault(one.part, one)

@@ -153,7 +153,7 @@ def turning_lines(case: Case) -> Iterator[str]:
 
 
 def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[str]:
-    """Yield the input shapers that suppress the modes which slewing and luffing excite most.
+    """Yield sentences on input shapers for the modes that slewing and luffing excite most.
 
     Args:
         case: a checked case.

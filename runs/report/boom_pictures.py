@@ -227,7 +227,7 @@ def render_buckling(
 
 
 def _draw_mode(heading: str, points: Array, triangles: Numbers, shape: Array, path: Path) -> None:
-    """Draw a mode (num_points, 3), with the wall that moves most towards the viewer."""
+    """Draw a mode (num_points, 3) so that the wall which displaces most faces the viewer."""
     size = np.linalg.norm(shape, axis=1)
     most = int(size.argmax())
     height = float(np.ptp(points[:, 2]))

@@ -158,7 +158,7 @@ def _log_scale(panels: Sequence[Axes], values: Array) -> None:
 
 
 def drives(run: FigureContext) -> list[Figure]:
-    """Draw force and power of each drive, and force and deflection of each elastic drive."""
+    """Draw force and power of each drive, and force and speed of each elastic drive."""
     return [
         draw(run, suffix, inner)
         for suffix, inner in run.case.driven_segments.items()

@@ -48,7 +48,7 @@ def amount(value: float, unit: str) -> str:
 
 
 def without_round_off(values: Sequence[float], most: float | None = None) -> list[float]:
-    """Return values with 0 in place of round-off, relative to the largest of them or ``most``."""
+    """Return values with 0 in place of round-off relative to ``most``, or else to the largest."""
     most = max(map(abs, values), default=0.0) if most is None else most
     return [value if abs(value) > ROUND_OFF * most else 0.0 for value in values]
 

@@ -334,7 +334,7 @@ class StressScale:
 def draw_stress(
     scene: Scene, instants: Sequence[Instant], scale: StressScale, overlaps: Iterable[Overlap]
 ) -> Iterator[list[Image.Image]]:
-    """Yield, for each overlap, pictures of its von Mises stresses below those of the boom."""
+    """Yield the stress pictures of each overlap: the whole boom above, a sectional view below."""
     assert scene.stress is not None
     times = [instant.time for instant in instants]
     corners = [
@@ -399,7 +399,7 @@ def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> An
 
 
 def smooth_corners(shell: ShellStress, triangles: Numbers, values: npt.ArrayLike) -> Array:
-    """Return means (num_triangles, 3) at the corners, over triangles of one wall at each point."""
+    """Return values (num_triangles, 3) at corners: means over triangles of the same wall there."""
     walls = int(shell.wall.max()) + 1
     of = (triangles.astype(np.int64) * walls + shell.wall[:, None]).ravel()
     _, number = np.unique(of, return_inverse=True)

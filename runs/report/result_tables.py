@@ -67,7 +67,7 @@ def play_table(results: Results) -> Table | None:
 
 
 def rest_tables(results: Results) -> list[Table]:
-    """Return the tables of static tilts by play, contact forces and support reactions."""
+    """Return the tables of static joint rotations, contact forces and support reactions."""
     farthest = {
         name: design.farthest_static for name, design in results.summary.design.models.items()
     }
@@ -113,8 +113,8 @@ def _reaction_table(results: Results) -> Table:
     columns = (
         Column("support", [f"{one.segment} at {one.x:g} m" for one in reactions]),
         Column("transverse force", [one.force for one in reactions], ".4g", "kN"),
-        *_unless_none("axial force", [one.along for one in reactions], ".4g", "kN"),
-        *_unless_none("moment", [one.moment for one in reactions], ".3g", "kN m"),
+        *_force_column("axial force", [one.along for one in reactions], ".4g", "kN"),
+        *_force_column("moment", [one.moment for one in reactions], ".3g", "kN m"),
         Column("transverse force,\nbonded joints", beside, ".4g", "kN"),
     )
     notes = (
@@ -124,7 +124,7 @@ def _reaction_table(results: Results) -> Table:
     return Table("Static state at t = 0: support reactions", columns, notes, "reactions")
 
 
-def _unless_none(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
+def _force_column(title: str, carried: list[float], form: str, unit: str) -> Iterator[Column]:
     """Yield a column of forces, with 0 in place of round-off; nothing if all forces are 0."""
     if any(carried):
         yield Column(title, without_round_off(carried), form, unit)

@@ -100,7 +100,7 @@ def summary_table(results: Results) -> Table | None:
 
 
 def deviation_note(results: Results) -> str:
-    """Return a sentence on how other models with play deviate from the reference, or nothing."""
+    """Return a sentence on deviations of other models with play from the reference, or ``""``."""
     design, reference = results.summary.design.models, results.reference
     if not design or reference is None:
         return ""
@@ -185,7 +185,7 @@ def _more(one: PlayDifference) -> str:
 
 
 def governing_pads(results: Results) -> dict[str, PadLoad]:
-    """Return the pad of each model with the highest utilisation; without one, highest pressure."""
+    """Return, for each model, the pad with the highest utilisation, or pressure if unknown."""
     pads = results.summary.pads[::-1]
     pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
     return {pad.model: pad for pad in pads}

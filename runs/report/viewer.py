@@ -48,7 +48,7 @@ _SHORT, _BYTE = 32767, 255
 
 
 class View(NamedTuple):
-    """Boom and stresses of a page."""
+    """Boom and stresses that a page shows."""
 
     model: str  #: name of the model
     scene: Scene  #: scene of the boom
