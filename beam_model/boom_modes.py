@@ -10,7 +10,7 @@ import numpy as np
 from scipy.linalg import block_diag, null_space
 
 from beam_model.component import (
-    BeamMember,
+    BeamSegment,
     Modes,
     Motion,
     Rule,
@@ -28,7 +28,7 @@ from geometry.telescoping import sample_extensions, station_positions
 # Type that identifies a component: index of the segment, and motion.
 _Part = tuple[int, Motion]
 
-# Fraction of the largest singular value below which a constraint is neglected.
+# Fraction of the largest singular value below which a singular value is round-off.
 ROUND_OFF = 1.0e-9
 
 # Number of places on a segment at which deflections are evaluated for changes of axial forces.
@@ -36,7 +36,7 @@ _PLACES = 41
 
 
 class BoomModes:
-    """Modes of the boom without contact, separate for each motion of each segment.
+    """Modes of the boom without contact, for each segment and each component of its motion.
 
     Segments connected by bonded joints, or by cylinders, have common modes.
 
@@ -89,7 +89,7 @@ class BoomModes:
 
         ``offset`` is (y, z) of the point from the axis in m.
         """
-        row = self.member(segment).at(direction, x)
+        row = self.beam(segment).at(direction, x)
         # A small rotation θ about x moves (y, z) by (−θ z, θ y).
         arm = offset[0] if direction == "z" else -offset[1]
         if arm != 0.0:
@@ -98,17 +98,17 @@ class BoomModes:
 
     def twist(self, segment: int, x: float) -> Array:
         """Return the row (num_modes,) of the twist of a segment at x in m."""
-        return self.member(segment).torque(x)
+        return self.beam(segment).torque(x)
 
     def rotation(self, segment: int, x: float, direction: Direction) -> Array:
         """Return the row (num_modes,) of the rotation of a cross-section at x in m."""
-        return self.member(segment).moment(x, direction)
+        return self.beam(segment).moment(x, direction)
 
     def curvature(self, segment: int, x: float, direction: Direction) -> Array:
         """Return the row (num_modes,) of the curvature of a segment at x in m."""
-        return self.member(segment).read(direction, lambda component: component.curvature_at(x))
+        return self.beam(segment).read(direction, lambda component: component.curvature_at(x))
 
-    def member(self, segment: int) -> BeamMember:
+    def beam(self, segment: int) -> BeamSegment:
         """Return the rows and load vectors of a segment in all modal coordinates."""
 
         def read(motion: Motion, rule: Rule) -> Array:
@@ -117,7 +117,7 @@ class BoomModes:
             whole[columns] = rule(self._models[segment].components[motion]) @ shapes
             return whole
 
-        return BeamMember(read)
+        return BeamSegment(read)
 
 
 def critical_factor(
@@ -129,7 +129,7 @@ def critical_factor(
 
     It is infinite without axial forces, and None for a mechanism. For a telescoping boom it is the
     minimum over several extensions, including the extreme ones. If axial forces change with time,
-    their state with the largest compression of the foot also counts.
+    it also covers the time of the largest compression of the foot.
 
     Args:
         boom: boom with its axial forces.
@@ -144,7 +144,7 @@ def critical_factor(
     for group in _coupled_groups(boom.bonded, models):
         initial = group.geometric_stiffness
         added = group.changes(levels) if levels.any() else []
-        passing = {n: moving_axial_forces(boom, models, group.members, n) for n in drives}
+        passing = {n: moving_axial_forces(boom, models, group.beams, n) for n in drives}
         largest = sum(added, initial)
         if not (initial.any() or largest.any() or any(passing.values())):
             continue
@@ -205,7 +205,7 @@ class _CoupledGroup:
     Attributes:
         parts: (segment, motion) of each component.
         components: components of the group.
-        members: rows and load vectors of each segment in the coordinates of the group.
+        beams: rows and load vectors of each segment in the coordinates of the group.
         springs: cylinders that act on the components.
         geometric_stiffness: geometric stiffness K_G (num_dofs, num_dofs).
     """
@@ -213,36 +213,36 @@ class _CoupledGroup:
     def __init__(self, boom: Boom, models: Sequence[SegmentModel], parts: Sequence[_Part]) -> None:
         self._boom, self.parts = boom, parts
         self.components = [models[i].components[motion] for i, motion in parts]
-        self.members = [self._member(number) for number in range(len(boom.segments))]
-        lines = ground_lines(boom, self.members)
+        self.beams = [self._beam(number) for number in range(len(boom.segments))]
+        lines = ground_lines(boom, self.beams)
         self.springs = [line for line in lines if line.stiffness > 0.0 and line.push.any()]
         self.geometric_stiffness = block_diag(
             *(component.geometric_stiffness for component in self.components)
         )
 
-    def _member(self, segment: int) -> BeamMember:
+    def _beam(self, segment: int) -> BeamSegment:
         def read(motion: Motion, rule: Rule) -> Array:
             parts = zip(self.parts, self.components, strict=True)
-            member = (segment, motion)
+            own = (segment, motion)
             return np.concatenate(
-                [rule(c) if part == member else np.zeros(len(c.load)) for part, c in parts]
+                [rule(c) if part == own else np.zeros(len(c.load)) for part, c in parts]
             )
 
-        return BeamMember(read)
+        return BeamSegment(read)
 
     def changes(self, levels: Array) -> list[Array]:
-        """Return the change of K_G by axial forces that change with time.
+        """Return the contribution of each axial force that changes with time to K_G.
 
-        ``levels`` has the value of each history.
+        ``levels`` (num_changes,) are the values of the histories.
         """
         boom = self._boom
         lines: list[dict[Direction, tuple[Array, Array]]] = [
             {
-                direction: (x, np.array([member.at(direction, place) for place in x]))
+                direction: (x, np.array([beam.at(direction, place) for place in x]))
                 for direction in boom.directions
             }
-            for member, x in zip(
-                self.members,
+            for beam, x in zip(
+                self.beams,
                 [np.linspace(*segment.ends, _PLACES) for segment in boom.segments],
                 strict=True,
             )
@@ -255,16 +255,15 @@ class _CoupledGroup:
     def ties(
         self, positions: Mapping[int, Sequence[tuple[float, float]]]
     ) -> dict[tuple[int, Motion, int], Array]:
-        """Return the constraints of bonded joints, rows (num_dofs,) of zero displacements.
+        """Return the constraints of bonded joints: rows (num_dofs,) of displacements that are zero.
 
-        The keys are joint, motion and index of the station.
-
-        ``positions`` has (x on the outer segment, x on the inner segment) in m of each station of a
-        telescoping joint.
+        Keys are the index of the joint, the motion and the index of the station. ``positions`` has
+        (x on the outer segment, x on the inner segment) in m of each station of a telescoping
+        joint.
         """
         return {
-            (number, motion, k): self.members[joint.inner].at(motion, on_inner)
-            - self.members[joint.outer].at(motion, on_outer)
+            (number, motion, k): self.beams[joint.inner].at(motion, on_inner)
+            - self.beams[joint.outer].at(motion, on_outer)
             for number, joint in enumerate(self._boom.joints)
             if joint.bonded
             for motion in dict.fromkeys(motion for _, motion in self.parts)
@@ -283,18 +282,18 @@ class _CoupledGroup:
 
     def modes(self) -> Modes:
         """Return the modes with the constraints of bonded joints and the springs of cylinders."""
-        apart = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in self.components]
+        separate = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in self.components]
         ties = [*self.ties({}).values()]
-        if not ties and not self.springs and len(apart) == 1:
-            return apart[0]
+        if not ties and not self.springs and len(separate) == 1:
+            return separate[0]
         rigid = block_diag(
-            *(m.shapes[:, : c.rigid_modes] for m, c in zip(apart, self.components, strict=True))
+            *(m.shapes[:, : c.rigid_modes] for m, c in zip(separate, self.components, strict=True))
         )
         # Rigid motions that satisfy all constraints and do not strain cylinders are rigid modes.
         rows = [*ties, *(line.push for line in self.springs)]
         held = np.array(rows).reshape(-1, len(rigid)) @ rigid
-        bound = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
-        rigid_modes = rigid.shape[1] - int((bound > ROUND_OFF * bound.max(initial=0.0)).sum())
+        values = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
+        rigid_modes = rigid.shape[1] - int((values > ROUND_OFF * values.max(initial=0.0)).sum())
         stiffness, mass = self.stiffness(), block_diag(*(c.mass for c in self.components))
         free = _kernel(ties, len(mass))
         modes = natural_modes(free.T @ stiffness @ free, free.T @ mass @ free, rigid_modes)
@@ -302,5 +301,5 @@ class _CoupledGroup:
 
 
 def _kernel(ties: Sequence[Array], num_dofs: int) -> Array:
-    """Return a basis (num_dofs, num_free) of the motions that satisfy constraints."""
+    """Return a basis (num_dofs, num_free) of the motions that satisfy the constraints ``ties``."""
     return null_space(np.array(ties)) if ties else np.eye(num_dofs)

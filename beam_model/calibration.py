@@ -4,11 +4,11 @@
 The effective stiffnesses E J, G A_s and G J_t of a segment give a Timoshenko beam the static
 response of the shell. They include shear lag, Poisson's effect and folds.
 
-The residual compliance is D = C_shell − C_beam (MacNeal 1971). Here C = B Ω⁻² Bᵀ is the compliance
-of the elastic modes with frequencies Ω at the rows B of contacts, friction and dashpots. Shell and
-beam have the same rigid motions and inertia forces, so that D is the local compliance of the walls.
-Its positive part Σ g gᵀ is added as springs. A spring is a coordinate with the rows ω_s g, and its
-frequency ω_s is far above the frequencies of the motion.
+Γ = B Ω⁻² Bᵀ is the compliance of the elastic modes of circular frequencies Ω at the rows B of
+contacts, friction and dashpots. Shell and beam have the same rigid motions and inertia forces, so
+that the residual compliance Γ_shell − Γ_beam (MacNeal 1971) is the local compliance of the walls.
+Its positive part Σ b bᵀ becomes springs. A spring is a coordinate with the rows ω_s b, whose
+circular frequency ω_s is far above those of the motion.
 """
 
 from __future__ import annotations
@@ -29,8 +29,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom, Segment
 from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 
-# Regularisation weight of the logarithms of factors in the least squares. It determines only a
-# stiffness without influence on the responses.
+# Weight in the least squares that keeps a factor near 1 if it has no influence on the responses.
 _PRIOR = 1.0e-4
 # ω_s/2π in Hz, at least ten times the frequencies of a boom's vibration.
 SPRING_FREQUENCY = 400.0
@@ -62,14 +61,14 @@ class Calibration:
         """Return the gap system of a calibrated beam.
 
         Args:
-            stiff: boom of :func:`with_stiffnesses` with the sections, joints and pads of the shell;
-                masses and loads may differ.
+            stiff: boom from :func:`with_stiffnesses`, with the sections, joints and pads of the
+                shell; masses and loads may differ.
             segments: beams of this boom.
         """
         return with_springs(gap_system(stiff, segments, EACH_SIDE), self.residual)
 
     def spring(self, row: int) -> float | None:
-        """Return the stiffness in N/m of a contact row's local compliance; None without any."""
+        """Return the wall stiffness in N/m at a contact row; None without local compliance."""
         compliance = float(self.residual[row, row])
         return 1.0 / compliance if compliance > 0.0 else None
 
@@ -98,16 +97,16 @@ def calibrate(
 
 
 def elastic_compliance(system: GapSystem) -> Array:
-    """Return B Ω⁻² Bᵀ (num_rows, num_rows) in m/N of all rows B over the elastic modes."""
+    """Return the compliance Γ (num_rows, num_rows) in m/N of all rows over the elastic modes."""
     elastic = system.omega2 > 0.0
     rows = system.all_rows[:, elastic]
     return np.asarray(rows / system.omega2[elastic] @ rows.T)
 
 
 def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
-    """Return the compliance of the fine model less that of the coarse one in m/N.
+    """Return the compliance (num_rows, num_rows) in m/N of the fine less that of the coarse model.
 
-    The residual compliance D (num_rows, num_rows) may be indefinite.
+    It may be indefinite.
 
     Raises:
         ValueError: the numbers of rows differ.
@@ -118,7 +117,7 @@ def residual_compliance(coarse: GapSystem, fine: GapSystem) -> Array:
 
 
 def with_springs(system: GapSystem, residual: Array) -> GapSystem:
-    """Return the system with springs of the positive part of a residual compliance.
+    """Return the system with springs for the positive part of a residual compliance.
 
     Args:
         system: gap system of the beams.
@@ -142,7 +141,7 @@ def with_stiffnesses(boom: Boom, stiffness: Sequence[Stiffness]) -> Boom:
 def effective_stiffness(segment: Segment, probed: ProbeResponses) -> Stiffness:
     """Return the stiffness of a beam that reproduces the probe responses of a shell segment.
 
-    For a tapered segment it is the stiffness of the beam at the middle, without calibration.
+    A tapered segment is not calibrated; it has the stiffness of the beam at the middle.
     """
     in_plane = _bending(segment, probed, "z")
     if "y" not in probed.compliance:
@@ -188,7 +187,7 @@ def with_stiffness(segment: Segment, stiffness: Stiffness) -> Segment:
 
 
 def _bending(segment: Segment, probed: ProbeResponses, motion: ProbedMotion) -> tuple[float, float]:
-    """Return E J and G A_s of a segment in one plane of bending."""
+    """Return E J in N·m² and G A_s in N of a segment in one plane of bending."""
     assert segment.shear_stiffness is not None
     if segment.head_section is not None:
         return segment.bending_stiffness, segment.prismatic_at(
@@ -199,15 +198,15 @@ def _bending(segment: Segment, probed: ProbeResponses, motion: ProbedMotion) -> 
 
 
 def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: int) -> Array:
-    """Return the stiffness ratios (count,) of shell to beam by least squares of relative errors."""
+    """Return the ratios (count,) of shell stiffness to beam stiffness, by least squares."""
     first, turns = _component(segment, probed, motion, np.ones(count))
     probes = _probes(first, probed, motion)
-    moved = probes.any(axis=1)
+    excited = probes.any(axis=1)
     modes = natural_modes(first.stiffness, first.mass, turns)
     # Self-equilibrated combinations of probes.
-    rigid = probes[moved] @ modes.shapes[:, :turns]
-    balanced = np.eye(len(probes))[:, moved] @ (
-        null_space(rigid.T) if turns else np.eye(moved.sum())
+    rigid = probes[excited] @ modes.shapes[:, :turns]
+    balanced = np.eye(len(probes))[:, excited] @ (
+        null_space(rigid.T) if turns else np.eye(excited.sum())
     )
     shell = balanced.T @ probed.compliance[motion] @ balanced
     sizes = np.sqrt(np.outer(np.diag(shell), np.diag(shell)))

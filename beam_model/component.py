@@ -24,7 +24,7 @@ Motion = Literal["z", "y", "twist"]
 
 @dataclass(frozen=True, slots=True)
 class Component:
-    """Component of the motion of a segment, M q̈ + C q̇ + K q = f, and its rows at any x.
+    """Component of the motion of a segment: its matrices, load vectors, and rows at any x.
 
     Args:
         stiffness, mass, damping: matrices (num_dofs, num_dofs).
@@ -32,14 +32,15 @@ class Component:
         unit_load: load vector (num_dofs,) of a uniform load of 1 N/m (1 N for twist).
         at: function of x in m that returns the row (num_dofs,) of the deflection or twist.
         rigid_modes: number of rigid modes.
-        rotation: function of x in m that returns the row (num_dofs,) of the rotation θ of the
+        rotation: function of x in m that returns the row (num_dofs,) of the rotation β of the
             cross-section; None for twist.
-        curvature: function of x in m that returns the row (num_dofs,) of θ′; None for twist or a
+        curvature: function of x in m that returns the row (num_dofs,) of β′; None for twist or a
             rigid segment.
         rotation_load: load vector (num_dofs,) of an angular acceleration of 1 rad/s² about
             x = 0; empty for twist.
         breaks: x in m between which rows are polynomials.
-        geometric: K_G (num_dofs, num_dofs) of the axial force; None without axial force.
+        geometric: geometric stiffness K_G (num_dofs, num_dofs) of the axial force; None without
+        axial force.
         inertia_load: inertia load (num_dofs,) of a uniform acceleration that causes a mean load of
             1 N/m; ``unit_load`` unless given.
     """
@@ -60,7 +61,7 @@ class Component:
 
     @property
     def geometric_stiffness(self) -> Array:
-        """K_G (num_dofs, num_dofs), to be subtracted from the stiffness."""
+        """The geometric stiffness K_G (num_dofs, num_dofs), which reduces the stiffness."""
         return np.zeros_like(self.stiffness) if self.geometric is None else self.geometric
 
     @property
@@ -69,20 +70,20 @@ class Component:
         return self.unit_load if self.inertia_load is None else self.inertia_load
 
     def rotation_at(self, x: float) -> Array:
-        """Return the row (num_dofs,) of the rotation θ of the cross-section at x in m."""
+        """Return the row (num_dofs,) of the rotation β of the cross-section at x in m."""
         assert self.rotation is not None
         return self.rotation(x)
 
     def curvature_at(self, x: float) -> Array:
-        """Return the row (num_dofs,) of θ′ at x in m."""
+        """Return the row (num_dofs,) of β′ at x in m."""
         assert self.curvature is not None
         return self.curvature(x)
 
     @property
-    def member(self) -> BeamMember:
-        """The load vectors of a segment with this component only, along z."""
+    def beam(self) -> BeamSegment:
+        """The rows and load vectors of a segment with this component only, along z."""
         nothing = np.zeros(len(self.load))
-        return BeamMember(lambda motion, rule: rule(self) if motion == "z" else nothing)
+        return BeamSegment(lambda motion, rule: rule(self) if motion == "z" else nothing)
 
     def uniform(self, span: tuple[float, float] | None) -> Array:
         """Return the load vector (num_dofs,) of 1 N/m between both x in m of ``span``.
@@ -110,7 +111,7 @@ Rule = Callable[[Component], Array]
 
 
 @dataclass(frozen=True, slots=True)
-class BeamMember:
+class BeamSegment:
     """Rows and load vectors of a segment, a :class:`geometry.load.LoadedSegment`."""
 
     #: function (motion, row of a component) that returns the row (num_coordinates,); the second
@@ -155,7 +156,7 @@ class Modes(NamedTuple):
 
 
 def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
-    """Return all natural modes of (K, M), with ω² exactly 0 for rigid modes."""
+    """Return all natural modes of a stiffness and a mass matrix, with ω² = 0 for rigid modes."""
     if not mass.size:
         return Modes(np.zeros(0), np.zeros((0, 0)))
     # Coordinates are scaled, since rotations and deflections differ by orders of magnitude.
@@ -169,5 +170,5 @@ def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
 
 
 def products(values: Array, weights: Array) -> Array:
-    """Return ∫ f_i f_j dx by values (num_functions, num_points) and weights (num_points,) in m."""
+    """Return ∫ f_i f_j dx for values (num_functions, num_points), weights (num_points,) in m."""
     return np.asarray((values * weights) @ values.T)

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Two-node beam elements, which are exact at their nodes if no load acts between them.
 
-The nodal unknowns are the deflection w and the rotation θ. The shape functions of a prismatic
-element solve the homogeneous Timoshenko equations with Φ = 12 E J / (G A_s h²) (Friedman and
-Kosmatka 1993); for Φ = 0 they are the Hermite cubics with θ = w′. In a tapered element, the moment
-is also linear, and the curvature follows from the local flexibility (Eisenberger and Reich 1989).
+The nodal unknowns are the deflection w and the rotation β of the cross-section. The shape functions
+of a prismatic element of length ℓ_e solve the homogeneous Timoshenko equations with the shear
+parameter Φ_s = 12 E J / (G A_s ℓ_e²) (Friedman and Kosmatka 1993); for Φ_s = 0 they are the Hermite
+cubics with β = w′. In a tapered element, the moment is also linear, and the curvature follows from
+the local flexibility (Eisenberger and Reich 1989).
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ Theory = Literal["euler-bernoulli", "timoshenko"]
 
 
 class Element(Protocol):
-    """Shape functions of an element of length h at ξ = x/h."""
+    """Shape functions of an element at ξ = x/ℓ_e, with x from its first node."""
 
     def deflection(self, xi: Array) -> Array:
         """Return the shape functions (4, num_points) of w."""
@@ -33,17 +34,17 @@ class Element(Protocol):
         """Return the derivatives w′ (4, num_points) of the shape functions."""
 
     def rotation(self, xi: Array) -> Array:
-        """Return the shape functions (4, num_points) of θ."""
+        """Return the shape functions (4, num_points) of β."""
 
     def curvature(self, xi: Array) -> Array:
-        """Return the derivatives θ′ (4, num_points) of the shape functions."""
+        """Return the derivatives β′ (4, num_points) of the shape functions."""
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
         """Return the stiffness (4, 4) by quadrature with points ξ and weights in m."""
 
 
 def element(segment: Segment, theory: Theory, start: float, h: float) -> Element:
-    """Return the element of a segment from x = ``start`` over the length h, both in m."""
+    """Return the element of a segment from x = ``start`` over the length ``h``, both in m."""
     if segment.head_section is None:
         return PrismaticElement(h, segment.bending_stiffness, _shear_number(segment, theory, h))
     places = [segment.prismatic_at(start + part * h) for part in (0.0, 0.5, 1.0)]
@@ -58,7 +59,7 @@ class PrismaticElement:
 
     h: float  #: length in m
     bending_stiffness: float  #: E J in N·m²
-    phi: float  #: Φ, zero for an Euler–Bernoulli beam
+    phi: float  #: Φ_s, zero for an Euler–Bernoulli beam
 
     def deflection(self, xi: Array) -> Array:
         h, phi, (one, square, cube) = self.h, self.phi, _powers(xi)
@@ -122,8 +123,8 @@ class PrismaticElement:
 class TaperedElement:
     """Element with a varying section.
 
-    The moments 1 and ξ cause the curvatures f and ξ f and the shear strains 0 and −g/h.
-    Integration gives θ and w.
+    The moments 1 and ξ cause the curvatures f and ξ f and the shear strains 0 and −g/ℓ_e, with the
+    flexibilities f and g. Integration gives β and w.
     """
 
     h: float  #: length in m
@@ -156,14 +157,14 @@ class TaperedElement:
 
     @cached_property
     def _of_moments(self) -> tuple[_Pair, _Pair, _Pair]:
-        """Return rotation, slope and deflection under the moments 1 and ξ, clamped at ξ = 0."""
+        """The rotation, slope and deflection under the moments 1 and ξ, clamped at ξ = 0."""
         first, second = (self.h * (self.bending * m).integ() for m in (_ONE, _XI))
         slopes = first, second - self.shear / self.h
         return (first, second), slopes, (self.h * slopes[0].integ(), self.h * slopes[1].integ())
 
     @cached_property
     def _moments(self) -> Array:
-        """Return the factors (2, 4) of the moments 1 and ξ for unit displacements of the nodes."""
+        """The factors (2, 4) of the moments 1 and ξ for unit displacements of the nodes."""
         rotations, _, deflections = self._of_moments
         ends = np.array([[p(1.0) for p in pair] for pair in (rotations, deflections)])
         moved = np.array([[0.0, -1.0, 0.0, 1.0], [-1.0, -self.h, 1.0, 0.0]])
@@ -171,7 +172,7 @@ class TaperedElement:
 
 
 def _powers(xi: Array) -> tuple[Any, Any, Any]:
-    """Return ξ, ξ² and ξ³; a single ξ gives Python numbers, which are faster."""
+    """Return ξ, ξ² and ξ³, for a single ξ as Python numbers, which are faster."""
     powers = xi, xi**2, xi**3
     return powers if xi.ndim else (xi.item(), powers[1].item(), powers[2].item())
 
@@ -194,7 +195,7 @@ def _shear_flexibility(segment: Segment, theory: Theory) -> float:
 
 
 def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
-    """Return Φ = 12 E J / (G A_s h²), zero for an Euler–Bernoulli beam."""
+    """Return Φ_s for an element of length ``h`` in m, zero for an Euler–Bernoulli beam."""
     shear_stiffness = segment.shear_stiffness
     if theory == "euler-bernoulli" or shear_stiffness is None:
         return 0.0

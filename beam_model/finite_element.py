@@ -24,9 +24,9 @@ from geometry.segment import APART
 # Gauss points and weights, exact for products of two cubics.
 _GAUSS = np.polynomial.legendre.leggauss(4)
 
-# Distance from another node, as a fraction of the length, within which a mass or a jump of the
-# axial force has no node: eigenvalues lose digits in proportion to the inverse fourth power of the
-# length of the shortest element. A mass without a node acts through shape functions.
+# Distance from another node, as a fraction of a segment's length, within which a mass or a jump of
+# the axial force has no node of its own: eigenvalues lose digits with the inverse fourth power of
+# the shortest element length. Such a mass acts through shape functions.
 _MASS_APART = 5.0e-3
 
 _MASS, _ROTARY = map(attrgetter, ("mass_per_length", "rotary_inertia"))
@@ -87,7 +87,7 @@ def finite_element_segment(
 
 
 def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: bool) -> Component:
-    """Return the component of deflection along z; its unknowns are w and θ of each node."""
+    """Return the component of deflection along z, with the unknowns w and β at each node."""
     num_dofs = 2 * nodes.size
     stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
     unit_load, rotation_load, inertia_load = np.zeros((3, num_dofs))
@@ -104,9 +104,9 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         mass[dofs, dofs] += segment.mass_per_length * products(w, heavy)
         rotation_load[dofs] += segment.mass_per_length * w @ (heavy * x)
         if rotary_inertia:
-            theta = here.rotation(xi)
-            mass[dofs, dofs] += segment.rotary_inertia * products(theta, turned)
-            rotation_load[dofs] += segment.rotary_inertia * theta @ turned
+            beta = here.rotation(xi)
+            mass[dofs, dofs] += segment.rotary_inertia * products(beta, turned)
+            rotation_load[dofs] += segment.rotary_inertia * beta @ turned
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
         geometric[dofs, dofs] += products(slope, weight * segment.compression(x))
         unit_load[dofs] += w @ weight
@@ -197,7 +197,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
-    """Return the x of nodes in m, with equal elements between required x. Close x share a node."""
+    """Return the x of nodes in m: required x, of which close ones have one node, and x between."""
     supports = [support.x for support in segment.supports]
     masses = [*(mass.x for mass in segment.all_masses), *segment.compression.places]
     places: list[float] = []
@@ -220,6 +220,6 @@ def _nearest(nodes: Array, x: float) -> int:
 
 
 def _element(nodes: Array, x: float) -> tuple[int, float]:
-    """Return the element that contains x, and its length in m."""
+    """Return the index of the element that contains x in m, and the length of the element in m."""
     k = min(max(int(nodes.searchsorted(x, side="right")) - 1, 0), nodes.size - 2)
     return k, float(nodes[k + 1] - nodes[k])

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The Kantorovich (semi-discrete Ritz) beam: w(x, t) = Σ a_i(t) φ_i(x), (12) of the paper.
 
-The function spaces are (29)–(31) of the paper. The bases of the paper are powers of x, which are
-numerically singular from about ten terms on. Here products of the lowest function and Legendre
-polynomials span the same spaces. The complete base has all polynomials that the supports admit.
+The function spaces are (29)–(31) of the paper. The paper's functions are powers of x, which are
+numerically dependent from about ten terms on. Here products of the lowest function and Legendre
+polynomials span the same spaces. The complete basis has all polynomials that the supports admit.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ Base = Literal["as printed", "pinned", "complete"]
 def kantorovich_segments(
     boom: Boom, terms: Sequence[int], base: Base, rotary_inertia: bool
 ) -> list[SegmentModel]:
-    """Return the models of all segments of a boom, with a number of terms for each.
+    """Return the models of all segments of a boom; ``terms`` is the number of terms of each.
 
     Other arguments as in :func:`kantorovich_segment`.
 
     Raises:
-        BoomError: the base does not admit the boom's supports or cylinders.
+        BoomError: the basis does not admit the boom's supports or cylinders.
     """
     check_base(boom, base)
     return [
@@ -46,7 +46,7 @@ def kantorovich_segments(
 
 
 def check_base(boom: Boom, base: Base) -> None:
-    """Check that a base admits the supports of the boom.
+    """Check that a basis admits the supports of the boom.
 
     Raises:
         BoomError: clamped or elastic supports, or a cylinder, require the complete basis.
@@ -108,7 +108,7 @@ def kantorovich_bending(
     Arguments as in :func:`kantorovich_segment`.
     """
     basis = _Basis(segment, bending_basis(segment, terms, base))
-    # The base as printed also fixes the slope at the first support.
+    # The basis as printed also fixes the slope at the first support.
     printed = int(bool(segment.supports) and base == "as printed")
     bent, heavy, turned = (
         basis.weights * segment.property_ratio(attrgetter(number), basis.x)
@@ -152,7 +152,7 @@ def kantorovich_bending(
 
 
 def _geometric(compression: Compression, functions: Sequence[Legendre]) -> Array:
-    """Return ∫ P φ_i′ φ_j′ dx, exact for linear pieces of P."""
+    """Return K_G = ∫ P φ_i′ φ_j′ dx (num_functions, num_functions), for piecewise linear P."""
     total = np.zeros((len(functions), len(functions)))
     slopes = [function.deriv() for function in functions]
     nodes, weights = np.polynomial.legendre.leggauss(max(f.degree() for f in functions) + 1)
@@ -209,7 +209,7 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
     """Return functions that vanish at the supports and span (29): φ_i = x^i (x − x0)(x − x1).
 
     Args:
-        segment: segment with the supports x0, x1, …; x is relative to x0.
+        segment: segment with the supports x0, x1, …
         terms: number of functions: i = 1 … terms as printed, i = 0 … terms − 1 otherwise.
         base: interpretation; as printed, the slope also vanishes at x0.
     """
@@ -221,7 +221,7 @@ def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
 def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
     """Return the functions (30), (31) of a free segment: 1, x − x2, then (x − x2)^(i−1) (x − x4).
 
-    The base is incomplete. With all functions, the deflection at x4 lies on the tangent at x2, so
+    The basis is incomplete. With all functions, the deflection at x4 lies on the tangent at x2, so
     that the series does not converge to a free beam.
 
     Args:

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Deflections and section forces along segments of beams.
 
-The moment is M = −E J θ′. The shear force is normal to the straight axis; with an axial force P it
-is M′ − P w′. Its mean over an element is exact: under a uniform load q, the moment of an element of
-length h has an error of q h²/12 at both ends, but none in its mean slope. Between point forces,
-shear forces are interpolated linearly between the centres of elements.
+With the rotation β of the cross-section, the moment is M_y = −E J β′. The shear force is normal to
+the straight axis, V = M_y′ − P w′ with the compression P. The mean of V over an element is exact:
+under a uniform load q, M_y has an error of q ℓ_e²/12 at both ends of an element of length ℓ_e, but
+its mean slope has none. Between point forces, V is linear between the centres of elements.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
 
 
 def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
-    """Return the rows along each segment. Rigid segments have no section forces."""
+    """Return the line of each segment; rigid segments have no section forces."""
     modes = BoomModes(boom, models)
     return [_line(boom, number, modes, model) for number, model in enumerate(models)]
 

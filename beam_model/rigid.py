@@ -15,8 +15,8 @@ from geometry.boom import Segment
 def rigid_segment(segment: Segment) -> SegmentModel:
     """Return the model of a segment that moves without deformation.
 
-    It has the motions that rigid supports admit, possibly none. Elastic supports and point masses
-    act on them.
+    It has the rigid motions that rigid supports admit, possibly none, with the stiffness of elastic
+    supports and the inertia of point masses.
     """
     components: dict[Motion, Component] = {"z": _rigid_motion(segment)}
     if segment.lateral is not None:

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Condensation of shells to a number of coordinates as small as that of a beam.
 
-The condensed system keeps the lowest modes, and modes with a large inertial response b²/ω⁴ to loads
-b relative to the static response Σ b²/ω². Responses to forces represent the other modes, and match
-two moments at zero frequency. So statics is exact, and the inertia of local deformation is accurate
-to first order (MacNeal 1971; Rubin 1975, whose residual modes are the first block).
+The condensed system keeps the lowest modes, and modes i with a large inertial response Q_i²/ω_i⁴ to
+a load Q relative to the static response Σ Q_i²/ω_i². Responses to forces represent the other modes,
+and preserve two moments at zero frequency. So statics is exact, and the inertia of local
+deformation is accurate to first order (MacNeal 1971; Rubin 1975, whose residual modes are the first
+block).
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.reduction import independent_columns, reduce_modes
 from geometry.arrays import Array, Indices
 
-# Number of blocks Ω⁻²ᵏ Bᵀ of load vectors, which is the number of matched moments.
+# Number of blocks Ω⁻²ᵏ Bᵀ of responses to the rows B of forces, which is the number of moments.
 MOMENTS = 2
 # Maximum fraction of the coordinates for blocks, unless a single block needs more.
 _BLOCK_FRACTION = 1.0 / 3.0
@@ -24,7 +25,7 @@ _LOWEST_FRACTION = 1.0 / 8.0
 
 
 def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
-    """Return the system in fewer coordinates, and their shapes (num_modes, num_coordinates).
+    """Return the system in fewer coordinates, and the shapes (num_modes, num_coordinates).
 
     Args:
         system: gap system without modal damping, which a case adds later.
@@ -48,11 +49,11 @@ def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
 
 
 def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
-    """Return the order (num_modes,) of modes: the lowest, then by b²/ω⁴ relative to Σ b²/ω²."""
+    """Return the order (num_modes,) of modes: the lowest, then by their inertial response."""
     elastic = omega2 > 0.0
-    gives = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
-    whole = gives.sum(axis=1, keepdims=True)
-    parts = (gives / np.where(whole > 0.0, whole, 1.0)).max(axis=0)
+    static = np.where(elastic, pushes**2 / np.where(elastic, omega2, 1.0), 0.0)
+    whole = static.sum(axis=1, keepdims=True)
+    parts = (static / np.where(whole > 0.0, whole, 1.0)).max(axis=0)
     weights = np.where(elastic, parts / np.where(elastic, omega2, 1.0), np.inf)
     weights[np.argsort(omega2, kind="stable")[:slowest]] = np.inf
     return np.asarray(np.lexsort((omega2, -weights)))

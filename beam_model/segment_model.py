@@ -33,40 +33,40 @@ def gap_system(
 ) -> GapSystem:
     """Return the gap system of a boom of beams.
 
-    Forces act at the centres of pads. With ``BOTH_SIDES`` one equation of a contact acts on both
-    sides, with ``EACH_SIDE`` each side has its equation.
+    Forces act at the centres of pads. ``sides`` is ``BOTH_SIDES`` for one contact row for both
+    sides of a joint or stop, ``EACH_SIDE`` for one row for each side.
     """
     modes = BoomModes(boom, models)
     system = system_without_drives(boom, modes, sides)
     rows_at = partial(_rows, boom, modes, sides)
-    members = [modes.member(number) for number in range(len(boom.segments))]
-    return replace(system, travels=travels(boom, models, rows_at, members))
+    beams = [modes.beam(number) for number in range(len(boom.segments))]
+    return replace(system, travels=travels(boom, models, rows_at, beams))
 
 
 def system_without_drives(
     boom: Boom, modes: BoomModes, sides: Sequence[Side] = BOTH_SIDES
 ) -> GapSystem:
-    """Return the gap system at the start, without drives.
+    """Return the gap system at the initial extension, without drives.
 
     Args:
         boom, sides: as in :func:`gap_system`.
         modes: modes of the boom's segments.
     """
-    members = [modes.member(number) for number in range(len(boom.segments))]
+    beams = [modes.beam(number) for number in range(len(boom.segments))]
     ends: tuple[Quantity, ...] = ("deflection", "lateral") if boom.spatial else ("deflection",)
     return _rows(boom, modes, sides, {}).system(
         lambda row: row,
         modes.omega2,
-        sum((push for _, push in pin_moments(boom.segments, boom.joints, members)), modes.load),
+        sum((push for _, push in pin_moments(boom.segments, boom.joints, beams)), modes.load),
         boom.stations,
         {
             place.name: OutputOperator(_row(place, modes), place.kind.unit, place.kind.derivative)
             for place in boom.all_observations(ends)
         },
-        [(load.push(members[load.segment]), load.history) for load in boom.loads],
+        [(load.push(beams[load.segment]), load.history) for load in boom.loads],
         [
             (line.force, line.push, line.stiffness, line.dashpot)
-            for line in ground_lines(boom, members)
+            for line in ground_lines(boom, beams)
         ],
         modes.damping,
     )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Static states and reactions: forces of supports, joints, cylinders and stops on beams.
 
-For a segment without its supports, the residual K w − f of the static deflection w at a node is the
-reaction at this node.
+With the stiffness K and the load f of a segment without its supports, the residual K w − f of the
+static deflection w at a node is the reaction at this node.
 """
 
 from __future__ import annotations
@@ -28,7 +28,7 @@ from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.contact_places import contact_centres
 
-# Minimum number of elements of the longest segment with axial forces or tapers.
+# Minimum number of elements of the longest segment in a boom with axial forces or tapers.
 ELEMENTS_WITH_AXIAL_FORCE = 20
 
 
@@ -57,7 +57,7 @@ class StaticState(NamedTuple):
 
 @dataclass(frozen=True)
 class Elements:
-    """Segments of a boom, with elements that are exact in statics."""
+    """Segments of a boom with beam elements whose static solution is exact."""
 
     boom: Boom  #: boom with joints bonded or with play
     #: minimum number of elements of the longest segment. Section forces need more than one, since
@@ -83,7 +83,7 @@ class Elements:
 
     @property
     def _kind(self) -> tuple[float, Theory]:
-        """Return the element length in m, small with axial forces or tapers, and the theory."""
+        """The element length in m, smaller with axial forces or tapers, and the theory."""
         segments, count = self.boom.segments, self.count
         if self.boom.compressed or any(one.head_section is not None for one in segments):
             count = max(count, ELEMENTS_WITH_AXIAL_FORCE)
@@ -132,7 +132,7 @@ def static_state(
 
 
 def estimate_critical_factor(boom: Boom) -> float | None:
-    """Return the buckling factor of beam elements, with walls that bend under pads.
+    """Return the buckling factor of the boom by beam elements, with walls that bend under pads.
 
     It is infinite without axial forces, and None for a mechanism or if numbers overflow.
     """
@@ -146,7 +146,7 @@ def estimate_critical_factor(boom: Boom) -> float | None:
 
 
 def telescoping_system(boom: Boom) -> GapSystem:
-    """Return the gap system of the elements of :func:`static_state`, with drives."""
+    """Return the gap system of a boom of :class:`Elements`, with drives."""
     return gap_system(boom, Elements(boom).segments).gather_loads()
 
 
@@ -155,17 +155,17 @@ def net_reactions(boom: Boom, reactions: Sequence[NodeReaction]) -> list[NodeRea
 
     Args:
         boom: boom at rest.
-        reactions: residuals of all segments. At a joint, the residual of the outer segment is the
-            sum of the force of the inner segment and of its own reaction.
+        reactions: reactions of all segments, from :class:`StaticState`. At a joint, the reaction on
+            the outer segment also includes the force of the inner segment.
     """
-    whole = {reaction[:2]: reaction for reaction in reactions}
+    net = {reaction[:2]: reaction for reaction in reactions}
     for joint in sorted(boom.joints, key=lambda joint: -joint.inner):
         for x in chain.from_iterable(contact_centres(boom, joint).values()):
-            inner, outer = whole[joint.inner, x], whole[joint.outer, x]
-            whole[joint.outer, x] = outer._replace(
+            inner, outer = net[joint.inner, x], net[joint.outer, x]
+            net[joint.outer, x] = outer._replace(
                 force=outer.force + inner.force, moment=outer.moment + inner.moment
             )
-    return [whole[reaction[:2]] for reaction in reactions]
+    return [net[reaction[:2]] for reaction in reactions]
 
 
 def _reaction_places(boom: Boom, number: int) -> set[float]:
@@ -197,7 +197,7 @@ def _reactions(
             and applied_load.direction == "z"
             and callable(applied_load.history)
         ):
-            load += applied_load.history(np.array([time]))[0] * applied_load.push(component.member)
+            load += applied_load.history(np.array([time]))[0] * applied_load.push(component.beam)
     stiffness = component.stiffness - component.geometric_stiffness
     left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
     return [

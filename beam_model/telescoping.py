@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows of a telescoping boom of beams as functions of the extensions of its joints.
 
-While a station passes an element, its rows are shape functions. Tables of cubics represent
-prismatic elements exactly. Tapered elements have degree five and series any degree; tables
-represent them within a tolerance.
+While a station passes an element, the rows of the station are the shape functions of the element.
+Tables of cubics are exact for prismatic elements. For tapered elements, of degree five, and for
+series, of any degree, they have a tolerance.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from beam_model.component import BeamMember, SegmentModel
+from beam_model.component import BeamSegment, SegmentModel
 from dynamics.drive.row_table import MovingAxialForce, RowTable
 from dynamics.drive.travel import Travel
 from dynamics.excitation import HistorySum
@@ -30,18 +30,18 @@ def travels(
     boom: Boom,
     models: Sequence[SegmentModel],
     rows_at: RowsAt,
-    members: Sequence[BeamMember],
+    beams: Sequence[BeamSegment],
 ) -> list[Travel]:
     """Return the travels of each joint with a drive, and of stops that drives move."""
-    return [_travel(boom, models, rows_at, members, group) for group in telescoping_stations(boom)]
+    return [_travel(boom, models, rows_at, beams, group) for group in telescoping_stations(boom)]
 
 
 def moving_axial_forces(
-    boom: Boom, models: Sequence[SegmentModel], members: Sequence[BeamMember], joint: int
+    boom: Boom, models: Sequence[SegmentModel], beams: Sequence[BeamSegment], joint: int
 ) -> list[MovingAxialForce]:
     """Return the axial force that moves with a telescoping joint; empty if there is none.
 
-    ``members`` are the load vectors and rows of all segments.
+    ``beams`` has the load vectors and rows of each segment.
     """
     axial = moving_force(boom.segments, boom.joints, joint)
     drive = boom.joints[joint].drive
@@ -51,7 +51,7 @@ def moving_axial_forces(
 
     def rows(extension: float) -> Array:
         x = start + direction * extension
-        return np.array([members[segment].at(plane, x) for plane in boom.directions])
+        return np.array([beams[segment].at(plane, x) for plane in boom.directions])
 
     nodes = np.concatenate([models[segment].components[plane].breaks for plane in boom.directions])
     breaks = _extensions_between(boom, drive.reach, [direction * (nodes - start)])
@@ -62,7 +62,7 @@ def _travel(
     boom: Boom,
     models: Sequence[SegmentModel],
     rows_at: RowsAt,
-    members: Sequence[BeamMember],
+    beams: Sequence[BeamSegment],
     group: TelescopingStations,
 ) -> Travel:
     moving = rows_at({}).rows_at(group.stations)
@@ -72,14 +72,14 @@ def _travel(
 
     table = RowTable.interpolate(rows, _breaks(boom, models, group))
     alone = len(group.joints) == 1
-    pressing = moving_axial_forces(boom, models, members, group.joints[0]) if alone else []
+    pressing = moving_axial_forces(boom, models, beams, group.joints[0]) if alone else []
     history = HistorySum(tuple(drive.history for drive in group.drives))
     against = joint_thrust(boom.segments, boom.joints, group.joints[0]) if alone else 0.0
     return Travel(history, table, moving, group.suffix, pressing, against)
 
 
 def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStations) -> list[float]:
-    """Return the extreme extensions in m, and those at which a station passes a node."""
+    """Return the extreme extensions in m, and the extensions at which a station meets a node."""
     joint = boom.joints[group.joints[-1]]
     outer, inner = (
         np.concatenate([c.breaks for c in models[segment].components.values()])
@@ -97,7 +97,7 @@ def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStatio
 def _extensions_between(
     boom: Boom, reach: tuple[float, float], passed: Sequence[Array]
 ) -> list[float]:
-    """Return both ends of a range of extensions in m, and the extensions within it."""
+    """Return the ends of the range ``reach`` in m, and the extensions ``passed`` within it."""
     low, high = reach
     extensions = np.unique(np.clip(np.concatenate([reach, *passed]), low, high))
     near = SAME_PLACE * boom.length

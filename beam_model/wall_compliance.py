@@ -2,11 +2,11 @@
 """Local compliance of walls under slide pads, estimated without a shell.
 
 A wall under a pad bends as a plate. Neighbouring walls, which are stiff in their planes, support it
-along its folds. So the unfolded walls of a segment form one continuous plate on line supports at
+along the folds. So the unfolded walls of a segment form one continuous plate on line supports at
 the folds, with a free edge at the end of the segment. Elements are the conforming rectangles of
 Bogner, Fox and Schmit (1965): products of cubic Hermite polynomials along the boom and around the
-section, whose matrices are Kronecker products. The estimate neglects the distortion of the whole
-section, so that it is too small for sloping walls far from collars and diaphragms.
+section, so that matrices are Kronecker products. The distortion of the whole section is neglected.
+So the estimate is too small for sloping walls far from collars and diaphragms.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class PressedArea(NamedTuple):
 
 
 class _Axis:
-    """Cubic Hermite elements between nodes in m. The end nodes of a closed axis coincide."""
+    """Cubic Hermite functions between nodes in m; the end nodes of a closed axis coincide."""
 
     def __init__(self, nodes: Array, closed: bool) -> None:
         self.nodes = nodes
@@ -67,7 +67,7 @@ class _Axis:
         self._sums = self._shapes.antiderivative()
 
     def integrals(self, weights: Array) -> list[csc_matrix]:
-        """Return ∫ φφ, ∫ φ′φ′, ∫ φ″φ″ and ∫ φφ″, (num_dofs, num_dofs) each.
+        """Return ∫ φφ, ∫ φ′φ′, ∫ φ″φ″ and ∫ φφ″ of the functions φ, each (num_dofs, num_dofs).
 
         Args:
             weights: factors (num_elements,) of the elements.
@@ -80,12 +80,12 @@ class _Axis:
         return [csc_matrix((scale * left).T @ right) for left, right in pairs]
 
     def mean(self, start: float, end: float) -> Array:
-        """Return the row (num_dofs,) of the mean between two positions in m."""
+        """Return the row (num_dofs,) of the mean value between two positions in m."""
         return np.asarray((self._sums(end) - self._sums(start)) / (end - start))
 
 
 def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> GapSystem:
-    """Return a beam with springs for the compliance of walls under its pads.
+    """Return the system of a beam with springs for the compliance of walls under pads.
 
     Args:
         system: gap system with a contact row for each side, ``beam_model.segment_model.EACH_SIDE``.
@@ -120,7 +120,7 @@ def contact_compliance(boom: Boom) -> Array:
         for segment in (inner, boom.segments[joint.outer]):
             # Load cases and combinations share the cached walls of the unloaded segment.
             segment = replace(segment, load=0.0, lateral=None, compression=NO_COMPRESSION)
-            # The sign relates the direction of a row to the outward normal of its area.
+            # The signs relate the directions of rows to the outward normals of areas.
             outward = wall_compliance(segment, areas)
             compliance[np.ix_(at, at)] += np.outer(sides, sides) * outward
     return compliance
@@ -129,8 +129,8 @@ def contact_compliance(boom: Boom) -> Array:
 def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
     """Return the compliance of walls in m/N by joint, direction and index of the station.
 
-    All pads of a side are in contact; the value is the compliance of the softer side. It is 0 where
-    a side has a contact at a corner.
+    It is the compliance of the softer side with all its pads in contact, 0 if a side has a contact
+    at a corner.
     """
     walls = contact_compliance(boom)
     sides: dict[tuple[int, Direction, int, Side], list[int]] = {}
@@ -160,7 +160,7 @@ def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
 
 
 def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
-    """Return the area of a pad; in a planar boom, of a symmetric pair of pads."""
+    """Return the area of a pad, or of a symmetric pair of pads in a planar boom."""
     assert pad.patch is not None
     near, far = pad.patch.across(inner.section_at(pad.x).face(pad.direction, side))
     halves = (1, -1) if pad.face is None else (pad.half,)
@@ -179,7 +179,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
         areas: pressed areas of one station.
 
     Returns:
-        A read-only array, which later calls share.
+        A read-only array, which later calls with the same arguments return again.
     """
     start, end = min(area.start for area in areas), max(area.end for area in areas)
     section = segment.section_at(0.5 * (start + end))
@@ -268,7 +268,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
 
 
 def _graded_nodes(cuts: Array, length: float, fine: tuple[float, float]) -> Array:
-    """Return nodes in m that include cuts. Elements grow outside the interval ``fine``."""
+    """Return nodes in m that include ``cuts``; elements become longer outside ``fine``."""
     count = int(np.ceil((fine[1] - fine[0]) / length))
     beyond = length * np.cumsum(_GROWTH ** np.arange(1, 30))
     nodes = np.concatenate([fine[0] - beyond, np.linspace(*fine, count + 1), fine[1] + beyond])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Public names, imported at first use: ``import protractile as pt``.
 
-``__init__.pyi`` lists them for this module and for type checkers.
+``__init__.pyi`` lists the names for this module and for type checkers.
 """
 
 from __future__ import annotations

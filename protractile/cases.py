@@ -38,7 +38,7 @@ _CASE = "case"
 
 
 def load_case(source: str | Path | Mapping[str, Any]) -> Case:
-    """Read and check a case file, or its tables as a dictionary.
+    """Return the checked case of a case file, or of a dictionary with the tables of a case.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "paper.toml")
@@ -46,8 +46,8 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
     ['outer', 'inner']
 
     Args:
-        source: path of a case file, for example in the folder ``CASES`` of the program; or the
-            dictionary of its tables; paths of CSV files are relative to the current folder.
+        source: path of a case file, for example in the folder ``CASES`` of the program; or a
+            dictionary, in which paths of CSV files are relative to the current folder.
 
     Raises:
         BadInput: the file cannot be read, or its content is invalid.
@@ -60,7 +60,7 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
 def check(case: Case) -> Check:
     """Return the output of ``protractile check``: tables, static state, stresses, cautions.
 
-    A notebook shows its tables, ``print`` its text; ``frames`` are its tables for pandas.
+    A notebook shows the tables, ``print`` the text; ``frames`` are the tables for pandas.
 
     >>> import protractile as pt
     >>> result = pt.check(pt.load_case(pt.CASES / "paper.toml"))
@@ -107,7 +107,7 @@ def change(case: Case, **values: Any) -> Case:
 def run_case(
     case: Case, models: Sequence[str] | None = None, folder: str | Path | None = None
 ) -> Results:
-    """Run the models of a case in this process.
+    """Run the models of a case in this process, and return the results.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "coarse.toml")
@@ -143,17 +143,17 @@ def run_case(
 
 
 def report(folder: str | Path, *, excel: bool = False) -> Results:
-    """Render the report of a run again from its data, as ``protractile report``.
+    """Render the report of a run again from the data of the run, as ``protractile report``.
 
     Args:
         folder: folder of a run, or of :meth:`Results.save`, for ``report.html`` and figures.
-        excel: whether it also receives ``results.xlsx``, a workbook of the design results.
+        excel: whether the folder also receives ``results.xlsx``, a workbook of the design results.
 
     Returns:
         The results of the run.
 
     Raises:
-        BadInput: it is not the folder of a run, or openpyxl is missing for the workbook.
+        BadInput: the folder is not that of a run, or openpyxl is missing for the workbook.
     """
     from runs.report.output import rerender_report
 
@@ -181,22 +181,22 @@ def sweep(
     until: str | None = None,
     folder: str | Path | None = None,
 ) -> xr.Dataset:
-    """Run a case over values of its numbers, on all cores, as ``protractile sweep``.
+    """Run a case for several values of its keys on all cores, as ``protractile sweep``.
 
-    In a script, call it below ``if __name__ == "__main__":``, since other processes import the
-    script.
+    In a script, call the function below ``if __name__ == "__main__":``, since other processes
+    import the script.
 
     Args:
         case: case from :func:`load_case` or :func:`change`.
         vary: values by key, in the units of the case; all combinations are run.
         models: names of the models; all unless given.
         against: name of the model with which the others are compared.
-        until: bound of a quantity, such as ``"tip<0.9"``; bisection finds the value of the only
-            key at this bound.
-        folder: folder for the files of the sweep; its finished points are not run again.
+        until: bound of a quantity, such as ``"tip<0.9"``; bisection finds the value of the key, of
+            which there must be one, at this bound.
+        folder: folder for the files of the sweep; finished points in it are not run again.
 
     Returns:
-        Dims: the keys and ``model``; the quantities of :attr:`Results.quantities` in SI units.
+        The quantities of :attr:`Results.quantities` in SI units; dims: the keys and ``model``.
         ``failed`` is 1 if a model could not be computed.
 
     Raises:
@@ -227,7 +227,7 @@ def frequencies(
     vary: Mapping[str, Sequence[float]] | None = None,
     models: Sequence[str] | None = None,
 ) -> xr.Dataset:
-    """Return first frequencies, over values of a case's numbers if there are any.
+    """Return the first natural frequencies of a case, for several values of its keys if given.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "paper.toml")
@@ -254,7 +254,7 @@ def frequencies(
 
 
 def _options(vary: Mapping[str, Sequence[float]]) -> list[str]:
-    """Return variations as options of the command line, without loss of digits."""
+    """Return ``vary`` as options of the command line, without loss of digits."""
     return [
         f"{key}={','.join(repr(float(value)) for value in values)}" for key, values in vary.items()
     ]

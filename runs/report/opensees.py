@@ -267,7 +267,7 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
         part = parts[load.segment]
         values = np.asarray(load.history(times), dtype=float)
         constant = bool(np.ptp(values) == 0.0)
-        nodes = part.nodal((values[0] if constant else 1.0) * load.push(part.component.member))
+        nodes = part.nodal((values[0] if constant else 1.0) * load.push(part.component.beam))
         yield {
             "segment": load.segment,
             "nodes": nodes,
