@@ -47,7 +47,7 @@ class Sizes:
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
     plate: Sequence[float] = (0.0125, 0.00625)  #: edge lengths in m of the plate's mesh
     peak: float = 0.9  #: time in s that includes the tip's first peak
-    loads: Sequence[float] = (1.0, 10.0)  #: over the paper's
+    loads: Sequence[float] = (1.0, 10.0)  #: ratios to the paper's load
 
 
 class Contact(NamedTuple):

@@ -63,7 +63,7 @@ class Run:
 
     how: str  #: model and integrator
     unknowns: int  #: degrees of freedom, or modal coordinates
-    step: float  #: in s
+    step: float  #: time step in s
     tip: Array  #: (num_times,) in m
     impulse: float  #: impulse of all contact forces in N·s
     energy_residual: float  #: energy residual as a fraction of the work

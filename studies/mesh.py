@@ -34,7 +34,7 @@ class Sizes:
     #: Edge lengths over the default ones, each half the one before, three at least.
     meshes: Sequence[float] = (4.0, 2.0, 1.0, 0.5)
     default: float = 1.0  #: edge length of the mesh whose error is checked
-    duration: float = 3.0  #: of the motion in s
+    duration: float = 3.0  #: duration of the motion in s
     #: Numbers of natural frequencies and of first tip peaks.
     frequencies: int = 3
     peaks: int = 3

@@ -54,11 +54,11 @@ _DENSITY = 7850.0
 class Proportions:
     """Proportions of a boom of two boxes, the paper's by default."""
 
-    length: float = 10.0  #: of each segment in m
-    overlap: float = 1.0  #: in m
+    length: float = 10.0  #: length of each segment in m
+    overlap: float = 1.0  #: length of the overlap in m
     aspect: float = 1.634  #: height over width of the outer box
-    walls: float = 1.0  #: thickness over the paper's
-    #: Length and width of pads beside the webs in m; pressed near the webs without.
+    walls: float = 1.0  #: ratio of the wall thicknesses to the paper's
+    #: Length and width in m of pads beside the webs; without pads, contact is near the webs.
     pad: tuple[float, float] | None = None
 
 
@@ -139,12 +139,12 @@ UNPREDICTABLE = 0.5
 class Sizes:
     """Parameters of the study."""
 
-    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  #: by their names
-    mesh_size: float = 0.2  #: of the shells in m
-    contact_tolerance: float = 0.04  #: of the same
-    wall_tolerance: float = 0.01  #: of those that show the compliance of walls under pads
-    plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)  #: 2Δ in m
-    #: Over the weight at 1 m/s²; under less of them friction stops the boom early.
+    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  #: booms by name
+    mesh_size: float = 0.2  #: mesh size of the shells in m
+    contact_tolerance: float = 0.04  #: contact tolerance of these shells
+    wall_tolerance: float = 0.01  #: contact tolerance for the compliance of walls under pads
+    plays: Sequence[float] = (0.0, 4.0e-3, 14.0e-3)  #: plays 2Δ in m
+    #: Loads over the weight at 1 m/s²; under smaller loads friction stops the boom early.
     loads: Sequence[float] = (10.0,)
     periods: float = 8.0  #: duration of the motions in periods of the boom without play
 
@@ -153,13 +153,13 @@ class Sizes:
 class Rule:
     """Data of a boom for the rule, without a shell."""
 
-    #: Parts of the tip's static deflection under its weight at 1 m/s² in m, the second one
-    #: Timoshenko's.
+    #: Parts in m of the tip's static deflection under the weight at 1 m/s²: by bending, by shear,
+    #: and by the compliance of walls.
     bending: float
     shear: float
     pressed: float
-    frequency: float  #: the first one without play in Hz
-    lever: float  #: free way of the tip over half the play
+    frequency: float  #: first frequency without play in Hz
+    lever: float  #: free travel of the tip over half the play
 
     @classmethod
     def of(cls, given: Proportions, case: Case) -> Rule:
@@ -235,9 +235,9 @@ def station_compliances(given: Proportions, case: Case) -> Array:
 class BoomErrors:
     """Errors of the beams of a boom relative to its shell, at all points."""
 
-    rule: Rule  #: of it
-    points: Sequence[Point]  #: play and load
-    duration: float  #: of the motions in s
+    rule: Rule  #: rule for the boom
+    points: Sequence[Point]  #: plays and loads
+    duration: float  #: duration of the motions in s
     #: (num_points,) errors by the name of the beam.
     peaks: Mapping[str, Array]
     tips: Mapping[str, Array]

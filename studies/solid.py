@@ -52,10 +52,10 @@ FREQUENCY = "frequency"
 class Probe(NamedTuple):
     """Displacement of a segment, and the force with this work-conjugate displacement."""
 
-    what: str  #: its name
+    what: str  #: name of the displacement
     family: SymmetryClass  #: symmetry class of the motions
     places: Mapping[float, float]  #: weights of the displacements by x in m
-    read: Callable[[SectionNodes], Row]  #: of the section
+    read: Callable[[SectionNodes], Row]  #: function that returns the row of a section
 
     def row(self, outline: Callable[[float], SectionNodes]) -> Row:
         """Return the sum of rows at all places; ``outline`` returns the outline at x in m."""
@@ -204,11 +204,11 @@ ALLOWED, ALLOWED_OF_A_SQUEEZE = 0.01, 0.04
 class Sizes:
     """Parameters of the study."""
 
-    #: Thicknesses in m, rising.
+    #: Wall thicknesses in m, ascending.
     walls: Sequence[float] = tuple(np.geomspace(0.004, 0.04, 4).round(4).tolist())
-    #: Edge lengths of the shells' meshes in m, each half the one before.
+    #: Edge lengths of the shells in m, each half the previous length.
     triangles: Sequence[float] = (0.05, 0.025, 0.0125)
-    #: Of the solids' edges around the section, each twice the one before; as many as ``triangles``.
+    #: Numbers of parts of the solids' edges around the section, one for each of ``triangles``.
     splits: Sequence[int] = (1, 2, 4)
     #: See :func:`studies.reference_models.solid.mesh_quarter`.
     along: tuple[float, float] = (0.0125, 0.2)
@@ -218,11 +218,11 @@ class Sizes:
 class Quantity(NamedTuple):
     """Quantity of the pair."""
 
-    what: str  #: quantity
-    unit: str  #: of the values
+    what: str  #: name of the quantity
+    unit: str  #: unit of the values
     segment: Literal[0, 1]  #: 0 for the outer box, 1 for the inner one
-    family: SymmetryClass  #: of the motions
-    probe: str = FREQUENCY  #: whose compliance it is, or ``FREQUENCY``, the lowest natural one
+    family: SymmetryClass  #: symmetry class of the motions
+    probe: str = FREQUENCY  #: probe of a compliance; ``FREQUENCY`` for the lowest frequency
     allowed: float = ALLOWED  #: permitted error of the thinnest walls
 
     def of(self, answers: Sequence[Mapping[SymmetryClass, Mapping[str, float]]]) -> float:
@@ -252,8 +252,8 @@ EVERY = FREQUENCIES + COMPLIANCES
 class Comparison:
     """Pair of boxes of one wall thickness, as shells and as solids."""
 
-    wall: float  #: in m
-    #: Of each quantity.
+    wall: float  #: wall thickness in m
+    #: Values of each quantity on all meshes.
     shell: Mapping[Quantity, Refined]
     solid: Mapping[Quantity, Refined]
 

@@ -52,12 +52,12 @@ class Variant:
     """A segment with one set of stiffeners."""
 
     what: str  #: segment and its stiffeners
-    mass: float  #: of all its plates in kg
-    #: (num_stations,) in nm/N beyond Timoshenko's beam, half the force on each flange, above and
-    #: below its webs.
+    mass: float  #: mass of all plates in kg
+    #: (num_stations,) compliance in nm/N less that of a Timoshenko beam, with half of the force on
+    #: each flange above and below the webs.
     together: Array
-    one_more: Array  #: (num_stations,) further compliance if one flange has all of the force
-    frequencies: Array  #: the lowest ones in Hz, rigid motions left out
+    one_more: Array  #: (num_stations,) further compliance in nm/N with all of the force on a flange
+    frequencies: Array  #: lowest elastic frequencies in Hz
 
     @property
     def row(self) -> list[Cell]:

@@ -54,8 +54,8 @@ class Sizes:
 class InnerSegmentState:
     """Static state of the inner segment under its load and contact forces."""
 
-    boom: Boom  #: the paper's
-    stress: ShellStress  #: of the segment alone, whose number there is 0
+    boom: Boom  #: boom of the paper
+    stress: ShellStress  #: stresses of the inner segment, which has the index 0 there
 
     @classmethod
     def on_mesh(cls, boom: Boom, size: float) -> InnerSegmentState:

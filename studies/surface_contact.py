@@ -47,7 +47,7 @@ class Sizes:
     """Parameters of the study."""
 
     mesh: float = 0.1  #: edge length in m
-    duration: float = 10.0  #: of the motions with friction that are compared, in s
+    duration: float = 10.0  #: duration of the motions with friction in s
     peak: float = 0.9  #: time in s that includes the tip's first peak
     penalties: Sequence[float] = (0.1, 1.0, 10.0, 100.0)  #: parts of the default penalty per area
     #: Points along the overlap and across half a wall.

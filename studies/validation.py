@@ -152,10 +152,10 @@ def lift_frequency(retracted: float, mass: float) -> float:
 class Oscillators(NamedTuple):
     """Masses on springs on an accelerated base, with displacements relative to the base."""
 
-    mass: float  #: of each in kg
-    stiffness: float  #: of each in N/m
-    accelerations: Sequence[float]  #: amplitudes of their bases in m/s²
-    frequency: float  #: of the bases in Hz
+    mass: float  #: mass of each oscillator in kg
+    stiffness: float  #: stiffness of each spring in N/m
+    accelerations: Sequence[float]  #: amplitude of the base acceleration of each in m/s²
+    frequency: float  #: frequency of the bases in Hz
     damping_ratio: float = 0.0
 
     def system(self, friction: float = 0.0, laws: Sequence[Gap] = ()) -> GapSystem:

@@ -150,7 +150,7 @@ class PressedBox:
 
     Args:
         section: section of the box, with thick flanges.
-        length: a in m.
+        length: length a of the box in m.
         patch: length of the load in m.
     """
 

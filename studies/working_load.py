@@ -53,17 +53,17 @@ class Point(NamedTuple):
 class Sizes:
     """Parameters of the study."""
 
-    #: Edge lengths over the default ones, each half the one before.
+    #: Ratios of edge lengths to the default ones, each half the previous ratio.
     meshes: Sequence[float] = (2.0, 1.0, 0.5)
     plays: Sequence[float] = (0.0, 2.0e-3, 4.0e-3, 7.0e-3, 10.0e-3, 14.0e-3)  #: 2Δ in m
-    loads: Sequence[float] = (1.0, 3.0, 10.0)  #: over the paper's
+    loads: Sequence[float] = (1.0, 3.0, 10.0)  #: ratios to the paper's load
     pads: Sequence[tuple[float, float]] = ((0.1, 0.06), (0.2, 0.06))  #: lengths and widths in m
-    #: Points, whose motion lasts ``spatial_duration``.
+    #: Points of motions in space, which last ``spatial_duration``.
     in_space: Sequence[Point] = (Point(14.0e-3, 1.0), Point(14.0e-3, 10.0), Point(4.0e-3, 10.0))
-    #: Of both motions in s.
+    #: Durations in s of planar motions and of motions in space.
     duration: float = 5.0
     spatial_duration: float = 1.0
-    peaks: int = 3  #: how many of the tip's first ones
+    peaks: int = 3  #: number of compared peaks of the tip
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,8 +71,8 @@ class PointMotion:
     """Motion of one point of the study."""
 
     tip: Array  #: (num_times,) in m
-    peaks: Array  #: (num_peaks,) heights of its first ones in m; NaN without it
-    forces: Array  #: (num_stations,) largest of each, in N, over ``HELD`` outputs
+    peaks: Array  #: (num_peaks,) heights of the first peaks of the tip in m; NaN for missing ones
+    forces: Array  #: (num_stations,) largest force in N, as a mean over ``HELD`` outputs
     seconds: float = 0.0  #: computing time on one core
 
     @classmethod
@@ -110,19 +110,19 @@ class PointMotion:
 class ContactType(NamedTuple):
     """Type of contact."""
 
-    name: str  #: of its table
-    where: str  #: segments touch, in words
-    case: Case  #: with it
-    points: Sequence[Point]  #: of motions that last ``duration``, in s
-    duration: float
+    name: str  #: name of the table
+    where: str  #: places of contact, in words
+    case: Case  #: case with this contact
+    points: Sequence[Point]  #: points of the motions
+    duration: float  #: duration of the motions in s
 
 
 @dataclass(frozen=True, slots=True)
 class ContactResults:
     """Results for a type of contact on every mesh."""
 
-    touch: ContactType  #: the way
-    #: Point → its motions, from the coarsest mesh to the finest.
+    touch: ContactType  #: the type of contact
+    #: Motions of each point, from the coarsest mesh to the finest.
     moved: Mapping[Point, Sequence[PointMotion]]
 
     @property

@@ -44,9 +44,9 @@ class Program:
     """Another program, with the path of its Python interpreter."""
 
     name: str
-    module: str  #: of Python
-    python: Path  #: interpreter that has it
-    remedy: str  #: how to install it
+    module: str  #: name of the Python module
+    python: Path  #: interpreter that can import the module
+    remedy: str  #: instruction to install the program
 
     @property
     def installed(self) -> bool:
@@ -64,11 +64,12 @@ class Problem:
 
     what: str
     program: Program
-    script: str  #: of this folder, which reads ``given`` and ``steps`` and prints its runs
+    script: str  #: script of this folder, which reads ``given`` and ``steps`` and prints runs
     given: Mapping[str, Any]
-    steps: Sequence[float]  #: of the other program in s, falling
-    move: Callable[[float], Array]  #: our places (num_times, num_observed) with a step in s
-    exact: Array  #: the same, converged
+    steps: Sequence[float]  #: steps of the other program in s, descending
+    #: function that returns positions (num_times, num_observed) by this program for a step in s
+    move: Callable[[float], Array]
+    exact: Array  #: converged positions
 
     def off(self, places: Array) -> float:
         """Return the largest error of positions, as a fraction of the range of the tip."""

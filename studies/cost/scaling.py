@@ -67,7 +67,7 @@ class Sizes:
     #: Numbers of ranks on which the default mesh is reduced and moves; the last is that of the
     #: meshes.
     ranks: Sequence[int] = (1, 2)
-    duration: float = 10.0  #: of the motions in s
+    duration: float = 10.0  #: duration of the motions in s
 
 
 def measure(sizes: Sizes) -> Iterator[Table]:

@@ -108,8 +108,8 @@ class ModelRun:
 class Sample:
     """Runs of the models with play by one numerical method, and of the model without play."""
 
-    models: Sequence[ModelRun]  #: of ``SERIES`` and ``ELEMENTS``
-    bonded: ModelRun  #: the elements without play, accurate with any numerics
+    models: Sequence[ModelRun]  #: runs of ``SERIES`` and ``ELEMENTS``
+    bonded: ModelRun  #: run of the elements without play, accurate by any method
 
     @property
     def elements(self) -> ModelRun:
@@ -153,12 +153,12 @@ class Sample:
 class Example:
     """Example of the paper, with its models and with accurate motions of an ensemble."""
 
-    case: Case  #: its file's
-    systems: Mapping[str, GapSystem]  #: systems of its models by name
+    case: Case  #: case of the example
+    systems: Mapping[str, GapSystem]  #: systems of the models by name
     cutoff: float  #: cut-off of the slow motion in Hz
     accurate: Sequence[
         Sample
-    ]  #: by this program; a single one if friction makes the motion regular
+    ]  #: accurate motions by this program; a single one if friction makes the motion regular
 
     @classmethod
     def of(cls, case: Case, members: int) -> Example:

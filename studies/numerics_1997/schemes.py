@@ -40,7 +40,7 @@ class Scheme:
     """Parameters of a scheme of the family."""
 
     name: str  #: name in the literature
-    beta: float  #: of the displacement within a step, after Newmark (1959); γ is ½
+    beta: float  #: Newmark's parameter β of the displacement (1959); γ is ½
     theta: float = 1.0  #: time, in steps, at which the equation of motion holds
 
 

@@ -98,7 +98,7 @@ class Survey:
     #: The examples.
     without: Example
     with_friction: Example
-    #: Their samples by the numerics.
+    #: Samples of both examples, by numerical method.
     free: Mapping[Numerics, Sequence[Sample]]
     frictional: Mapping[Numerics, Sequence[Sample]]
     #: By the general solver in the steps that the paper allows the series, in s.

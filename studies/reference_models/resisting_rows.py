@@ -33,7 +33,7 @@ _ROUND_OFF = 32.0 * float(np.finfo(np.float64).eps)
 
 
 class ResistingRows:
-    """Contact and friction rows from step to step, from rest.
+    """Contact and friction rows during a time integration from rest.
 
     Args:
         laws: laws of the contact rows, without damping.

@@ -145,9 +145,9 @@ class _SolidPlates(Plates):
 
 @dataclass(frozen=True)
 class SolidFamily(Shell):
-    """Solid model K u = f and M ü of a quarter, with the energies of the whole segment.
+    """Solid model of a quarter of a segment: stiffness and mass, on one process.
 
-    It is on one process, and has no rotations.
+    Energies are those of the whole segment. A solid has no rotations.
 
     Args:
         fixed: (num_fixed,) constrained degrees of freedom.
