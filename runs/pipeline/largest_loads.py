@@ -62,7 +62,7 @@ class BeamStates(NamedTuple):
         return self.model.boom
 
     def with_results(self) -> BeamStates:
-        """Return the states with the result of each of them."""
+        """Return the states, completed by their static results."""
         states = zip(self.time.tolist(), self.positions, strict=True)
         return self._replace(rests=[static_result(self.model, *state) for state in states])
 

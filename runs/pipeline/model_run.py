@@ -45,7 +45,7 @@ _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "l
 
 
 class SharedFailure(Exception):
-    """Failure of one rank while other ranks may wait for it."""
+    """Failure of a model on one rank, while other ranks may wait for this rank."""
 
 
 @dataclass(frozen=True, slots=True)

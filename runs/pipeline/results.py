@@ -153,7 +153,7 @@ class Results:
 
     @cached_property
     def reference(self) -> str | None:
-        """The reference model, with which the others are compared."""
+        """The name of the reference model, with which the others are compared."""
         return reference_of(self.completed_models)
 
     @property

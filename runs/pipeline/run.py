@@ -43,12 +43,12 @@ class Run:
 
     @property
     def shells(self) -> dict[str, ShellOutput]:
-        """The output of each shell."""
+        """The output of each shell, by name."""
         return {name: one.shell for name, one in self.model_runs.items() if one.shell is not None}
 
     @cached_property
     def beams(self) -> dict[str, BeamOutput]:
-        """The output of each beam."""
+        """The output of each beam, by name."""
         boom = self.results.boom
         return {
             name: BeamOutput.of(one.model.lines(boom, one.built), one.motion.trajectory)

@@ -31,7 +31,7 @@ from runs.pipeline.section_forces import LoadedModel, round_values
 
 # Extensions that differ by less than this fraction count as equal.
 _SAME_EXTENSION = 1.0e-12
-# Fraction of a lateral play: a caution is given if bulging walls close more of it.
+# Fraction of a lateral play above which a caution on bulging walls that close the play is given.
 BULGED = 0.1
 
 

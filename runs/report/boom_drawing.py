@@ -125,7 +125,7 @@ def save_drawing(case: Case, file: str, picture: str) -> None:
 
 
 def boom_sheet(case: Case, boom: Boom) -> Sheet:
-    """Return the sheet of the drawing."""
+    """Return the sheet with the drawing of a boom."""
     angle = 0.0 if case.gravity is None else case.gravity.angle
     low, high = _extent(boom, angle)
     sections = [

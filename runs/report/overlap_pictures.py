@@ -317,7 +317,7 @@ class StressScale:
         return {"scalars": "stress", "cmap": theme.STRESS, "clim": ends, **COLOUR_READ}
 
     def add_bar(self, sheet: Sheet) -> None:
-        """Draw the scale beside the boom."""
+        """Draw the colour scale on a sheet, beside the boom."""
         end, goes_on = self.end / 1.0e6, self.largest > self.end
         extend = "max" if goes_on else "neither"
         bar = sheet.colour_bar((1215, 655, 330, 34), end, theme.STRESS, extend)

@@ -288,7 +288,7 @@ class Scene:
         return max(0.5 * float(np.ptp(self.edges(segment, end))) for end in ends)
 
     def flange_in_plane(self, segment: int, side: int) -> Numbers:
-        """Return the point numbers of a flange in the plane of bending, from base to tip.
+        """Return point numbers (num_points,) of a flange in the plane of bending, base to tip.
 
         ``side`` is 1 for the top flange, -1 for the bottom flange.
         """
