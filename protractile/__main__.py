@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from runs.process.ending import listen
+from runs.process.ending import leave, listen
 
 
 def main() -> None:
@@ -11,7 +11,10 @@ def main() -> None:
     listen()
     from runs import cli
 
-    cli.main()
+    try:
+        cli.main()
+    except SystemExit as end:
+        leave(int(end.code or 0))
 
 
 if __name__ == "__main__":

@@ -210,6 +210,7 @@ def _write_report(studies: Sequence[Study], folder: Path) -> None:
         drawn = {one.name: [draw(plot, pictures) for plot in one.plots] for one in studies}
         content = page(
             "convergence.html",
+            [figure.path for figures in drawn.values() for figure in figures],
             title=TITLE,
             studies=studies,
             figures=drawn,

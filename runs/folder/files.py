@@ -16,6 +16,7 @@ import hashlib
 import os
 import shutil
 from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager, suppress
 from functools import partial
 from glob import escape
@@ -182,7 +183,10 @@ def _move_to_final_path(part: Path, folder: Path, file_names: Iterable[str]) -> 
         folder: the final path, at which an old folder may exist.
         file_names: names of the files in the manifest.
     """
-    lines = [f"{_digest(part / name)}  {name}\n" for name in sorted(file_names)]
+    sorted_names = sorted(file_names)
+    with ThreadPoolExecutor() as threads:
+        digests = threads.map(_digest, [part / name for name in sorted_names])
+    lines = [f"{digest}  {name}\n" for digest, name in zip(digests, sorted_names, strict=True)]
     (part / MANIFEST).write_text("".join(lines), "utf-8")
     folder = resolve_path(folder)
     if folder.is_dir():

@@ -37,6 +37,13 @@ _CLEAR = b"\r\x1b[K\x1b[?25h"
 
 # Environment variables with the rank, of Open MPI, PMIx, and MPICH and its derivatives.
 _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
+# Settings of Open MPI for a process without launcher, which needs no daemon and no network. MPI
+# starts in 0.06 s with them, and in 0.4 s without them.
+SINGLE_PROCESS = {
+    "OMPI_MCA_ess_singleton_isolated": "1",
+    "OMPI_MCA_pml": "ob1",
+    "OMPI_MCA_btl": "self",
+}
 
 # Time in s by which other ranks delay their message, so that rank 0 reports alone if it fails, too.
 _GRACE_OF_RANKS = 5.0
@@ -77,6 +84,19 @@ def launched_rank() -> int | None:
     ranks = (os.environ.get(name, "") for name in _LAUNCHERS)
     # Values that are not numbers are ignored.
     return next((int(number) for number in ranks if number.isdecimal()), None)
+
+
+def leave(status: int) -> NoReturn:
+    """End this process at once: the libraries would take up to a second to free their memory.
+
+    A rank ends as usual, since its launcher waits for all ranks.
+    """
+    if launched_rank() is not None:
+        sys.exit(status)
+    # Without this call Open MPI's folder in the temporary folder remains.
+    if mpi := sys.modules.get("mpi4py.MPI"):
+        mpi.Finalize()
+    os._exit(status)
 
 
 def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:

@@ -39,6 +39,8 @@ def enter_mpi(
     for number, model in enumerate(case.models, start=1):
         if model.needs_shell:
             _check_temporary_folder(file)
+            if ending.launched_rank() is None:
+                os.environ.update(ending.SINGLE_PROCESS)
             try:
                 import_module("shell_model.boom_shell")
                 from mpi4py import MPI

@@ -9,10 +9,11 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import active_children, get_context, parent_process
+from multiprocessing.util import Finalize
 from threading import Thread
 from typing import Any
 
-from runs.process.ending import when_interrupted
+from runs.process.ending import SINGLE_PROCESS, leave, when_interrupted
 from runs.process.terminal import show_notices
 
 # Environment of workers: one thread each, and no warnings during import or when they are killed.
@@ -102,6 +103,8 @@ def _start(prepare: Callable[[], object]) -> None:
     show_notices()
     for name in [name for name in os.environ if name.startswith(_RANK_PREFIXES)]:
         del os.environ[name]
+    os.environ.update(SINGLE_PROCESS)
+    Finalize(None, leave, (0,), exitpriority=-1)
     Thread(target=_end_with_parent, daemon=True).start()
     prepare()
 

@@ -70,6 +70,7 @@ def render(
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.bonded])
     return page(
         addition.template,
+        [figure.path for figure in (*figures, *snapshots)],
         title=results.case.title,
         duration=f"{results.case.time.duration:g}",
         cautions=results.summary.cautions,

@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
@@ -35,11 +36,12 @@ class Addition:
     files: Mapping[str, str] = field(default_factory=dict)
 
 
-def page(template: str | Path, **content: Any) -> str:
+def page(template: str | Path, pictures: Sequence[Path] = (), **content: Any) -> str:
     """Return a page as HTML, with escaped content.
 
     Args:
         template: name of a template of this package, or path of one that extends it.
+        pictures: files of the pictures in the page.
         content: variables of the template.
     """
     path = TEMPLATES / template
@@ -50,8 +52,9 @@ def page(template: str | Path, **content: Any) -> str:
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    environment.filters["data_uri"] = _data_uri
-    environment.globals |= {"tones": TONES, "remarks": {}}
+    with ThreadPoolExecutor() as threads:
+        uris = dict(zip(pictures, threads.map(_data_uri, pictures), strict=True))
+    environment.globals |= {"tones": TONES, "remarks": {}, "data_uris": uris}
     return environment.get_template(path.name).render(**content)
 
 
