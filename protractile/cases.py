@@ -23,7 +23,7 @@ from runs.pipeline.results import Results, prepare
 from runs.pipeline.run import run_case as run_models
 from runs.process import workers
 from runs.sweep import points
-from runs.sweep.variation import Unplaced, find
+from runs.sweep.variation import InvalidVariation, find
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -94,7 +94,7 @@ def change(case: Case, **values: Any) -> Case:
         try:
             for place in find(key, tables):
                 place.put(tables, value)
-        except Unplaced as reason:
+        except InvalidVariation as reason:
             raise BadInput(_CASE, key, str(reason)) from None
     try:
         changed = Case.model_validate(tables)

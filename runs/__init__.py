@@ -7,7 +7,7 @@ from pathlib import Path
 # Folder of the cases that come with the program.
 CASES = Path(__file__).parent / "cases"
 
-# This must be set before numpy reads it. The program runs ranks, ensemble members and sweep points
-# in parallel. Sums over BLAS threads would differ in the last bit between one process and several,
+# This must be set before numpy is imported. Ranks, ensemble members and sweep points are parallel
+# processes. With BLAS threads, sums would differ in the last bit between one process and several,
 # and contact amplifies such differences.
 os.environ.setdefault("OMP_NUM_THREADS", "1")

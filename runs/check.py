@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Output of ``check``: tables and sentences on the data of a case.
 
-No shell is computed here; beams take its place.
+Beams replace shells here.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ if TYPE_CHECKING:
 # Number of modes in the table of damping.
 SHOWN_MODES = 3
 
-# Distance from a jump of the force, as a fraction of the segment.
+# Distance of a section from a jump of the axial force, as a fraction of the segment length.
 _BESIDE = 1.0e-9
 
 # Damping ratio, and moment in N·m, below which values count as zero.
@@ -87,11 +87,11 @@ class Check:
 
     title: str  #: title of the case
     tables: Sequence[Table]  #: tables with at least one row
-    lines: Sequence[str]  #: sentences, cautions among them
+    lines: Sequence[str]  #: sentences and cautions
 
     @property
     def frames(self) -> dict[str, pd.DataFrame]:
-        """The tables by their titles, with numbers in displayed units."""
+        """The tables by title, with numbers in displayed units."""
         return {table.title: table.flat_frame for table in self.tables}
 
     def show(self, console: Console) -> None:
@@ -114,14 +114,14 @@ class Check:
         return f"<h3>{escape(self.title)}</h3>{tables}<ul>{lines}</ul>"
 
 
-def print_check(declared: CheckedCase, console: Console) -> None:
+def print_check(checked: CheckedCase, console: Console) -> None:
     """Print the tables and sentences of :func:`check_case`."""
-    check_case(declared).show(console)
+    check_case(checked).show(console)
 
 
-def check_case(declared: CheckedCase) -> Check:
+def check_case(checked: CheckedCase) -> Check:
     """Return the tables and sentences that ``check`` prints."""
-    case, boom, preview = declared.case, declared.boom, Preview(declared)
+    case, boom, preview = checked.case, checked.boom, Preview(checked)
     static = statics(case, boom)
     boom_with_laws = boom if static is None else static.with_play.boom
     beam = None if static is None else BeamStates.of(case, boom_with_laws)
@@ -136,7 +136,7 @@ def check_case(declared: CheckedCase) -> Check:
         _masses(boom, case.system),
         load_table(case, boom),
         axial_forces(boom, static),
-        *([_buckling(declared)] if boom.compressed else []),
+        *([_buckling(checked)] if boom.compressed else []),
         _damping_ratios(preview),
         *([_reactions(static.with_play, case.system)] if static else []),
         *([_cylinders(static.with_play, case.system)] if static else []),
@@ -150,7 +150,7 @@ def check_case(declared: CheckedCase) -> Check:
     lines += [*_static_lines(case, boom, static, beam, advise)]
     if boom.compressed:
         for model in case.models:
-            lines += buckling_cautions(_beam_name(model), _critical_factor(declared, model))
+            lines += buckling_cautions(_beam_name(model), _critical_factor(checked, model))
     lines += [
         *actions.series_notes(case),
         *proportion_cautions(case, boom),
@@ -169,7 +169,7 @@ def check_case(declared: CheckedCase) -> Check:
 
 
 def _of(system: System, title: str, si: str, values: Sequence[float], form: str = ".4g") -> Column:
-    """Return a column with values in the units of the case, from values in an SI unit."""
+    """Return a column in the units of the case, from values in the SI unit ``si``."""
     return Column(f"{title}\n{system.label(si)}", [system.of(one, si) for one in values], form)
 
 
@@ -202,7 +202,7 @@ def _segments(case: Case, boom: Boom) -> Table:
 
 
 def _size(section: Section) -> str:
-    """Return the dimensions of a section in two lines: height and width, then plate thicknesses."""
+    """Return two lines of text: height and width of a section, then its plate thicknesses."""
     size, plates = str(section).rsplit(" x ", 1)
     return f"{size}\nt {plates}"
 
@@ -255,7 +255,7 @@ def _joints(case: Case, boom: Boom) -> Table:
 
 
 def _clearances(joint: Joint) -> Iterator[str]:
-    """Yield the clearances of a joint in mm, along z, in 3-D booms also along y."""
+    """Yield texts of the clearances of a joint in mm, along z, and in 3-D booms also along y."""
     sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("right", "left")}
     for direction, names in sides.items():
         if direction == "y" and joint.lateral_play is None:
@@ -355,14 +355,14 @@ def _extreme_axial_force(
     return largest, float(stresses.flat[np.abs(stresses).argmax()])
 
 
-def _critical_factor(declared: CheckedCase, model: Model) -> float | None:
-    return model.coarsen(declared.boom).critical_factor(declared.model_boom(model))
+def _critical_factor(checked: CheckedCase, model: Model) -> float | None:
+    return model.coarsen(checked.boom).critical_factor(checked.model_boom(model))
 
 
-def _buckling(declared: CheckedCase) -> Table:
-    """Return the table of the buckling factor of each model."""
-    models = declared.case.models
-    factors = [_critical_factor(declared, model) for model in models]
+def _buckling(checked: CheckedCase) -> Table:
+    """Return the table of buckling factors of all models."""
+    models = checked.case.models
+    factors = [_critical_factor(checked, model) for model in models]
     columns = [
         Column("model", [_beam_name(model) for model in models]),
         Column("buckling factor", factors, ".4g"),
@@ -372,7 +372,7 @@ def _buckling(declared: CheckedCase) -> Table:
 
 
 def _damping_ratios(preview: Preview) -> Table:
-    """Return the total damping ratios of the first modes of each model, with closed contacts."""
+    """Return the table of damping ratios of the first modes, with contacts closed as at rest."""
     case, boom = preview.checked.case, preview.checked.boom
     coefficients = [
         *case.damping.model_dump().values(),
@@ -406,13 +406,13 @@ def _ratios(preview: Preview, model: Model) -> list[str]:
 
 
 def _at_rest(preview: Preview, model: Model) -> tuple[GapSystem, Array | None]:
-    """Return the system of the beam that replaces a model, and its equilibrium (num_modes,)."""
+    """Return the gap system of the beam preview of a model, and its equilibrium (num_modes,)."""
     motion, at_rest = preview.motion(model), preview.checked.case.start.at_rest
     return motion.system, constant_load_equilibrium(motion.system, at_rest, motion.position)
 
 
 def _shaper_lines(preview: Preview) -> Iterator[str]:
-    """Yield the shapers against vibration after slewing and luffing, by the first model."""
+    """Yield sentences on input shapers for slewing and luffing, from modes of the first model."""
     case, (model, *_) = preview.checked.case, preview.checked.case.models
     if case.slew is None and case.luff is None:
         return
@@ -421,15 +421,15 @@ def _shaper_lines(preview: Preview) -> Iterator[str]:
 
 
 def _reactions(state: StaticState, system: System) -> Table:
-    """Return the table of support and contact reactions and contact compressions."""
-    held = list(contact_and_support_reactions(state).values())
-    moments: list[Cell] = [one.moment if abs(one.moment) > _NO_MOMENT else "" for one in held]
-    along: list[Cell] = [one or "" for one in without_round_off([one.along for one in held])]
-    depths: list[Cell] = ["" if one.depth is None else one.depth for one in held]
+    """Return the table of support reactions, contact forces and contact penetrations."""
+    reactions = list(contact_and_support_reactions(state).values())
+    moments: list[Cell] = [one.moment if abs(one.moment) > _NO_MOMENT else "" for one in reactions]
+    along: list[Cell] = [one or "" for one in without_round_off([one.along for one in reactions])]
+    depths: list[Cell] = ["" if one.depth is None else one.depth for one in reactions]
     columns = [
-        Column("segment", [one.segment for one in held]),
-        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in held]),
-        Column("force", without_round_off([one.force for one in held]), ".4g", "kN"),
+        Column("segment", [one.segment for one in reactions]),
+        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in reactions]),
+        Column("force", without_round_off([one.force for one in reactions]), ".4g", "kN"),
         *([Column("axial force", along, ".4g", "kN")] if any(along) else []),
         Column("moment", moments, ".4g", "kN m"),
         Column("contact\npenetration", depths, ".3g", "mm"),
@@ -443,7 +443,7 @@ def _reactions(state: StaticState, system: System) -> Table:
 
 
 def _cylinders(state: StaticState, system: System) -> Table:
-    """Return the table of cylinder axes and forces, with a pair side by side as one cylinder."""
+    """Return the table of lengths, lever arms and static forces of cylinders, a pair as one."""
     cylinders, segments = state.boom.cylinders, state.boom.segments
     arms: list[Cell] = []
     for cylinder in cylinders:
@@ -466,7 +466,7 @@ def _static_lines(
     beam: BeamStates | None,
     advise: Callable[[], str],
 ) -> Iterator[str]:
-    """Yield static tip deflection, first frequency, joint rotations due to play, and cautions."""
+    """Yield sentences on the static tip, the first frequency and joint rotations, and cautions."""
     if static is None or beam is None:
         yield "There is no static equilibrium under the loads at t = 0."
         return

@@ -112,13 +112,13 @@ def run(
     from runs.case import reading
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
-    # Imported after the check of the case, so that errors in it appear at once.
+    # These imports are slow, and follow the check of the case, so that its errors appear at once.
     from runs.process import workers
     from runs.report import opengl
 
     with workers.helper(opengl.silence_stderr) as helper:
         if helper and not ending.launched_rank() and any(m.needs_shell for m in effective.models):
-            # The helper imports FEniCSx while this process imports.
+            # The helper imports FEniCSx while this process imports other modules.
             helper.submit(import_module, "shell_model.reduced_shell")
         from runs.client import judge
         from runs.folder.cache import Cache
@@ -254,9 +254,9 @@ def sweep(
 ) -> int:
     """Run a parameter study of a case, and chart the results of its models.
 
-    Finished points stay in the folder and are not run again. Sections that are
-    inferred use the play in the case file, not the varied one. Under mpirun all ranks except the
-    first run points; otherwise all cores do. Ensembles are not run.
+    Finished points stay in the folder and are not run again. Sections are inferred with the play of
+    the case file, not with a varied play. Under mpirun all ranks except the first run points;
+    otherwise all cores run them. Ensembles are not run.
     """
     from runs.case.messages import BadInput
     from runs.folder.cache import Cache
@@ -267,18 +267,18 @@ def sweep(
     from runs.sweep import run as sweep_runs
     from runs.sweep import sensitivity as changes
 
-    others = ["--sensitivity"] * sensitivity + [sampling.OPTION] * (samples is not None)
-    if len(others) + bool(vary) != 1:
-        what = f"does not go with {' and '.join(others)}" if others else "missing"
+    other_options = ["--sensitivity"] * sensitivity + [sampling.OPTION] * (samples is not None)
+    if len(other_options) + bool(vary) != 1:
+        what = f"does not go with {' and '.join(other_options)}" if other_options else "missing"
         raise BadInput(case, "--vary", f"{what}; give one of --vary, --sensitivity and --samples")
 
     def plan_of(texts: Sequence[str]) -> Plan:
         return points.plan(case, texts, _names(models), mesh_size, against)
 
     if sensitivity:
-        plan, refused = changes.plan_changes(case, _names(models), mesh_size)
+        plan, rejected_keys = changes.plan_changes(case, _names(models), mesh_size)
     elif samples is not None:
-        plan, sampled = sampling.plan_samples(case, _names(models), mesh_size, samples)
+        plan, samples_table = sampling.plan_samples(case, _names(models), mesh_size, samples)
     else:
         plan = plan_of(vary)
     bound = None if until is None else search.parse_bound(until, plan)
@@ -304,11 +304,11 @@ def sweep(
             table = changes.changes(plan, outcomes)
             changes.write(table, folder)
             print(printable(str(folder / changes.CSV)))
-            changes.print_influences(table, plan.points[0].case, refused, Terminal())
+            changes.print_influences(table, plan.points[0].case, rejected_keys, Terminal())
             return sweep_runs.print_failures(plan, outcomes)
         if samples is not None:
             results = sampling.results_of(plan, outcomes)
-            sampling.write(results, sampled, folder)
+            sampling.write(results, samples_table, folder)
             print(printable(str(folder / sampling.CSV)))
             sampling.show(results, plan, Terminal())
             return sweep_runs.print_failures(plan, outcomes)
@@ -399,8 +399,8 @@ def prove(
 
     with ranks.end_all_ranks_on_error(comm), progress.display([shell]) as report_progress:
         stages = partial(report_progress, shell)
-        workshop = BuildContext(comm, stages, None if no_cache else Cache.of_user())
-        return print_proofs(checked, case, Terminal(), (shells[shell], workshop))
+        context = BuildContext(comm, stages, None if no_cache else Cache.of_user())
+        return print_proofs(checked, case, Terminal(), (shells[shell], context))
 
 
 @app.command()
@@ -456,14 +456,14 @@ def schema() -> int:
     """Print the JSON Schema of a case file."""
     from runs.case.schema import case_schema
 
-    # Longer than the buffer, so that a closed pipe is noticed here, where it is handled.
+    # The text is longer than the buffer, so that a closed pipe raises its error here.
     with suppress(BrokenPipeError):
         print(json.dumps(case_schema(), indent=1))
     return 0
 
 
 def main(arguments: Sequence[str] | None = None) -> None:
-    """Run a command and exit; print each error that the user can correct as one line on stderr."""
+    """Run a command and exit. Print an error that the user can correct as one line on stderr."""
     terminal.prepare()
     terminal.show_notices()
     # Figures go into files, whatever backend the environment selects.
@@ -481,5 +481,5 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _names(models: str | None) -> list[str] | None:
-    """Return the elements of a comma-separated list."""
+    """Return the names in a comma-separated list."""
     return None if models is None else [name.strip() for name in models.split(",")]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Interface to the client that evaluates runs, here :mod:`runs.paper`.
+"""Interface to the client that judges runs: :mod:`runs.paper`.
 
-The client adds parts to reports and prints lines. Only this module and :mod:`runs.case.schema`
+The client adds chapters to reports and prints lines. Only this module and :mod:`runs.case.schema`
 import it; the latter adds the keys of the client to every case.
 """
 
@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 
 
 def judge(results: Results) -> Addition:
-    """Return the additions of the client to the report of a run."""
+    """Return the content that the client adds to the report of a run."""
     from runs.paper import rules, verdicts
 
     return verdicts.addition(results.case, rules.judge(results))
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print the output of the client on runs, by file, and return the exit status."""
+    """Print the judgements of the client on runs, by file name, and return the exit status."""
     from runs.paper.verdicts import show
 
     return show(judged, console)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Output of ``prove``: statics of all combinations, proofs, and a line for each that fails."""
+"""Output of ``prove``: static results of combinations, proofs, and a line for each failed proof."""
 
 from __future__ import annotations
 
@@ -17,13 +17,13 @@ from runs.process.terminal import message, say, shorten
 def print_proofs(
     case: Case, file: str, console: Console, shell: tuple[Shell, BuildContext] | None = None
 ) -> int:
-    """Print the proofs of a checked case; return 1 if one fails, or else 0.
+    """Print the proofs of a checked case; return 1 if a proof fails, otherwise 0.
 
     Args:
         case: the case.
         file: its file, for messages.
         console: console for the tables; lines on proofs that fail go to stderr.
-        shell: shell of the case and its context, in place of beam elements; all ranks call.
+        shell: shell to use in place of beam elements, and its build context; all ranks must call.
 
     Raises:
         NumericsError: a combination has no equilibrium.

@@ -315,7 +315,7 @@ def _beam_properties(case: Case, index: int) -> tuple[float, float]:
 
 
 def _check_plates(case: Case, index: int, section: Section) -> None:
-    """Check that the section has one definition, and the mass and second moment of the case."""
+    """Check that a section is defined once, and fits the mass and second moment of the case."""
     table = case.segments[index]
     where = f"segment[{index + 1}]"
     if table.height_to_width is not None:
@@ -377,7 +377,7 @@ _SECTION_PROPERTIES = (
 
 
 def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
-    """Return the given or inferred section of each segment; None if it is unknown."""
+    """Return the section of each segment, given or inferred; None if it is unknown."""
     sections = [_section_of_table(table, i) for i, table in enumerate(case.segments)]
     for i, table in enumerate(case.segments):
         if sections[i] is None and table.height_to_width is not None:

@@ -61,7 +61,7 @@ def combined_cases(case: Case) -> Iterator[CombinedCase]:
 
 
 def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) -> Case:
-    """Return the case with the keys of a load case, and with factors on its loads.
+    """Return the case with the keys of a load case, and with its loads times ``factors``.
 
     Raises:
         BoomError: an angle needs gravity, an extension has no joint, or the load of a hoist is not
@@ -162,7 +162,7 @@ def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:
 
 
 def _luffed_cylinders(case: Case, table: LoadCaseTable) -> Iterator[Cylinder]:
-    """Yield the cylinders, whose ground points rotate about the foot relative to a luffed boom."""
+    """Yield the cylinders with ground points in the coordinates of the luffed boom."""
     turn = 0.0
     if table.angle is not None and case.gravity is not None:
         turn = radians(table.angle - case.gravity.angle)

@@ -154,7 +154,7 @@ class JointTable(ContactTable, BareJoint):
 
     @property
     def elastic_pads_key(self) -> str | None:
-        """The key of pads whose thickness determines the contact stiffness; None without such."""
+        """The key of the pads whose thickness determines the contact stiffness, or None."""
         if self.pads:
             return "pads"
         return "pad.thickness" if self.pad is not None and self.pad.thickness else None

@@ -68,7 +68,7 @@ class TravelTable(CaseTable):
     def history(self, where: str) -> MotionLaw:
         """Return the history of the travel in ``unit``, after input shaping.
 
-        Arguments and errors as in :meth:`unshaped`.
+        Arguments and errors are those of :meth:`unshaped`.
         """
         law = self.unshaped(where)
         for frequency, damping in self.shaper:
@@ -159,13 +159,13 @@ class DriveTable(TravelTable):
         locked_at: float | Distance | None,
         inner: tuple[str, float],
     ) -> Drive | None:
-        """Return the drive; None if its extension is constant.
+        """Return the drive of a joint; None if the extension is constant.
 
         Args:
-            where: key of its joint.
+            where: key of the joint, for messages.
             stations: stations of the joint.
             locked_at: locked station of the joint.
-            inner: name of the inner segment, and the x of its tail in m.
+            inner: name of the inner segment, and the x in m of the segment's tail.
 
         Raises:
             BoomError: see :meth:`history`; or a station is on no segment.
@@ -186,13 +186,13 @@ class DriveTable(TravelTable):
 
 
 def max_speed(history: History) -> float:
-    """Return the largest speed in m/s of a history of travel in m."""
+    """Return the largest speed in m/s of a travel in m that varies over time."""
     times = resolving_times([history], max(history.kinks))
     return float(np.abs(np.diff(history(times)) / np.diff(times)).max())
 
 
 def resolving_times(histories: Sequence[History], duration: float) -> Array:
-    """Return ascending times (num_times,) in s from 0 to ``duration`` that resolve all histories.
+    """Return ascending times (num_times,) in s, up to ``duration``, that resolve all histories.
 
     >>> from runs.case.drive import resolving_times
     >>> 0.01 in resolving_times([pt.Ramp(0.01)], 1000.0)

@@ -20,12 +20,7 @@ _MAX_RATE = 1.0e3
 
 
 def elastic_drives(case: Case, boom: Boom) -> dict[int, ElasticDrive]:
-    """Return the data of the elastic drives, by the indices of their joints.
-
-    Args:
-        case: a checked case.
-        boom: boom of the case.
-    """
+    """Return the data of the elastic drives of a checked case, by the indices of their joints."""
     return {
         number: ElasticDrive(
             _moved_mass(boom, number),
@@ -114,7 +109,7 @@ def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:
 
 
 def _moved_mass(boom: Boom, *joints: int) -> float:
-    """Return the mass in kg of the segments that move with each of these joints' drives."""
+    """Return the mass in kg of the segments that every one of these joints' drives moves."""
     return sum(
         segment.mass
         for number, segment in enumerate(boom.segments)

@@ -30,7 +30,7 @@ _SLACK = 1.0e6
 
 
 class WindTable(HistoryTable):
-    """A horizontal force on a load that swings, for example by wind."""
+    """A horizontal force, such as wind, on a load that swings."""
 
     direction: Literal["x", "y"] = "y"
     """the direction, which stands still: away from the crane at t = 0, or lateral"""

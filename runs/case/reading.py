@@ -62,7 +62,7 @@ def load_checked(path: str) -> CheckedCase:
 
 
 def load_spreads(path: str) -> list[Spread]:
-    """Return the normal distributions of a case file's numbers, or raise as :func:`load`."""
+    """Return the normal distributions in a case file; errors are those of :func:`load`."""
     return take_means(_read(path), path)[1]
 
 
@@ -222,7 +222,7 @@ def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
 
 
 def _read_files(case: Case, path: str) -> Case:
-    """Return the case with the contents of its CSV files in place of their names."""
+    """Return the case with the contents of CSV files in place of the names of the files."""
     system = System(case.units)
 
     def read(key: str, table: Any) -> dict[str, Any]:

@@ -105,7 +105,7 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
 
 
 def _category_range(where: str, category: float, least: float) -> UsualRange:
-    """Return the range of a detail category, from the lowest category of the metal."""
+    """Return the range of a detail category; ``least`` is the lowest one of the metal."""
     what = "the detail category after EN 1993-1-9, in N/mm^2,"
     return UsualRange(f"{where}.detail_category", what, category, "1", least, 160.0, 10.0)
 

@@ -92,7 +92,7 @@ class System:
         return re.sub("[A-Za-z]+", lambda match: symbols.get(match[0], match[0]), si)
 
     def size(self, si: str) -> Fraction:
-        """Return the size, in this SI unit, of the unit that replaces it in the system."""
+        """Return the size of the system's unit in the SI unit that it replaces."""
         return Fraction(repr(Unit.of(self.unit(si)).factor / Unit.of(si).factor))
 
     def of(self, value: float, si: str) -> float:

@@ -50,10 +50,10 @@ def write(thing: Any, file: Writable) -> None:
 
 
 def read(file: IO[bytes], kind: type[Kind]) -> Kind:
-    """Return the object of a record.
+    """Return the object that a file contains as a record.
 
     Raises:
-        Exception: the file is not a record of the class.
+        Exception: the file is not a record of the class ``kind``.
     """
     thing = _decode(json.loads(file.readline()), file)
     if not isinstance(thing, kind):

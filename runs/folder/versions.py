@@ -11,12 +11,12 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, distribution, version
 from pathlib import Path
 
-# Distributions that influence numerical results.
+# Python packages that influence numerical results.
 _LIBRARIES = "protractile", "numpy", "scipy", "numba", "gmsh", "fenics-dolfinx", "petsc4py"
 
 
 def installed_version(name: str) -> str | None:
-    """Return the version of a distribution; None if it is not installed."""
+    """Return the version of a Python package; None if it is not installed."""
     try:
         return version(name)
     except PackageNotFoundError:

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The live page: a designer changes numbers of a case and sees the results of its beam."""
+"""The live page, on which a designer changes numbers of a case and sees the results of a beam."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results of the beam on the live page after edits: static results, then the motion.
+"""Results of a beam for the live page: static results, then the motion.
 
-A shell of the same geometry in the cache calibrates the beam.
+If the cache has a shell of the same geometry, the beam is calibrated by it.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.folder.cache import Cache, key
 from runs.live.boom_figure import boom_figure
-from runs.live.knobs import Draft
+from runs.live.controls import Draft
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
 from runs.pipeline.model_run import summarise_motion
@@ -50,27 +50,27 @@ from runs.report.summary_table import summary_table, utilisation_verdict
 if TYPE_CHECKING:
     from beam_model.calibration import Calibration
 
-# Heights of the charts in pixels: of a panel, and of the axis below all of them.
+# Heights in pixels: of a panel of a chart, and of the axis below the panels.
 _PANEL, _BELOW = 150, 60
 
 # Tables that change masses, loads and axial forces, and no stiffness of the unloaded shell.
 _LOADS = ("payload", "gravity", "loads", "axial", "base", "hoist", "slew", "luff")
 
-# The last calibration that was computed, by the key of its shell.
+# The last calibration, by the cache key of its shell.
 _LAST: dict[str, Calibration] = {}
 
 
 def beam_results(
     checked: CheckedCase, draft: Draft, check_current: Callable[[], None]
 ) -> Iterator[Any]:
-    """Yield the results of a case's only model as JSON values.
+    """Yield the results of the only model of a case as JSON values.
 
     The static results come first, then a preview of the motion, then the motion with error control.
 
     Args:
         checked: the checked case with one beam.
         draft: draft of the case, whose shells may calibrate the beam.
-        check_current: callback between steps of the computation; it raises an error to end it.
+        check_current: function that ends an outdated computation by raising an error.
 
     Raises:
         NumericsError: the beam has no equilibrium, or its motion cannot be computed.
@@ -99,11 +99,11 @@ def beam_results(
     assert table is not None
     hertz = ", ".join(number(mode.frequency) for mode in design.modes[1:3])
     more = [("Second and third natural frequency, Hz", hertz), ("Stiffness of the beam", stiffness)]
-    used = utilisation_verdict(results, model.name)
+    utilisation = utilisation_verdict(results, model.name)
     yield {
         "stage": "rest",
         "rows": [*table.rows, *more],
-        "utilisation": used and f"At rest: {used}",
+        "utilisation": utilisation and f"At rest: {utilisation}",
         "cautions": proportion_cautions(case, boom),
         "boom": boom_figure(case, boom, farthest),
         "forces": _plain(chart_along({"": rest_lines(farthest, "", theme.PALETTE[0])})),
@@ -117,8 +117,8 @@ def beam_results(
     ):
         trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
-        moved = with_motion(design, loaded, equilibria | extended, trajectory, case, model)
-        results = _results(checked, moved, label(boom, {model.name: trajectory}))
+        complete = with_motion(design, loaded, equilibria | extended, trajectory, case, model)
+        results = _results(checked, complete, label(boom, {model.name: trajectory}))
         summary = summarise_motion(
             model, plan.motion.system, trajectory, built.num_dofs, design.static[0].tip
         )
@@ -153,7 +153,7 @@ def _tip_chart(trajectory: Trajectory) -> Any:
 def _results(
     checked: CheckedCase, results_of_model: ModelDesignResults, data: xr.Dataset
 ) -> Results:
-    """Return the results of the only model."""
+    """Return the results of a run with one model."""
     case, design = checked.case, DesignResults({checked.case.models[0].name: results_of_model})
     results = Results(case, data, Summary(
         title=case.title, case_hash="", versions={}, models={}, failures={}, design=design
@@ -163,15 +163,15 @@ def _results(
     return results
 
 
-def _fibres(loaded: LoadedModel, rests: Sequence[Any]) -> Iterator[FibreStress]:
-    """Yield the largest static stress of each segment over the equilibria (num_modes,)."""
-    states, times = np.array(rests), np.zeros(len(rests))
+def _fibres(loaded: LoadedModel, equilibria: Sequence[Any]) -> Iterator[FibreStress]:
+    """Yield the largest fibre stress of each segment over static states (num_modes,)."""
+    states, times = np.array(equilibria), np.zeros(len(equilibria))
     for segment, fibres, curves in fibre_forces(loaded, states, times):
         yield largest_stresses(segment, fibres, curves, curves, times)[0]
 
 
 def _plain(chart: Chart) -> Any:
-    """Return a chart for the page, without a legend if it has one curve only."""
+    """Return a chart as JSON values for plotly, without a legend if it has only one curve."""
     figure = chart.plain
     names = {trace["name"] for trace in figure["data"]}
     for trace in figure["data"]:
@@ -185,9 +185,9 @@ def _plain(chart: Chart) -> Any:
 def build_beam(
     checked: CheckedCase, original: Case, shells: Sequence[Shell]
 ) -> tuple[CheckedCase, BuiltModel, str]:
-    """Return the case, its built beam, and a text on the stiffness of the beam.
+    """Return the case, its built beam, and a text that says how its stiffness is determined.
 
-    The beam is calibrated if the cache has a shell of its geometry.
+    If the cache has a shell of the same geometry, the beam is calibrated by it.
 
     Args:
         checked: the checked case.
@@ -199,14 +199,14 @@ def build_beam(
     plates = all(segment.section is not None for segment in boom.segments)
     for shell in shells if plates and not boom.telescopes else ():
         unused: dict[str, object] = dict.fromkeys(OF_MOTION)
-        by = shell.model_copy(update=unused)
-        beam = model.model_copy(update={"calibrated_by": by, "contact": shell.contact})
+        by_shell = shell.model_copy(update=unused)
+        beam = model.model_copy(update={"calibrated_by": by_shell, "contact": shell.contact})
         assert isinstance(beam, CalibratedTable)
-        if by.contact_line != "near webs":
+        if by_shell.contact_line != "near webs":
             continue
         with suppress(ImportError):
-            for same in (boom, build_boom(with_loads)):
-                if calibration := _stored(beam, by, beam.model_boom(same).boom):
+            for geometry in (boom, build_boom(with_loads)):
+                if calibration := _calibration(beam, by_shell, beam.model_boom(geometry).boom):
                     calibrated = CheckedCase(case.model_copy(update={"models": (beam,)}))
                     # The property would build the same boom again.
                     vars(calibrated)["boom"] = boom
@@ -219,19 +219,19 @@ def build_beam(
     return checked, plain, "of its sections;\nrun the shell to calibrate it"
 
 
-def _stored(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration | None:
-    """Return the calibration by the shell of a boom; None if the cache does not have the shell."""
+def _calibration(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration | None:
+    """Return the calibration of a beam by a shell; None if the shell is not in the cache."""
     import petsc4py
 
-    # Otherwise PETSc ends the process where a browser closes a connection.
+    # With its signal handler, PETSc would end the process when a browser closes a connection.
     petsc4py.init(["-no_signal_handler"])
     from beam_model.calibration import calibrate
     from shell_model.reduced_shell import ReducedShell
     from shell_model.standard import with_plays_and_loads
 
     name, cache = key([*shell.content(boom)]), Cache.of_user()
-    if name not in _LAST and cache is not None and (stored := cache.load(name, ReducedShell)):
-        loaded_shell = with_plays_and_loads(stored, boom)
+    if name not in _LAST and cache is not None and (cached := cache.load(name, ReducedShell)):
+        loaded_shell = with_plays_and_loads(cached, boom)
         _LAST.clear()
         _LAST[name] = calibrate(
             boom, loaded_shell.system, loaded_shell.probe_responses, beam.segments

@@ -16,10 +16,10 @@ from runs.pipeline.static_results import Diagram, StaticResult
 from runs.report import symbols, theme
 from runs.report.formatting import number
 
-# Minimum drawn deflection of the tip as a fraction of the boom's length.
+# Smallest deflection of the tip in the figure, as a fraction of the length of the boom.
 _SHOWN = 0.03
 
-# Marker of plotly for each symbol, and its clockwise rotation in degrees.
+# Plotly marker of each symbol, and clockwise rotation of the marker in degrees.
 _MARKERS: Mapping[Path, tuple[str, float]] = {
     symbols.FORCE_DOWN: ("arrow", 180.0),
     symbols.FORCE_UP: ("arrow", 0.0),
@@ -44,10 +44,10 @@ def boom_figure(case: Case, boom: Boom, rest: StaticResult) -> dict[str, Any]:
     Args:
         case: case with supports and loads.
         boom: boom of the case.
-        rest: static state of a beam.
+        rest: static results of a beam.
     """
-    wanted = _SHOWN * boom.length / max(abs(rest.tip), 1e-12)
-    factor = max(1.0, float(f"{min(wanted, 1e6):.1g}"))
+    visible = _SHOWN * boom.length / max(abs(rest.tip), 1e-12)
+    factor = max(1.0, float(f"{min(visible, 1e6):.1g}"))
     angle = 0.0 if case.gravity is None else case.gravity.angle
     traces = [
         *_segments(boom, rest, factor),
@@ -76,7 +76,7 @@ def boom_figure(case: Case, boom: Boom, rest: StaticResult) -> dict[str, Any]:
 
 
 def _segments(boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[str, Any]]:
-    """Yield the traces of the unloaded axis, then of each segment, the innermost first."""
+    """Yield the traces of the undeformed axis, then of each segment from tip to base."""
     yield {
         "along": [boom.segments[0].start, boom.tip],
         "across": [0.0, 0.0],
@@ -124,11 +124,11 @@ def _cylinders(boom: Boom) -> Iterator[dict[str, Any]]:
 def _symbols(case: Case, boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[str, Any]]:
     for symbol in symbols.boom_symbols(case, boom):
         diagram, x = rest.diagrams[symbol.segment], np.array(symbol.places)
-        moved = np.interp(x, diagram.x, _deflection(diagram, 0.0 if symbol.grounded else factor))
+        shift = np.interp(x, diagram.x, _deflection(diagram, 0.0 if symbol.grounded else factor))
         shape, rotation = _MARKERS[symbol.path]
         yield {
             "along": x,
-            "across": moved + np.array([symbol.z(boom, place) for place in symbol.places]),
+            "across": shift + np.array([symbol.z(boom, place) for place in symbol.places]),
             "mode": "markers",
             "marker": {
                 "symbol": shape,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The server of the live page, on this machine only, under an address with a secret token."""
+"""Server of the live page, for this machine only, at an address with a secret token."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from runs.case import toml
 from runs.case.messages import BadInput
 from runs.case.reading import check
 from runs.live.beam import beam_results
-from runs.live.knobs import Draft
+from runs.live.controls import Draft
 from runs.live.shell_run import ShellRuns
 from runs.pipeline.estimates import run_cost
 from runs.pipeline.model_run import failure_reason
@@ -32,20 +32,20 @@ from runs.report.pages import page
 
 _HTML = "text/html; charset=utf-8"
 
-# Time in s within which a request that waits for another one notices that it is outdated.
-_NOTICED = 0.02
+# Interval in s at which a waiting request checks whether a newer one has replaced it.
+_INTERVAL = 0.02
 
 # Maximum size of a request in bytes.
-_LARGEST = 1_000_000
+_MAX_SIZE = 1_000_000
 
 
 class Superseded(Exception):
-    """Error for a request if a newer request of the same page replaces it."""
+    """Error in a request that a newer request of the same tab has replaced."""
 
 
 @dataclass
 class LivePage:
-    """Live page of a case, for any number of tabs."""
+    """Live page of a case, in any number of browser tabs."""
 
     draft: Draft  #: case with editable values
     token: str = field(default_factory=token_urlsafe)  #: first part of the path of each address
@@ -55,14 +55,14 @@ class LivePage:
 
     @cached_property
     def files(self) -> dict[str, tuple[str, bytes]]:
-        """The media type and the content of each file of the page."""
+        """The media type and the content of each file of the page, by path."""
         from plotly.offline import get_plotlyjs
 
         draft = self.draft
         html = page(
             "live.html",
             title=draft.case.title,
-            knobs=[asdict(knob) for knob in draft.knobs()],
+            controls=[asdict(control) for control in draft.controls()],
             keys=draft.keys,
             file=Path(draft.file).name,
         )
@@ -72,9 +72,9 @@ class LivePage:
         }
 
     def beam(self, request: dict[str, Any]) -> Generator[Any]:
-        """Yield the results of the beam with the values of a request, or an error.
+        """Yield the results of the beam for the numbers in a request.
 
-        A request of the same tab with a higher number ends the computation.
+        A later request of the same tab ends the computation with :class:`Superseded`.
         """
         tab, number = str(request["tab"]), int(request["number"])
         self._newest[tab] = max(number, self._newest.get(tab, 0))
@@ -83,7 +83,7 @@ class LivePage:
             if self._newest[tab] != number:
                 raise Superseded
 
-        while not self._computing.acquire(timeout=_NOTICED):
+        while not self._computing.acquire(timeout=_INTERVAL):
             check_current()
         try:
             check_current()
@@ -92,16 +92,16 @@ class LivePage:
         finally:
             self._computing.release()
 
-    def knob(self, request: dict[str, Any]) -> Generator[Any]:
-        """Yield the knob of a key."""
-        yield asdict(self.draft.knob(str(request["key"])))
+    def control(self, request: dict[str, Any]) -> Generator[Any]:
+        """Yield the control for the key in a request."""
+        yield asdict(self.draft.control(str(request["key"])))
 
     def case(self, request: dict[str, Any]) -> Generator[Any]:
-        """Yield the case file with the values of a request."""
+        """Yield the text of the case file with the numbers in a request."""
         yield {"stage": "case", "text": toml.dumps(self.draft.changed(dict(request["values"])))}
 
     def shell(self, request: dict[str, Any]) -> Generator[Any]:
-        """Yield progress and results of the shell; a large run needs ``large`` in the request."""
+        """Yield progress and results of a shell run; a request must allow a large run."""
         case = self.draft.changed(dict(request["values"]))
         models = *self.draft.beam(case).case.models, *self.draft.shells
         case = check(case.model_copy(update={"models": models}), self.draft.file).case
@@ -114,11 +114,11 @@ class LivePage:
 
     @property
     def answers(self) -> dict[str, Callable[[dict[str, Any]], Generator[Any]]]:
-        """The answer to each request, by path below the token."""
-        return {"beam": self.beam, "knob": self.knob, "case": self.case, "shell": self.shell}
+        """The function that answers each kind of request, by the last part of its path."""
+        return {"beam": self.beam, "control": self.control, "case": self.case, "shell": self.shell}
 
     def lines(self, path: str, request: dict[str, Any]) -> Generator[bytes]:
-        """Yield the lines of an answer, one JSON value each; an error is the last line."""
+        """Yield the lines of an answer, each a JSON value; an error is the last line."""
         from plotly.io.json import to_json_plotly
 
         try:
@@ -167,7 +167,7 @@ class _Handler(BaseHTTPRequestHandler):
         if path not in self._live.answers:
             self.send_error(HTTPStatus.NOT_FOUND)
             return
-        if not (size.isdecimal() and int(size) <= _LARGEST):
+        if not (size.isdecimal() and int(size) <= _MAX_SIZE):
             self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
             return
         try:
@@ -190,14 +190,14 @@ class _Handler(BaseHTTPRequestHandler):
         """Print nothing."""
 
     def _path(self) -> str | None:
-        """Return the path below the token; None for any other path."""
-        before, _, path = self.path.removeprefix("/").partition("/")
-        return path if before == self._live.token else None
+        """Return the part of the path after the token; None if the token is missing or wrong."""
+        token, _, path = self.path.removeprefix("/").partition("/")
+        return path if token == self._live.token else None
 
     def _begin(self, kind: str) -> None:
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", kind)
-        # With "no-store" Chromium reports answers as aborted that the page has read to their end.
+        # With "no-store" Chromium reports complete answers as aborted.
         self.send_header("Cache-Control", "no-cache")
         self.send_header("Referrer-Policy", "no-referrer")
         self.end_headers()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Run of a changed case's shell in a process of its own, while the page computes its beam."""
+"""Run of a shell in its own process, while the live page computes the beam."""
 
 from __future__ import annotations
 
@@ -21,9 +21,8 @@ from runs.report.output import REPORT
 from runs.report.summary_table import deviation_note, summary_table
 from runs.report.viewer import VIEWER
 
-# Time in s between two reports of the progress, and within which a run notices that its page has
-# cancelled it.
-_EVERY, _NOTICED = 0.5, 3.0
+# Time in s between two progress reports, and longest wait in s for the end of a cancelled run.
+_INTERVAL, _WAIT = 0.5, 3.0
 
 # Name of the case file of a run in its folder.
 _CASE = "case.toml"
@@ -31,7 +30,7 @@ _CASE = "case.toml"
 
 @dataclass
 class ShellRuns:
-    """Runs of shells, one at a time; the folder of the last one stays until the page ends."""
+    """Runs of shells, one at a time. The folder of the last run stays until the page ends."""
 
     _folder: TemporaryDirectory[str] | None = None
     _process: subprocess.Popen[bytes] | None = None
@@ -42,12 +41,12 @@ class ShellRuns:
 
         Args:
             case: the case, with the models to run.
-            file: its name in messages.
+            file: name of the case in messages.
 
         Raises:
             BadInput: another run has not ended, or the run fails.
         """
-        if not self._busy.acquire(timeout=_NOTICED):
+        if not self._busy.acquire(timeout=_WAIT):
             raise BadInput(file, "shell", "another run has not ended; cancel it first")
         try:
             self.end()
@@ -101,7 +100,7 @@ class ShellRuns:
         """Wait a short while for the process, and return its status; None while it runs."""
         assert self._process is not None
         try:
-            return self._process.wait(_EVERY)
+            return self._process.wait(_INTERVAL)
         except subprocess.TimeoutExpired:
             return None
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Queries of a run for the rules, and divergence between models."""
+"""Queries of a run for the rules, and differences between models."""
 
 from __future__ import annotations
 
@@ -17,14 +17,14 @@ from runs.pipeline.low_pass import slow_peaks
 from runs.pipeline.results import Results
 from runs.pipeline.summary import ModelSummary
 
-# A missing peak counts only if the motion lasts this number of periods after its last peak.
+# A peak that some models lack counts only if the run lasts this number of periods after it.
 NEXT_PEAK = 1.5
 
 _Value = TypeVar("_Value")
 
 
 class MissingData(Exception):
-    """Error if data that a rule needs are missing."""
+    """Error if the run lacks data that a rule needs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class RunQuery:
             raise MissingData(f"{model.name!r} did not run.")
 
     def curve(self, model: Model, place: str = "tip") -> Array:
-        """Return the deflection of an output (num_times,) in m."""
+        """Return the deflection (num_times,) in m of a model at a place, ``tip`` or ``head``."""
         self.check_ran(model)
         if place not in self.results.trajectories:
             raise MissingData(f"No {place} in this run.")
@@ -63,7 +63,7 @@ class RunQuery:
         return deflection
 
     def members(self, *models: Model) -> Array:
-        """Return the tip deflections in m of ensembles (num_models, num_members, num_times)."""
+        """Return the tip deflections (num_models, num_members, num_times) in m of ensembles."""
         for model in models:
             self.curve(model)
         if self.results.ensembles is None:
@@ -77,7 +77,7 @@ class RunQuery:
         return self.results.summary.models[model.name]
 
     def horizon(self, model: Model, share: float) -> float | None:
-        """Return the time in s after which members differ by a share of the range, or None."""
+        """Return the time in s when members first differ by a share of the range; None if never."""
         return _require(model, "ensemble", self.summary_of(model).ensemble).horizon(share)
 
     def first_contact(self, model: Model) -> float:
@@ -93,19 +93,19 @@ class RunQuery:
         return _require(model, "first peak", self.summary_of(model).first_peak["tip"].height)
 
     def fewest_steps(self, model: Model) -> int:
-        """Return the fewest steps that preserve the first slow peaks."""
-        needed = self.summary_of(model).steps_for_peaks
-        return _require(model, "steps for peaks", needed.fewest if needed else None)
+        """Return the fewest steps of the trials that keep the first peaks of the slow motion."""
+        steps = self.summary_of(model).steps_for_peaks
+        return _require(model, "steps for peaks", steps.fewest if steps else None)
 
     def slow_below(self) -> float:
-        """Return the cut-off of the slow motion in Hz."""
-        requested = self.results.summary.ensemble
-        if requested is None or requested.slow_below is None:
+        """Return the frequency in Hz below which the motion counts as slow."""
+        ensemble = self.results.summary.ensemble
+        if ensemble is None or ensemble.slow_below is None:
             raise MissingData("The run is too coarsely reported for a slow motion.")
-        return requested.slow_below
+        return ensemble.slow_below
 
     def one(self, what: str, fits: Callable[[Model], bool]) -> Model:
-        """Return the first model that satisfies a condition, or the one with the name ``what``."""
+        """Return a model that satisfies a condition: the one named ``what`` or else the first."""
         models = sorted(filter(fits, self.case.models), key=lambda model: model.name != what)
         if not models:
             raise MissingData(f"The case has no model like {what!r}.")
@@ -127,7 +127,7 @@ class RunQuery:
         )
 
     def beam_elements(self) -> Model:
-        """Return the beam element model of the paper's boom with play."""
+        """Return the beam elements with play by the theory of the paper, Euler and Bernoulli's."""
         return self.one(
             "beam-fe",
             lambda model: not model.bonded and getattr(model, "theory", None) == "euler-bernoulli",
@@ -138,11 +138,11 @@ class RunQuery:
         return self.one("shell", lambda model: model.meshed)
 
     def bonded(self) -> Model:
-        """Return the beam model without play."""
+        """Return the model without play."""
         return self.one("beam-fe-bonded", lambda model: model.bonded)
 
     def with_play(self) -> list[Model]:
-        """Return all models with play, which must be at least two."""
+        """Return all models with play, at least two."""
         models = [model for model in self.case.models if not model.bonded]
         if len(models) < 2:
             raise MissingData("It takes two models with play to compare.")
@@ -171,52 +171,53 @@ def _require(model: Model, what: str, value: _Value | None) -> _Value:
 
 
 def terms(model: Model) -> tuple[int, ...]:
-    """Return the numbers of functions of a series; empty for other models."""
+    """Return the number of functions in each segment of a series; empty for other models."""
     return next((series.terms for series in select_kind(Kantorovich, [model])), ())
 
 
 def options(model: Model, *ignored: str) -> dict[str, Any]:
-    """Return the keys of a model without its name and the ignored ones."""
+    """Return the keys of a model and their values, without ``name`` and the ignored keys."""
     return model.model_dump(exclude={"name", *ignored})
 
 
-def apart_at_the_end(one: Array, other: Array, last: Mask) -> Array:
-    """Return the largest difference (num_members,) at the last times, as a fraction of the range.
+def final_differences(first: Array, second: Array, last: Mask) -> Array:
+    """Return the largest differences (num_members,) at the last times, over the larger range.
 
     Args:
-        one: curves of one model (num_members, num_times).
-        other: curves of the other model (num_members, num_times).
+        first: curves (num_members, num_times) of one model.
+        second: curves (num_members, num_times) of the other model.
         last: mask (num_times,) of the last times.
     """
-    scale = np.maximum(np.ptp(one, axis=1), np.ptp(other, axis=1))
-    return np.asarray(np.abs(one - other)[:, last].max(axis=1) / scale)
+    scale = np.maximum(np.ptp(first, axis=1), np.ptp(second, axis=1))
+    return np.asarray(np.abs(first - second)[:, last].max(axis=1) / scale)
 
 
-def peaks_apart(curves: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
-    """Return distances between the peaks of the slow motions of several models.
+def peak_distances(curves: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
+    """Return the distances between corresponding peaks of the slow motions of several models.
 
-    The k-th peaks of all models are compared. Their distance is the larger of the distance in time
-    over the mean period and the distance in height over the highest peak. It is infinite if a
-    model lacks the peak although its motion lasts long enough.
+    The k-th peaks of all models correspond. Their distance is the larger of two fractions: the
+    span of their times over the mean period, and the span of their heights over the highest. It is
+    infinite if a model lacks the peak although the run lasts long enough.
 
     Args:
-        curves: (num_models, num_times), one member of each model.
+        curves: deflections (num_models, num_times) of one member of each model.
         time: evenly spaced times (num_times,) in s.
         cutoff: cut-off of the slow motion in Hz.
 
     Returns:
-        Times (num_peaks,) in s at which the first model has the peak, and distances (num_peaks,);
+        Times (num_peaks,) in s of the earliest of corresponding peaks, and distances (num_peaks,);
         peaks that only some models have are included.
     """
     peaks = [slow_peaks(curve, time, cutoff) for curve in curves]
-    many = [np.diff(times) for times, _ in peaks if times.size > 1]
-    period = float(np.concatenate(many).mean()) if many else np.inf
+    intervals = [np.diff(times) for times, _ in peaks if times.size > 1]
+    period = float(np.concatenate(intervals).mean()) if intervals else np.inf
     t, h = np.full((2, len(peaks), max(times.size for times, _ in peaks)), np.nan)
     for model, (times, heights) in enumerate(peaks):
         t[model, : times.size], h[model, : times.size] = times, heights
     first = np.nanmin(t, axis=0)
-    shared = np.isfinite(t).all(axis=0)
-    late, lower = np.ptp(t, axis=0) / period, np.ptp(h, axis=0) / np.nanmax(np.abs(h), axis=0)
-    apart = np.where(shared, np.maximum(late, lower), np.inf)
-    counts = shared | (first < time[-1] - NEXT_PEAK * period)
-    return first[counts], apart[counts]
+    in_all = np.isfinite(t).all(axis=0)
+    time_spans = np.ptp(t, axis=0) / period
+    height_spans = np.ptp(h, axis=0) / np.nanmax(np.abs(h), axis=0)
+    distances = np.where(in_all, np.maximum(time_spans, height_spans), np.inf)
+    counts = in_all | (first < time[-1] - NEXT_PEAK * period)
+    return first[counts], distances[counts]

@@ -32,12 +32,12 @@ class Verdict:
 
     id: str  #: identifier of the statement in the case
     statement: str  #: text of the statement
-    #: number that the rule compares with the threshold; None if there is none
+    #: number that the rule compares with the threshold; None if data are missing
     measured: float | None
-    threshold: float | None  #: limit of the number
+    threshold: float | None  #: threshold of this number
     unit: str  #: unit of both numbers; empty if dimensionless
     verdict: Judgement  #: result of the rule
-    why: str  #: explanation of the comparison and of its limits
+    why: str  #: explanation of the number and of the verdict
     demanded: bool = False  #: True if the case demands the verdict ``reproduced``
 
     def with_unit(self, value: float | None) -> str:
@@ -47,8 +47,8 @@ class Verdict:
 
 
 def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
-    """Return the verdicts as additions to the report of a run."""
-    judged = [verdict.verdict for verdict in verdicts]
+    """Return the additions to the report of a run: its verdicts, and notes under figures."""
+    judgements = [verdict.verdict for verdict in verdicts]
     anchors = evidence(case)
     figures = {"tip": 8, "head": 9} if case.regular else {"tip": 6, "head": 7}
     remarks = {
@@ -63,20 +63,20 @@ def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
     content = {
         "verdicts": verdicts,
         "marks": MARKS,
-        "counts": {kind: judged.count(kind) for kind in MARKS},
+        "counts": {kind: judgements.count(kind) for kind in MARKS},
         "evidence": {verdict.id: anchors[verdict.id] for verdict in verdicts},
     }
-    written = {FILE: as_json([asdict(verdict) for verdict in verdicts])} if verdicts else {}
+    files = {FILE: as_json([asdict(verdict) for verdict in verdicts])} if verdicts else {}
     return Addition(
         TEMPLATES / "judged_report.html",
         content,
         remarks if case.statements else {},
-        written,
+        files,
     )
 
 
 def evidence(case: Case) -> Mapping[str, Sequence[str]]:
-    """Return the anchors of the pictures and tables in the report that concern each statement."""
+    """Return the anchors of figures and tables in the report by the statement that they support."""
     regular = case.regular
     heads = [f"figure-head-{number}" for number in range(2, len(case.joints) + 1)]
     heads = ["figure-head", *heads]
@@ -100,7 +100,7 @@ def evidence(case: Case) -> Mapping[str, Sequence[str]]:
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print the verdicts of all runs and the unmet demands; return the exit status."""
+    """Print all verdicts and each demand that is not met; return 1 if there is one, else 0."""
     runs: dict[str, Sequence[Verdict]] = {
         file: one.content["verdicts"] for file, one in judged.items()
     }
@@ -116,14 +116,14 @@ def show(judged: Mapping[str, Addition], console: Console) -> int:
 
 
 def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> None:
-    """Print a paragraph for each statement: the verdict of the first run that decides it.
+    """Print a paragraph for each statement, with the verdict of the first run that decides it.
 
     Args:
         runs: verdicts by the name of their case.
         console: console of the output.
     """
-    judging = [name for name, verdicts in runs.items() if verdicts]
-    if not judging:
+    names = [name for name, verdicts in runs.items() if verdicts]
+    if not names:
         return
     console.print(Text("Statements of the paper", style="italic"))
     for name, verdict in decisive(runs):
@@ -131,7 +131,7 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
         text = Text.assemble(
             f"\n{verdict.id} ",
             (f"{verdict.verdict}{demanded}", _STYLES[verdict.verdict]),
-            f" in {name}" if len(judging) > 1 else "",
+            f" in {name}" if len(names) > 1 else "",
         )
         if verdict.measured is not None:
             measured, limit = verdict.with_unit(verdict.measured), number(verdict.threshold)
@@ -141,9 +141,9 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
 
 
 def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]:
-    """Return the run and the verdict that count for each statement.
+    """Return the name of a run and its verdict for each statement.
 
-    The first run that decides the statement counts; if no run decides it, the first run.
+    This is the first run that decides the statement; if no run decides it, the first run.
     """
     verdicts_by_id: dict[str, tuple[str, Verdict]] = {}
     for name, verdicts in runs.items():

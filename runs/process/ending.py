@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Early end of a process: by Ctrl-C, by SIGTERM, or by an error on one rank.
 
-A signal ends a command at any time with one line. No clean-up is necessary, since files are written
-atomically. If a compiled loop or a message to another rank delays the signal handler of Python, a
-separate thread ends the process. A run of beams does not import mpi4py, and the other processes of
-``mpirun -n N protractile`` then have no work.
+A signal ends a command at any time, with one line on stderr. No clean-up is necessary, since files
+are written atomically. If a compiled loop or an MPI call delays the signal handler of Python, a
+separate thread ends the process. A run of beams does not import mpi4py; only the first process of
+``mpirun -n N protractile`` then works.
 """
 
 from __future__ import annotations
@@ -29,13 +29,13 @@ if TYPE_CHECKING:
 
 LINE = b"protractile: interrupted\n"
 
-# Time in s for which the thread waits for the handler.
+# Time in s that the thread gives the signal handler to end the process.
 GRACE = 1.0
 
 # Escape sequence that clears the line of a progress bar and shows the cursor.
 _CLEAR = b"\r\x1b[K\x1b[?25h"
 
-# Environment variables with the rank, of Open MPI, PMIx, and MPICH and its derivatives.
+# Environment variables in which Open MPI, PMIx and MPICH give a process its rank.
 _LAUNCHERS = ("OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK")
 # Settings of Open MPI for a process without launcher, which needs no daemon and no network. MPI
 # starts in 0.06 s with them, and in 0.4 s without them.
@@ -45,10 +45,10 @@ SINGLE_PROCESS = {
     "OMPI_MCA_btl": "self",
 }
 
-# Time in s by which other ranks delay their message, so that rank 0 reports alone if it fails, too.
+# Time in s that other ranks wait before they report: rank 0 reports alone if it also fails.
 _GRACE_OF_RANKS = 5.0
-# Longest time in s for which a message waits for its reader, and interval of the checks.
-_UNREAD, _LOOK = 5.0, 1.0e-3
+# Longest time in s to wait until a message is read, and interval of the checks.
+_MAX_WAIT, _INTERVAL = 5.0, 1.0e-3
 
 _cleanups: list[Callable[[], object]] = []
 _ending = RLock()
@@ -60,18 +60,18 @@ def listen() -> None:
 
     A signal that the parent process ignores stays ignored, as with ``nohup``.
     """
-    caught, wakeup = os.pipe()
+    reader, wakeup = os.pipe()
     os.set_blocking(wakeup, False)
     signal.set_wakeup_fd(wakeup)
     for number in (signal.SIGINT, signal.SIGTERM):
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, _end)
-    Thread(target=_watch, args=(caught,), daemon=True).start()
+    Thread(target=_watch, args=(reader,), daemon=True).start()
 
 
 @contextmanager
 def when_interrupted(work: Callable[[], object]) -> Iterator[None]:
-    """Call a function if the process is interrupted within the context."""
+    """Call a function if a signal ends the process within the context."""
     _cleanups.append(work)
     try:
         yield
@@ -100,14 +100,14 @@ def leave(status: int) -> NoReturn:
 
 
 def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
-    """End all ranks, with one line on stderr.
+    """End all ranks, and print one line on stderr.
 
     Args:
         line: the error.
         code: exit status.
-        comm: communicator; None before MPI starts. Until then every rank fails by itself, and only
-            rank 0 ends with the status: a launcher would truncate its message if another rank
-            ended earlier with an error.
+        comm: communicator; None before MPI starts. Every rank then ends by itself, but only rank 0
+            with the message and the status: an earlier error of another rank would make the
+            launcher cut the message off.
     """
     if comm is None or comm.size == 1:
         if launched_rank():
@@ -124,23 +124,23 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
 
 
 def _wait_until_read(stream: int) -> None:
-    """Wait until a pipe is empty; otherwise Open MPI 5 mixes the line with its own message.
+    """Wait until a pipe is empty, since Open MPI 5 would mix the line with its own message.
 
     Args:
-        stream: a writable file descriptor; only pipes are waited for.
+        stream: file descriptor; for others than pipes the function returns at once.
     """
     if not stat.S_ISFIFO(os.fstat(stream).st_mode):
         return
     unread = array("i", [1])
-    deadline = time.monotonic() + _UNREAD
+    deadline = time.monotonic() + _MAX_WAIT
     while unread[0] and time.monotonic() < deadline:
-        time.sleep(_LOOK)
+        time.sleep(_INTERVAL)
         fcntl.ioctl(stream, termios.FIONREAD, unread)
 
 
-def _watch(caught: int) -> None:
+def _watch(reader: int) -> None:
     while True:
-        (number,) = os.read(caught, 1)
+        (number,) = os.read(reader, 1)
         if number in (signal.SIGINT, signal.SIGTERM):
             time.sleep(GRACE)
             _end(number)

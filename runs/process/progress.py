@@ -16,7 +16,7 @@ from runs.process.terminal import printable, say
 # Callback that receives the name of the model, the stage, and the completed fraction of the stage.
 Progress = Callable[[str, str, float], None]
 
-# Minimum time in s between two lines. Shorter stages print nothing.
+# Minimum time in s between two lines; a shorter stage may print none.
 EVERY = 5.0
 # Completed fraction of a stage above which its remaining time is estimated.
 LEAST_PART = 0.05
@@ -68,19 +68,19 @@ class Lines:
     def __call__(self, model: str, stage: str, part: float) -> None:
         """Print the progress of a stage."""
         now = self._clock()
-        passed = now - self._starts.setdefault((model, stage), now)
+        elapsed = now - self._starts.setdefault((model, stage), now)
         if now - self._last_time < EVERY:
             return
         self._last_time = now
         state = f"{stage} started"
         if part >= 1.0:
             # Some stages report only their end.
-            state = f"{stage} took {passed:.0f} s" if passed >= 1.0 else f"{stage} finished"
+            state = f"{stage} took {elapsed:.0f} s" if elapsed >= 1.0 else f"{stage} finished"
         elif part > 0.0:
             state = f"{stage} {100.0 * part:.0f} %"
             # Earlier estimates are unreliable.
             if part >= LEAST_PART:
-                state += f", {passed * (1.0 - part) / part:.0f} s left"
+                state += f", {elapsed * (1.0 - part) / part:.0f} s left"
         place = ""
         if model in self._models:
             place = f" ({self._models.index(model) + 1} of {len(self._models)})"

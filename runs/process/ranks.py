@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Start of MPI for cases with shells, error messages, and the end of all ranks together.
+"""Start of MPI for cases with shells, and end of all ranks with an error message.
 
 Functions that handle errors do not import, since a process without memory cannot import.
 """
@@ -56,7 +56,7 @@ def enter_mpi(
 
 
 def launched_ranks(file: str) -> MPI.Intracomm | None:
-    """Return the communicator of all ranks if a launcher started several, else None.
+    """Return the communicator of all ranks; None if a launcher did not start several.
 
     Raises:
         BadInput: a launcher started several ranks, and mpi4py is not installed.
@@ -75,7 +75,7 @@ def launched_ranks(file: str) -> MPI.Intracomm | None:
 
 
 def explain(error: Exception) -> tuple[str, int] | None:
-    """Return message and exit status for an error that the user can correct; None for others."""
+    """Return message and exit status of an error that the user can correct; None for others."""
     # Without memory the loader of libraries raises an error of its own.
     if isinstance(error, MemoryError) or "failed to map segment" in str(error):
         return message(f"out of memory ({error}); make the models or the output smaller"), 3
@@ -109,7 +109,7 @@ def end_all_ranks_on_error(comm: MPI.Comm | None) -> Iterator[None]:
 
 
 def _check_temporary_folder(file: str) -> None:
-    """Check the space in the temporary folder, since MPI aborts with a long message without space.
+    """Check the space in the temporary folder; without space, MPI aborts with a long message.
 
     Raises:
         BadInput: the folder has too little space, or is not writable.

@@ -31,13 +31,13 @@ class Terminal(Console):
 
 
 def prepare() -> None:
-    """Let closed streams discard output, and other streams replace unprintable characters."""
+    """Make closed output streams discard text, and the others escape unprintable characters."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:
             # This file stays open until the process ends.
-            swallowed = io.TextIOWrapper(io.FileIO(os.devnull, "w"), encoding="utf-8")
-            setattr(sys, name, swallowed)
+            null_stream = io.TextIOWrapper(io.FileIO(os.devnull, "w"), encoding="utf-8")
+            setattr(sys, name, null_stream)
         elif isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
@@ -74,8 +74,8 @@ def message(text: str) -> str:
 
 
 def shorten(text: str, longest: int = LONGEST_PART) -> str:
-    """Return a text in printable form; a long text loses its middle part."""
-    # Escaping never shortens a text, so that two ends of this length suffice.
+    """Return a text with control characters escaped, and without its middle if it is too long."""
+    # Escaping never shortens a text, so that ``longest`` characters of each end suffice.
     safe = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])
     if len(safe) <= longest:
         return safe
@@ -92,7 +92,7 @@ def printable(text: str) -> str:
 
 
 def show_notices() -> None:
-    """Print notices, and suppress warnings of libraries, which users cannot fix.
+    """Make the program print notices, and suppress library warnings, which users cannot fix.
 
     Explicit warning filters stay active: tests turn warnings into errors.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Start and end of worker processes on other cores."""
+"""Worker processes on other cores."""
 
 from __future__ import annotations
 
@@ -16,14 +16,13 @@ from typing import Any
 from runs.process.ending import SINGLE_PROCESS, leave, when_interrupted
 from runs.process.terminal import show_notices
 
-# Environment of workers: one thread each, and no warnings during import or when they are killed.
+# Environment variables of workers: one thread each, and no warnings at import or when killed.
 _WORKER_VARIABLES = dict.fromkeys(
     ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"
 ) | {"PYTHONWARNINGS": "ignore"}
 # Time in s for which a killed process is awaited.
 _KILL_TIME = 1.0
-# Prefixes of environment variables that make a process a rank: Open MPI, PMIx, MPICH and its
-# derivatives.
+# Prefixes of environment variables by which Open MPI, PMIx and MPICH make a process a rank.
 _RANK_PREFIXES = ("OMPI_", "PMIX_", "PMI_")
 
 
@@ -31,7 +30,7 @@ class _SignalProofPool(ProcessPoolExecutor):
     """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *positional: Any, **named: Any) -> Future[Any]:
-        """Submit work; new processes inherit the signal mask and the environment variables."""
+        """Submit work to processes that block signals and have the variables of workers."""
         with _worker_environment():
             return super().submit(work, *positional, **named)
 
@@ -41,14 +40,14 @@ def _worker_environment() -> Iterator[None]:
     """Block signals and set environment variables for processes that start in this context."""
     signals = {signal.SIGINT, signal.SIGTERM}
     signal.pthread_sigmask(signal.SIG_BLOCK, signals)
-    outside = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
+    previous = {name: os.environ[name] for name in _WORKER_VARIABLES if name in os.environ}
     os.environ.update(_WORKER_VARIABLES)
     try:
         yield
     finally:
         for name in _WORKER_VARIABLES:
             del os.environ[name]
-        os.environ.update(outside)
+        os.environ.update(previous)
         signal.pthread_sigmask(signal.SIG_UNBLOCK, signals)
 
 
@@ -60,7 +59,7 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
         count: number of processes; None for one per core.
         prepare: function that each process calls first.
     """
-    # The tracker of semaphores starts with the pool; the variables switch its warnings off.
+    # Python's resource tracker starts with the pool; the variables switch its warnings off.
     with _worker_environment():
         pool = _SignalProofPool(count or os.cpu_count(), get_context("spawn"), _start, (prepare,))
     try:
@@ -99,7 +98,7 @@ def end() -> None:
 
 
 def _start(prepare: Callable[[], object]) -> None:
-    """Initialise a worker: it is no MPI rank, ends with its parent, and ignores interrupts."""
+    """Initialise a worker, which is no MPI rank and ends with its parent."""
     show_notices()
     for name in [name for name in os.environ if name.startswith(_RANK_PREFIXES)]:
         del os.environ[name]

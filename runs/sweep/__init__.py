@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Runs of one case with varied values, and their charts."""
+"""Parameter studies: runs of one case with varied values, and charts of the results."""

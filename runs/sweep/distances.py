@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Distances of the models of a sweep from a reference.
+"""Differences of the models of a sweep from a reference model.
 
-Tips are compared pointwise while they are predictable: over the whole run if friction makes the
-motion regular, otherwise until a small change of the loads diverges. Other quantities are compared
-over the whole run.
+Tip deflections are compared at equal times while they are predictable: over the whole run if
+friction prevents divergence, otherwise until a run with slightly changed loads diverges. Other
+quantities are compared over the whole run.
 """
 
 from __future__ import annotations
@@ -32,13 +32,13 @@ if TYPE_CHECKING:
 
     from runs.folder.cache import Cache
 
-# Relative change of the loads whose growth ends the comparison of tips.
+# Relative change of the loads in the run whose divergence ends the comparison of tips.
 CHANGE = 1.0e-6
-# Averaging time of pad forces in s. Single impacts last microseconds.
+# Time in s over which pad forces are averaged, since single impacts last microseconds.
 AVERAGING_TIME = 0.02
 
 TIP_DEVIATION = "tip_off"
-# Distances, as fractions of the values of the reference.
+# Relative differences from the reference.
 DISTANCES = (
     Metric("first_peak_off", "1", "first peak deviation", TO_PERCENT, "%"),
     Metric("slow_period_off", "1", "slow period deviation", TO_PERCENT, "%"),
@@ -46,17 +46,17 @@ DISTANCES = (
     Metric("stress_off", "1", "stress deviation", TO_PERCENT, "%"),
     Metric(TIP_DEVIATION, "1", "tip deviation", TO_PERCENT, "%"),
 )
-# Variable with the end of the comparison of tips in s.
+# Name of the variable with the time in s up to which tips are compared.
 UNTIL = "compared_until"
-# Contours in percent.
+# Levels of contour lines in percent.
 LEVELS = (1.0, 5.0, 20.0)
 
 
 @dataclass(frozen=True, slots=True)
 class Features:
-    """Results of a model for comparison with the reference."""
+    """Results of a model that are compared with the reference."""
 
-    tip: Array  #: tip deflection (num_times,) in m up to the end of the comparison
+    tip: Array  #: tip deflections (num_times,) in m, up to the end of the comparison
     first_peak: float  #: height of the first peak in m
     slow_period: float  #: mean time between the main peaks of the tip in s
     pad_force: float  #: largest force at any station in N, averaged over 0.02 s
@@ -64,7 +64,7 @@ class Features:
 
     @classmethod
     def of(cls, results: Results, model: str, stress: float | None, until: float) -> Features:
-        """Return the compared results of a model; ``until`` is the end of the comparison in s."""
+        """Return the results of a model, with the tip up to the time ``until`` in s."""
         data = results.trajectories.sel(model=model)
         time = np.asarray(data["time"].values, dtype=float)
         tip = np.asarray(data["tip"].values, dtype=float)
@@ -78,26 +78,26 @@ class Features:
         )
 
     def distances_from(self, reference: Features) -> Quantities:
-        """Return the distances from the reference; None if either model has no value."""
+        """Return the relative differences by name; None where either model has no value."""
         span = float(np.ptp(reference.tip)) if reference.tip.size else 0.0
-        apart = float(np.abs(self.tip - reference.tip).max()) / span if span else np.nan
-        parts = {
+        tip_difference = float(np.abs(self.tip - reference.tip).max()) / span if span else np.nan
+        differences = {
             name: abs(getattr(self, name) / getattr(reference, name) - 1.0)
             for name in ("first_peak", "slow_period", "pad_force", "stress")
             if getattr(reference, name)
-        } | {"tip": apart}
+        } | {"tip": tip_difference}
         distances = {
-            one.name: parts.get(one.name.removesuffix("_off"), np.nan) for one in DISTANCES
+            one.name: differences.get(one.name.removesuffix("_off"), np.nan) for one in DISTANCES
         }
         return {name: part if np.isfinite(part) else None for name, part in distances.items()}
 
 
 def sustained_force(time: Array, forces: Array) -> float:
-    """Return the largest contact force in N, averaged over 0.02 s; NaN if the run is too short.
+    """Return the largest moving mean of contact forces in N over 0.02 s; NaN for shorter runs.
 
     Args:
         time: evenly spaced times (num_times,) in s.
-        forces: means (num_times, num_stations) over output intervals in N.
+        forces: mean forces (num_times, num_stations) in N over output intervals.
     """
     if time.size < 2 or not np.isfinite(forces).any():
         return float("nan")
@@ -107,19 +107,19 @@ def sustained_force(time: Array, forces: Array) -> float:
     return float(np.nanmax(np.abs(means))) if means.size else float("nan")
 
 
-def comparable_until(
+def comparison_end(
     case: Case,
     model: Model,
     results: Results,
     comm: MPI.Intracomm | None,
     cache: Cache | None,
 ) -> float:
-    """Return the time in s up to which motions are compared pointwise.
+    """Return the time in s up to which the tips of models are compared.
 
     Args:
         case: a checked case.
         model: reference model of the case.
-        results: results of the run.
+        results: results of the reference model.
         comm: ranks that share shells; None without shells.
         cache: cache of reduced shells.
     """
@@ -127,14 +127,14 @@ def comparable_until(
     end = float(time[-1])
     if model.bonded or case.regular:
         return end
-    tools = None if comm is None else BuildContext(comm, cache=cache)
-    plan = MotionPlan.of(build(case, build_boom(case), model, tools).system, case, model)
+    context = None if comm is None else BuildContext(comm, cache=cache)
+    plan = MotionPlan.of(build(case, build_boom(case), model, context).system, case, model)
     vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:
-        same = plan.integrator.like(plan.trajectory())
-        (run,) = run_members([EnsembleMember(plan.motion, vary, CHANGE, same, ("tip",))])
+        integrator = plan.integrator.like(plan.trajectory())
+        (run,) = run_members([EnsembleMember(plan.motion, vary, CHANGE, integrator, ("tip",))])
     except NumericsError:
-        # The changed motion cannot be computed, and only the initial state is compared.
+        # The run with changed loads fails, and only the initial states are compared.
         return float(time[0])
     tip = results.trajectories["tip"].sel(model=model.name).values
     return float(

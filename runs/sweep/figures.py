@@ -32,7 +32,7 @@ from runs.sweep.distances import DISTANCES, LEVELS, TIP_DEVIATION, UNTIL
 from runs.sweep.residual_vibration import draw_vibration
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
-# Attribute with the limit of a quantity.
+# Name of the attribute of a variable that has the limit of the quantity.
 PERMITTED = "permitted"
 # Maximum number of readable cells of a map along each axis.
 MOST_CELLS = 10
@@ -40,26 +40,26 @@ MOST_CELLS = 10
 _LARGE = {"N": (1.0e3, TO_KILO, "kN"), "N m": (1.0e3, TO_KILO, "kN m"),
           "Pa": (1.0e5, TO_MEGA, "MPa"), "N/m": (1.0e6, 1.0e-6, "kN/mm")}  # fmt: skip
 _SMALL = {"m": (1.0, TO_MILLI, "mm")}
-# A quantity that changes relatively less counts as constant.
+# Relative change below which a quantity counts as constant.
 SAME = 1.0e-6
 # Ratio of the largest to the smallest value above which an axis is logarithmic.
 DECADES = 100.0
 # Maximum number of labels along an axis.
 MOST_TICKS = 6
-# Minimum number of values along an axis for contours.
+# Minimum number of values along each axis for contour lines.
 LEAST_FOR_CONTOURS = 4
 
-# Shades between the levels of distances, darker for larger distances. They differ in lightness.
+# Colours between the levels of differences; larger differences are darker.
 _SHADES = ("#fff3c4", "#f6b26b", "#b8577a", "#3b1f5c")
-# Largest and smallest distance in percent in a map; others are clipped.
+# Largest and smallest difference in percent in charts; others are clipped.
 _MOST, _LEAST = 100.0, 0.01
 # Alignment of text at the first and the last value of an axis.
 _SIDES: Final = ("left", "right")
 _ENDS: Final = ("bottom", "top")
-# Size in inches of a map beside another one.
+# Width in inches of each additional column of maps.
 _COLUMN = 3.6
 
-# Terms of keys that are not formed from their names.
+# Names of keys in charts, if they do not follow from the key.
 _WORDS = {"gravity.acceleration": "gravity", "damping.modal": "modal damping"}
 
 _Word = TypeVar("_Word", bound=str)
@@ -82,8 +82,8 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
             for quantity in _varying_quantities(data):
                 _map(data, quantity, keys, folder)
             return
-        for count, there in enumerate(_at_ends(data, keys[1:]), start=1):
-            part = data.sel(there)
+        for count, selection in enumerate(_at_ends(data, keys[1:]), start=1):
+            part = data.sel(selection)
             # Nothing to draw if all points failed.
             if changing := _varying_quantities(part):
                 sheet, panels = _lines(data[keys[0]], _model_lines(part, changing, strokes))
@@ -92,28 +92,28 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
                     if (permitted := _permitted(part, quantity)) is not None:
                         axes.axhline(permitted, **theme.LIMIT)
                         axes.set_title(f"{axes.get_title(loc='left')}, dotted: limit")
-                where = "".join(f", {_quantity(key)} {value:g}" for key, value in there.items())
-                name = f"sweep-lines-{count}.png" if there else "sweep-lines.png"
+                where = "".join(f", {_quantity(key)} {value:g}" for key, value in selection.items())
+                name = f"sweep-lines-{count}.png" if selection else "sweep-lines.png"
                 _finish(sheet, f"Sweep over {_quantity(keys[0])}{where}", folder / name)
         if len(keys) == 1:
             draw_vibration(data, strokes, folder / "sweep-residual-vibration.png")
 
 
 def _permitted(data: xr.Dataset, quantity: Metric) -> float | None:
-    """Return the limit of a quantity in its displayed unit; None without a limit."""
+    """Return the limit of a quantity in its displayed unit; None if it has no limit."""
     permitted = data[quantity.name].attrs.get(PERMITTED)
     return None if permitted is None else float(quantity.factor * permitted)
 
 
 def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]]:
-    """Yield each combination of first and last values of keys; an empty one without keys."""
+    """Yield each combination of the first and last values of keys; ``{}`` if there are no keys."""
     ends = [(data[key].values[0], data[key].values[-1]) for key in keys]
     for values in product(*ends):
         yield dict(zip(keys, values, strict=True))
 
 
 def _varying_quantities(data: xr.Dataset) -> list[Metric]:
-    """Return the quantities that change, or all available ones if none changes."""
+    """Return the quantities that change over the keys, or all with values if none changes."""
     available = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
 
     def changes(one: Metric) -> bool:
@@ -126,7 +126,7 @@ def _varying_quantities(data: xr.Dataset) -> list[Metric]:
 
 
 def in_display_units(data: xr.Dataset) -> xr.Dataset:
-    """Return the data with keys in displayed units, such as mm or kN."""
+    """Return the data with the values of keys in displayed units, such as mm or kN."""
     coordinates = {}
     for name, along in data.coords.items():
         unit = along.attrs.get("units", "")
@@ -164,8 +164,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
         sheet, panels = _lines(data[key], lines_of_modes)
         for axes in panels:
-            # Margins follow from a range that includes zero, so that they do not clip an almost
-            # constant line.
+            # Without zero in the data range, the margins would clip an almost constant line.
             axes.update_datalim([(0.0, 0.0)], updatex=False)
             axes.autoscale_view(scalex=False)
             axes.set_ylim(bottom=0.0)
@@ -173,7 +172,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
 
 
 def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
-    """Draw distances of models from a reference: lines over one key, maps over several.
+    """Draw the differences of models from a reference: lines over one key, maps over several.
 
     Args:
         data: dataset of :func:`runs.sweep.output.gather`, without the reference.
@@ -207,7 +206,7 @@ def _strokes(data: xr.Dataset, bonded: Sequence[str]) -> dict[str, theme.Stroke]
 def _model_lines(
     data: xr.Dataset, quantities: Sequence[Metric], strokes: Mapping[str, theme.Stroke]
 ) -> dict[str, dict[str, tuple[Array, theme.Stroke]]]:
-    """Return values and stroke of each line, by quantity title and line label."""
+    """Return the values and the line style of each line, by titles of quantities and by models."""
     return {
         f"{one.title} ({one.shown_unit})": {
             name: (one.factor * data[one.name].sel(model=name).values, stroke)
@@ -220,7 +219,7 @@ def _model_lines(
 def _lines(
     along: xr.DataArray, lines_of_panels: Mapping[str, Mapping[str, tuple[Array, theme.Stroke]]]
 ) -> tuple[Sheet, list[Axes]]:
-    """Return a sheet with a panel of lines for each quantity, and with a legend."""
+    """Return a figure with a legend, and its panels of lines, one for each quantity."""
     sheet, panels = new_sheet(len(lines_of_panels), 1.2 + 1.8 * len(lines_of_panels))
     for axes, (title, lines) in zip(panels, lines_of_panels.items(), strict=True):
         for label, (values, stroke) in lines.items():
@@ -234,7 +233,7 @@ def _lines(
 
 
 def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) -> None:
-    """Draw a quantity over two keys, a panel for each model that has it, on a common scale."""
+    """Draw maps of a quantity over two keys, one for each model with values, on a common scale."""
     x, y = (data[key] for key in keys)
     values = quantity.factor * data[quantity.name].transpose("model", *keys[::-1])
     permitted = _permitted(data, quantity)
@@ -244,7 +243,7 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
     sheet, panels = new_sheet(len(names), 1.4 + 2.4 * len(names))
     low, high = float(values.min()), float(values.max())
     for axes, name in zip(panels, names, strict=True):
-        # The scales must be set before the contours, so that labels are placed correctly.
+        # Scales must be set before contours, whose labels would be misplaced otherwise.
         _scale_axis(axes, "x", x)
         _scale_axis(axes, "y", y)
         cells = values.sel(model=name).values
@@ -267,12 +266,12 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
         axes.grid(visible=False)
         axes.label_outer()
     sheet.colorbar(mesh, ax=panels, label=f"{quantity.title} ({quantity.shown_unit})", aspect=40)
-    left_out = [str(name) for name in values["model"].values[~has_values]]
+    without_values = [str(name) for name in values["model"].values[~has_values]]
     remarks = [
         *([f"grey: no {quantity.title}"] if values[has_values].isnull().any() else []),
         *([] if permitted is None else [f"red, dotted: limit of {permitted:.4g}"]),
         *(["×: the computation failed"] if failed[has_values].values.any() else []),
-        *([f"no values: {', '.join(left_out)}"] if left_out else []),
+        *([f"no values: {', '.join(without_values)}"] if without_values else []),
     ]
     sheet.supxlabel("; ".join(remarks), x=0.02, ha="left", fontsize=9.0)
     title = f"{quantity.title[0].upper()}{quantity.title[1:]}: {low:.3g} to {high:.3g} "
@@ -282,12 +281,12 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
 def _distance_maps(
     data: xr.Dataset, quantity: Metric, keys: Sequence[str], reference: str, folder: Path
 ) -> None:
-    """Draw maps of a distance over the last two keys, for each model that has it.
+    """Draw maps of a difference over the last two keys, for each model with values.
 
-    Each combination of first and last values of the other keys has a map.
+    There is a map for each combination of the first and last values of the other keys.
     """
-    *before, x, y = keys
-    parts = [data.sel(there) for there in _at_ends(data, before)]
+    *outer_keys, x, y = keys
+    parts = [data.sel(selection) for selection in _at_ends(data, outer_keys)]
     values = quantity.factor * data[quantity.name]
     model_names = [
         name for name in values["model"].values if np.isfinite(values.sel(model=name)).any()
@@ -300,12 +299,12 @@ def _distance_maps(
         for axes, name in zip(column, model_names, strict=True):
             _scale_axis(axes, "x", data[x])
             _scale_axis(axes, "y", data[y])
-            off = quantity.factor * part[quantity.name].sel(model=name).transpose(y, x)
-            shade = _shade(axes, off)
+            difference = quantity.factor * part[quantity.name].sel(model=name).transpose(y, x)
+            shade = _shade(axes, difference)
             if quantity.name == TIP_DEVIATION:
                 _write_ends(axes, part[UNTIL].transpose(y, x), float(data[UNTIL].max()))
             axes.label_outer()
-        where = ", ".join(f"{_quantity(key)} {part[key].item():g}" for key in before)
+        where = ", ".join(f"{_quantity(key)} {part[key].item():g}" for key in outer_keys)
         column[0].set_title("\n".join(filter(None, [where, column[0].get_title(loc="left")])))
     sheet.colorbar(shade, ax=grid, label=f"{quantity.title} (%)", aspect=40)
     if quantity.name == TIP_DEVIATION and data[UNTIL].min() < data[UNTIL].max():
@@ -317,23 +316,23 @@ def _distance_maps(
     _finish(sheet, title, folder / _name(quantity))
 
 
-def _shade(axes: Axes, off: xr.DataArray) -> ContourSet:
-    """Draw a map in percent, with contours at the levels."""
-    y, x = (off[dim].values for dim in off.dims)
-    least, most = float(off.min()), float(off.max())
+def _shade(axes: Axes, difference: xr.DataArray) -> ContourSet:
+    """Draw a map of differences in percent, with contour lines at ``LEVELS``."""
+    y, x = (difference[dim].values for dim in difference.dims)
+    least, most = float(difference.min()), float(difference.max())
     levels = [0.0, *LEVELS, _MOST]
-    shade = axes.contourf(x, y, np.clip(off, 0.0, _MOST), levels=levels, colors=_SHADES)
+    shade = axes.contourf(x, y, np.clip(difference, 0.0, _MOST), levels=levels, colors=_SHADES)
     if least < LEVELS[-1] and most > LEVELS[0]:
-        lines = axes.contour(x, y, off, levels=LEVELS, colors=theme.INK)
+        lines = axes.contour(x, y, difference, levels=LEVELS, colors=theme.INK)
         for label in axes.clabel(lines, fmt="%g %%", fontsize=9.0):
             label.set_path_effects(theme.OUTLINED)
-    name = off["model"].item()
+    name = difference["model"].item()
     axes.set(title=f"{name}: {least:.2g} to {most:.2g} %", facecolor=theme.RULE)
     return shade
 
 
 def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
-    """Write the end of the comparison of tips at points where it is below the maximum."""
+    """Write the time up to which tips are compared at points where it is below the longest."""
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"
@@ -343,7 +342,7 @@ def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
 
 
 def _inwards(place: int, count: int, outer: tuple[_Word, _Word]) -> _Word | Literal["center"]:
-    """Return the alignment of a value's text that keeps it within its panel."""
+    """Return the alignment by which the text at the edge of a panel stays within the panel."""
     return outer[0] if place == 0 else outer[1] if place == count - 1 else "center"
 
 
@@ -352,11 +351,11 @@ def _spans_decades(values: Array) -> bool:
 
 
 def _edges(values: Array) -> Array:
-    """Return the bounds (num_values + 1,) of cells around ascending values on their axis."""
-    along: Array = np.log(values) if _spans_decades(values) else values
-    between = 0.5 * (along[:-1] + along[1:])
+    """Return the bounds (num_values + 1,) of map cells around ascending values."""
+    positions: Array = np.log(values) if _spans_decades(values) else values
+    between = 0.5 * (positions[:-1] + positions[1:])
     bounds: Array = np.concatenate(
-        [[2.0 * along[0] - between[0]], between, [2.0 * along[-1] - between[-1]]]
+        [[2.0 * positions[0] - between[0]], between, [2.0 * positions[-1] - between[-1]]]
     )
     return np.asarray(np.exp(bounds)) if _spans_decades(values) else bounds
 
@@ -373,7 +372,7 @@ def _quantity(key: Hashable) -> str:
 
 
 def _scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> None:
-    """Label an axis with quantity and unit; make it logarithmic if values span decades."""
+    """Label an axis with quantity and unit, and make it logarithmic if values span decades."""
     unit, places = values.attrs["units"], values.values
     label = _quantity(values.name) + ("" if unit == "1" else f" ({unit.translate(_SUPERSCRIPT)})")
     axes.set(**{f"{which}label": label})
@@ -387,11 +386,11 @@ def _scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> N
 
 
 def _finish(sheet: Sheet, title: str, path: Path) -> None:
-    """Write a sheet with its title."""
+    """Add a title to a figure, and write the figure to a file."""
     sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
     sheet.savefig(path)
 
 
 def _name(quantity: Metric) -> str:
-    """Return the file name of a quantity."""
+    """Return the file name of the map of a quantity."""
     return f"sweep-{quantity.name.replace('_', '-')}.png"

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """First natural frequencies of a boom over case parameters.
 
-A boom with play is nonlinear and has no natural frequencies. The table has the frequencies with the
+A boom with play is nonlinear and has no natural frequencies. These are the frequencies with the
 contacts that are closed at rest under the loads (:func:`dynamics.damping.closed_contact_modes`),
-and the frequencies with bonded joints.
+and with bonded joints.
 """
 
 from __future__ import annotations
@@ -43,13 +43,13 @@ JOINTS = ("in contact", "bonded")
 def first_frequencies(
     case: Case, model: Model, comm: MPI.Intracomm | None, cache: Cache | None
 ) -> Array:
-    """Return frequencies (2, MODES) in Hz with closed and with bonded joints. Collective.
+    """Return frequencies (2, MODES) in Hz with joints in contact and with bonded joints.
 
-    Missing values are NaN.
+    Missing values are NaN. All ranks must call the function.
 
     Args:
         case: a checked case.
-        model: model of the case; a model without play has no frequencies with closed joints.
+        model: model of the case; a bonded model has no frequencies with joints in contact.
         comm: ranks that share a shell.
         cache: cache of reduced shells.
     """
@@ -59,10 +59,10 @@ def first_frequencies(
     for row, booms in enumerate((with_play, ModelBoom(boom.bonded))):
         if row == 0 and model.bonded:
             continue
-        tools = None if comm is None else BuildContext(comm, cache=cache)
+        context = None if comm is None else BuildContext(comm, cache=cache)
         try:
             with np.errstate(all="ignore"):
-                system, _, _ = initial_state(model.build(booms, tools).system, case.start.at_rest)
+                system, _, _ = initial_state(model.build(booms, context).system, case.start.at_rest)
                 omega = closed_contact_modes(system)[0][:MODES]
         except NUMERICAL_ERRORS:
             continue
@@ -76,7 +76,7 @@ def measure(
     cache: Cache | None,
     progress: Progress = ignore_progress,
 ) -> Array:
-    """Return first frequencies (num_cases, num_models, 2, MODES) in Hz. Collective.
+    """Return the first frequencies (num_cases, num_models, 2, MODES) in Hz, on all ranks.
 
     Args:
         cases: checked cases with the same models.
@@ -94,7 +94,7 @@ def measure(
 def gather(plan: Plan, frequencies: Array) -> xr.Dataset:
     """Return the first frequencies of all points as a dataset.
 
-    Its dimensions are the varied keys in the unit of the case, ``model``, ``joints``, ``mode``.
+    The dimensions are the varied keys, in the units of the case, ``model``, ``joints``, ``mode``.
     """
     values = frequencies.reshape(*plan.shape, *frequencies.shape[1:])
     attributes = {"units": "Hz", "long_name": "natural frequency"}
@@ -106,7 +106,7 @@ def gather(plan: Plan, frequencies: Array) -> xr.Dataset:
 
 
 def table(data: xr.Dataset) -> Table:
-    """Return the table of the lowest frequencies of each point and model."""
+    """Return the table of the first frequencies of each model at each point."""
     stacked = data["frequency"].stack(
         row=[dim for dim in data.dims if dim not in ("joints", "mode")]
     )
@@ -123,7 +123,7 @@ def table(data: xr.Dataset) -> Table:
 
 
 def write(data: xr.Dataset, folder: Path) -> None:
-    """Write dataset, table and, for one key, a chart into the folder of a sweep."""
+    """Write the dataset as NetCDF and CSV, and a chart for one key, to the folder of a sweep."""
     with (
         folder_lock(folder),
         modified_folder(folder) as part,

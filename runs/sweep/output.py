@@ -29,24 +29,24 @@ from runs.sweep.run import Outcome
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
 
-# Decimals of relative distances: a hundredth of a percent.
+# Decimals of relative differences: a hundredth of a percent.
 DIGITS = 4
-# Maximum number of quantities in a terminal of 80 columns.
+# Quantities that fit into a terminal of 80 columns.
 SHOWN = ("tip_at_rest", "tip_amplitude", "contact_force", "stress")
 
 
 def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
-    """Return the outcomes as a dataset over the varied keys, in the unit of the case, and models.
+    """Return the outcomes as a dataset over the varied keys, in the units of the case, and models.
 
-    It has the quantities of :mod:`runs.pipeline.quantities`, NaN if a model has no value, and
-    ``failed``, 1 for failed models. With a reference it has the distances from it, and
-    ``compared_until``, the end of the comparison of tips in s. A limit of the case is the attribute
-    ``permitted`` of its quantity.
+    It has the quantities of :mod:`runs.pipeline.quantities`, NaN where a model has no value, and
+    ``failed``, which is 1 for failed models. With a reference model it has the differences from
+    this model, and ``compared_until``, the time in s up to which tips are compared. A limit of the
+    case is the attribute ``permitted`` of the quantity.
     """
     dims, models = list(plan.coordinates), plan.coordinates["model"]
     quantities = QUANTITIES if plan.reference is None else (*QUANTITIES, *DISTANCES)
     rows = [
-        one.models.get(name, {}) | one.off.get(name, {}) | {"failed": name in one.failures}
+        one.models.get(name, {}) | one.differences.get(name, {}) | {"failed": name in one.failures}
         for one in outcomes
         for name in models
     ]
@@ -68,7 +68,7 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
-    """Write ``sweep.nc``, ``sweep.csv`` and charts; they replace earlier ones atomically."""
+    """Write ``sweep.nc``, ``sweep.csv`` and charts in place of earlier ones; return the dataset."""
     data = gather(plan, outcomes)
     with (
         folder_lock(folder),
@@ -88,7 +88,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
 
 
 def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
-    """Print each model's range of results, differences of models, and admissible speeds."""
+    """Print ranges of results, met limits, admissible speeds, and differences of models."""
     keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
     by_name = {quantity.name: quantity for quantity in QUANTITIES}
     quantities, residual = [by_name[name] for name in SHOWN], by_name["energy_residual"]
@@ -113,8 +113,8 @@ def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
     lines = []
     for limit, name in product(plan.limits, data["model"].values):
         numbers = data[limit.quantity.name].sel(model=name).values.ravel()
-        held = sum(limit.is_met_by(value) for value in numbers)
-        lines.append(f"{name}: {limit} at {held} of {numbers.size} points")
+        num_met = sum(limit.is_met_by(value) for value in numbers)
+        lines.append(f"{name}: {limit} at {num_met} of {numbers.size} points")
     for name, one in vibration_curves(data).items():
         lines += describe(name, one)
     for line in lines:
@@ -134,11 +134,11 @@ def _print_distances(data: xr.Dataset, reference: str, console: Console) -> None
     Table.of_rows("distances", title, ("model", *headings), rows).show(console)
     until = _range(data[UNTIL], Metric(UNTIL, "s", "", 1.0, "s"))
     step_error = data["step_error"].sel(model=reference).round(DIGITS)
-    changed = _range(step_error, metrics(ModelSummary)["step_error"])
+    difference = _range(step_error, metrics(ModelSummary)["step_error"])
     if until != NONE:
         console.print(f"tips are compared until {until} s", markup=False, highlight=False)
-    if changed != NONE:
-        line = f"the time step changes the tip of {reference} by {changed} % of its range"
+    if difference != NONE:
+        line = f"the time step changes the tip of {reference} by {difference} % of its range"
         console.print(line, markup=False, highlight=False)
 
 
@@ -158,7 +158,7 @@ def _where_largest(values: xr.DataArray, keys: Sequence[str]) -> str:
 
 
 def _write_csv(data: xr.Dataset, outcomes: Sequence[Outcome], path: Path) -> None:
-    """Write a line for each point and model."""
+    """Write a CSV file with a line for each model at each point."""
     *keys, model = data["failed"].dims
     table = data.drop_vars("failed").to_dataframe([*keys, model]).reset_index()
     # As text, values are not rounded.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Points of a sweep: a checked case for each combination of varied values.
 
-Sections are inferred once, with the play of the case, and do not change with a varied play; a play
-that the boxes do not admit is an error. Keys that define sections (section, height_to_width,
-mass_per_length, second_moment_of_area, density) are set before the inference. If no model needs
-plates, none are inferred, and any play is valid.
+Sections are inferred with the play of the case, not with a varied play. A varied play that does not
+fit the inferred sections is an error. Varied keys that define sections (section, height_to_width,
+mass_per_length, second_moment_of_area, density) are set before sections are inferred. If no model
+needs plates, no sections are inferred, and any play is valid.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ _WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """Point of a sweep."""
+    """A point of a sweep: values of the varied keys, and their case."""
 
     values: tuple[float, ...]  #: values of the varied keys, in the order of the variations
     label: str  #: label in messages, ``joint.play=0.01 payload.mass=200``
@@ -49,7 +49,7 @@ class Point:
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """A sweep before its runs."""
+    """A sweep before its runs: the variations, and the points to run."""
 
     file: str  #: file of the case, as the user gave it
     title: str  #: title of the case
@@ -57,12 +57,12 @@ class Plan:
     units: Sequence[str]  #: unit of each variation; empty if dimensionless
     bonded: Sequence[str]  #: names of the models without play
     points: Sequence[Point]  #: points of all combinations; the last variation changes fastest
-    reference: str | None = None  #: the model with which the others are compared, if any
+    reference: str | None = None  #: name of the model with which the others are compared
     limits: Sequence[Limit] = ()  #: limits of the case
 
     @property
     def coordinates(self) -> dict[str, Any]:
-        """The coordinates of datasets: values of the varied keys, and model names."""
+        """The coordinates of the dataset of results: values of varied keys, and model names."""
         return {
             variation.key: (variation.key, np.array(variation.values), {"units": unit or "1"})
             for variation, unit in zip(self.variations, self.units, strict=True)
@@ -82,7 +82,7 @@ def plan(
     reference: str | None = None,
     whole: Case | None = None,
 ) -> Plan:
-    """Return the plan of a sweep, after checks of its case and all points.
+    """Return the plan of a sweep with checked points.
 
     Args:
         file: a case file, or the name of the case in messages.
@@ -90,7 +90,7 @@ def plan(
         models: names of models; all unless given.
         mesh_size: mesh size of all shells in m; the mesh size of the case unless given.
         reference: name of the model with which the others are compared.
-        whole: the checked case; read from the file unless given.
+        whole: the checked case with all models; read from the file unless given.
 
     Raises:
         BadInput: the case, a key, a value, a point or the reference is invalid.
@@ -133,7 +133,7 @@ def plan(
 
 
 def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
-    """Return the given models; by default the name of the last beam, if possible with play."""
+    """Return the names ``models``; by default the name of the last beam, if possible with play."""
     if models is not None:
         return list(models)
     beams = [model for model in case.models if not model.needs_shell]
@@ -142,7 +142,7 @@ def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
 
 
 def tables_of(case: Case) -> Tables:
-    """Return a case as plain tables, without the tables that do not affect sweeps."""
+    """Return a case as nested dictionaries, without tables that do not affect sweeps."""
     unused = {names_of(Case)[key] for key in UNUSED}
     return case.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)
 
@@ -155,38 +155,38 @@ def make_points(
     combinations: Iterable[Sequence[Setting]],
     plates: dict[Sequence[Setting], Plates] | None = None,
 ) -> Iterator[Point]:
-    """Yield the checked point of each combination of settings of a case.
+    """Yield a checked point for each combination of values.
 
     Args:
         whole, file, models, mesh_size: case and options as for :func:`plan`.
-        combinations: settings of each point.
-        plates: inferred plates by the settings that shape sections; it is extended.
+        combinations: the varied keys with their values at each point.
+        plates: cache of inferred plates, by the values that determine sections.
 
     Raises:
         BadInput: a combination is invalid.
     """
     tables = tables_of(whole)
 
-    def chosen(settings: Sequence[Setting]) -> Case:
+    def case_of(settings: Sequence[Setting]) -> Case:
         return case_file.select(_set_numbers(file, tables, settings), file, models)
 
     plates = {} if plates is None else plates
     for settings in combinations:
-        shaping = tuple(setting for setting in settings if setting[0].shapes_sections)
+        section_settings = tuple(setting for setting in settings if setting[0].shapes_sections)
         label = _label(settings)
         checked = None
-        if shaping not in plates:
-            checked = _check_point(file, label, chosen(shaping))
-            plates[shaping] = infer_plates(checked)
-        given = hold_plates(chosen(settings), plates[shaping])
-        if given != checked:
-            _check_point(file, label, given, any(plates[shaping]))
+        if section_settings not in plates:
+            checked = _check_point(file, label, case_of(section_settings))
+            plates[section_settings] = infer_plates(checked)
+        case = hold_plates(case_of(settings), plates[section_settings])
+        if case != checked:
+            _check_point(file, label, case, any(plates[section_settings]))
         values = tuple(value for _, value in settings)
-        yield Point(values, label, case_file.select(given, file, None, mesh_size))
+        yield Point(values, label, case_file.select(case, file, None, mesh_size))
 
 
 def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
-    """Return the case with new values of some numbers."""
+    """Return the case with new values of the varied keys."""
     changed = deepcopy(tables)
     try:
         for variation, value in settings:
@@ -205,7 +205,7 @@ def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case
 
 
 def _check_point(file: str, label: str, case: Case, inferred: bool = False) -> Case:
-    """Return the case after all checks of a case file."""
+    """Check the case of a point, and return it."""
     try:
         case_file.check(case, file)
     except BadInput as fault:
@@ -228,14 +228,14 @@ def infer_plates(case: Case) -> Plates:
 
 
 def hold_plates(case: Case, plates: Plates) -> Case:
-    """Return the case with given plates in place of inferred sections."""
+    """Return the case with inferred plates written as tables of sections."""
     in_space = any(joint.lateral_play is not None for joint in case.joints)
-    matter = in_space or any(model.needs_plates for model in case.models)
+    needed = in_space or any(model.needs_plates for model in case.models)
     segments = tuple(
         segment
         if plate is None
         else segment.model_copy(
-            update={"height_to_width": None, "section": plate if matter else None}
+            update={"height_to_width": None, "section": plate if needed else None}
         )
         for segment, plate in zip(case.segments, plates, strict=True)
     )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Residual vibration over telescoping speed, compared with vibration at constant extension."""
+"""Residual vibration after telescoping at several speeds, and vibration without telescoping."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from runs.report import theme
 from runs.report.figure_context import new_sheet
 from runs.report.formatting import number
 
-# Relative tolerance of a vibration above its level, since time steps and impacts cause scatter.
+# Relative excess over the level that is tolerated, since time steps and impacts cause scatter.
 _SAME = 1.0e-2
 
-# Names and line styles of initial and final extension.
+# Texts and line styles for vibration without telescoping.
 _ENDS = {
     "residual_vibration_initial": ("at the initial extension", ":"),
     "residual_vibration_final": ("at the final extension", "--"),
@@ -27,24 +27,21 @@ _ENDS = {
 
 
 class VibrationCurve(NamedTuple):
-    """Residual vibration of a model in m over ascending mean speeds of the drive in m/s.
+    """Residual vibration of a model over the speed of the drive."""
 
-    ``levels`` has the vibration in m at constant initial and at constant final extension.
-    """
-
-    speed: Array
-    vibration: Array
-    levels: dict[str, Array]
+    speed: Array  #: ascending mean speeds (num_points,) of the drive in m/s
+    vibration: Array  #: residual vibrations (num_points,) in m
+    levels: dict[str, Array]  #: vibrations (num_points,) in m without telescoping
 
     def with_level(self, end: str) -> VibrationCurve:
-        """Return the curve at the speeds with a known level of the end ``initial`` or ``final``."""
+        """Return the curve at the speeds for which the level ``end`` is known."""
         finite = np.isfinite(self.levels[end])
         levels = {end: self.levels[end][finite]}
         return VibrationCurve(self.speed[finite], self.vibration[finite], levels)
 
 
 def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
-    """Return the curve of each model, if the sweep varies the telescoping speed by one key.
+    """Return the curves by model; empty unless the sweep varies one key, a telescoping speed.
 
     Args:
         data: dataset of :func:`runs.sweep.output.gather`.
@@ -65,10 +62,9 @@ def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
 
 
 def admissible_speed(curve: VibrationCurve, end: str) -> float | None:
-    """Return the largest speed in m/s whose vibration is within the level at an end of the travel.
+    """Return the largest speed in m/s up to which the vibration does not exceed the level ``end``.
 
-    The vibration is interpolated linearly. The result is None if every speed exceeds the level.
-
+    The vibration is interpolated linearly. Return None if the slowest speed exceeds the level.
 
     >>> speed, vibration = np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0])
     >>> levels = {"initial": 4.0 + 0.0 * speed, "final": np.array([1.0, 2.0, 3.0])}
@@ -77,35 +73,35 @@ def admissible_speed(curve: VibrationCurve, end: str) -> float | None:
     (2.5, None)
     """
     speed, vibration, levels = curve.with_level(end)
-    beyond = vibration - levels[end]
-    over = np.flatnonzero(beyond > _SAME * levels[end])
-    if not over.size:
+    excess = vibration - levels[end]
+    exceeding = np.flatnonzero(excess > _SAME * levels[end])
+    if not exceeding.size:
         return float(speed[-1])
-    first = int(over[0])
+    first = int(exceeding[0])
     if first == 0:
         return None
     near = slice(first - 1, first + 1)
-    return float(np.interp(0.0, beyond[near], speed[near]))
+    return float(np.interp(0.0, excess[near], speed[near]))
 
 
 def describe(name: str, curve: VibrationCurve) -> Iterator[str]:
-    """Yield a sentence on the admissible telescoping speed for each end of the extension."""
+    """Yield a sentence on the admissible telescoping speed for each level of a curve."""
     for end in curve.levels:
         speed, vibration, levels = curve.with_level(end)
         level, fastest = levels[end], admissible_speed(curve, end)
         ends = dict.fromkeys(number(TO_MILLI * of) for of in (level.min(), level.max()))
-        without = f"that without telescoping, {_ENDS[end][0]} ({' to '.join(ends)} mm)"
+        level_text = f"that without telescoping, {_ENDS[end][0]} ({' to '.join(ends)} mm)"
         if fastest is None:
             slowest = f"the slowest speed, {speed[0]:.3g} m/s"
             least = number(TO_MILLI * float(vibration[0]))
-            yield f"{name}: vibration of {least} mm at {slowest}, exceeds {without}"
+            yield f"{name}: vibration of {least} mm at {slowest}, exceeds {level_text}"
         else:
             last = ", the fastest speed with a result" if fastest == speed[-1] else ""
-            yield f"{name}: vibration within {without} up to {fastest:.3g} m/s{last}"
+            yield f"{name}: vibration within {level_text} up to {fastest:.3g} m/s{last}"
 
 
 def draw_vibration(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
-    """Draw the vibration over the mean speed of the drive, if the sweep varies it.
+    """Draw the residual vibration over the mean speed of the drive, if the sweep varies it.
 
     Args:
         data: dataset of a sweep over one key.

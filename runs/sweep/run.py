@@ -2,7 +2,7 @@
 """Runs of the points of a sweep on all cores or ranks, with a cache of finished points.
 
 The cache is in the folder of the sweep. The key of a point is the hash of its case, of the program
-and of the libraries, so that a later sweep in this folder does not repeat it.
+and of the libraries. A later sweep in this folder does not repeat finished points.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from runs.process.ending import when_interrupted
 from runs.process.progress import Progress
 from runs.process.terminal import message, say, shorten
 from runs.process.workers import end
-from runs.sweep.distances import Features, comparable_until
+from runs.sweep.distances import Features, comparison_end
 from runs.sweep.points import Plan
 
 if TYPE_CHECKING:
@@ -38,13 +38,13 @@ POINTS = "points"
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Results of a point, by model name."""
+    """Results of a point by model name."""
 
     models: dict[str, Quantities]  #: quantities of the completed models
     failures: dict[str, str]  #: reasons why other models failed
-    #: Distances from the reference; empty without a reference.
-    off: dict[str, Quantities] = field(default_factory=dict)
-    until: float | None = None  #: end of the comparison of tips in s; None without a comparison
+    #: Differences from the reference model; empty without a reference.
+    differences: dict[str, Quantities] = field(default_factory=dict)
+    until: float | None = None  #: time in s up to which tips are compared, if they are
 
 
 def prepare(folder: Path, file: str) -> None:
@@ -74,7 +74,7 @@ def run_points(
     progress: Progress,
     cache: Cache | None = None,
 ) -> list[Outcome]:
-    """Run the unfinished points, cache each when it is finished, and return all outcomes.
+    """Run the points that are not in the cache, store each, and return the outcomes of all.
 
     Args:
         plan: plan of the sweep.
@@ -87,9 +87,9 @@ def run_points(
         MemoryError: the system killed a process.
     """
     points, reference = plan.points, plan.reference
-    kept = Cache(folder / POINTS)
+    point_cache = Cache(folder / POINTS)
     names = [key(toml.digest(point.case), reference) for point in points]
-    outcomes = [kept.load(name, Outcome) for name in names]
+    outcomes = [point_cache.load(name, Outcome) for name in names]
     stage = f"{len(points)} points"
     futures = {
         pool.submit(run_point, point.case, cache, reference): i
@@ -104,7 +104,7 @@ def run_points(
             for future in as_completed(futures):
                 i = futures[future]
                 outcomes[i] = outcome = future.result()
-                kept.store(names[i], outcome)
+                point_cache.store(names[i], outcome)
                 finished += 1
                 progress("sweep", stage, finished / len(points))
     except BrokenProcessPool:
@@ -116,7 +116,7 @@ def run_points(
 
 
 def run_point(case: Case, cache: Cache | None = None, reference: str | None = None) -> Outcome:
-    """Run the models of a case one by one in this process, so that one may fail alone."""
+    """Run each model of a case by itself, and return the results and the reasons of failures."""
     models: dict[str, Quantities] = {}
     failures: dict[str, str] = {}
     runs: dict[str, Results] = {}
@@ -126,11 +126,11 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
 
         comm = MPI.COMM_SELF
     for model in case.models:
-        alone = case.model_copy(update={"models": (model,)})
+        case_of_model = case.model_copy(update={"models": (model,)})
         try:
-            finished = run_case(alone, "", RunContext(comm, cache=cache))
+            finished = run_case(case_of_model, "", RunContext(comm, cache=cache))
         except NumericsError as error:
-            # The printed line starts with file, point and model.
+            # The line that is printed names the file, the point and the model itself.
             failures[model.name] = str(error).removeprefix(": model[1]: ")
             continue
         assert finished is not None
@@ -142,19 +142,19 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
             runs[model.name] = finished.results
     if reference not in runs:
         return Outcome(models, failures)
-    (against,) = (model for model in case.models if model.name == reference)
-    until = comparable_until(case, against, runs[reference], comm, cache)
+    (reference_model,) = (model for model in case.models if model.name == reference)
+    until = comparison_end(case, reference_model, runs[reference], comm, cache)
     features = {
         name: Features.of(results, name, models[name]["stress"], until)
         for name, results in runs.items()
     }
-    compared = features.pop(reference)
-    off = {name: one.distances_from(compared) for name, one in features.items()}
-    return Outcome(models, failures, off, until)
+    reference_features = features.pop(reference)
+    differences = {name: one.distances_from(reference_features) for name, one in features.items()}
+    return Outcome(models, failures, differences, until)
 
 
 def print_failures(plan: Plan, outcomes: Sequence[Outcome]) -> int:
-    """Print a line for each failed model of a point; return 3 if all failed, else 0."""
+    """Print a line for each failed model; return 3 if all models of all points failed, else 0."""
     for point, outcome in zip(plan.points, outcomes, strict=True):
         for model, why in outcome.failures.items():
             say(message(f"{shorten(plan.file)}: --vary {point.label}: {model}: {why}"))

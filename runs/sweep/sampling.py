@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Scatter of results under the tolerances of a case, ``{ mean = 0.003, sd = 0.0005 }``.
 
-Points are scrambled Sobol points (Owen 1998) at normal quantiles, which are then shifted and
-combined to their exact means, variances and zero correlations (moment matching, Barraquand 1995).
-Mean and standard deviation of a linear result are therefore exact.
+Samples are scrambled Sobol points (Owen 1998), mapped to normal quantiles. A linear map then gives
+them the exact means and variances and no correlation (moment matching, Barraquand 1995), so that
+the mean and the standard deviation of a linear result are exact.
 """
 
 from __future__ import annotations
@@ -32,20 +32,20 @@ from runs.sweep.variation import Place, Variation, unit_of
 
 OPTION = "--samples"
 SAMPLES, CSV, CHART = "samples.csv", "sampling.csv", "sampling.png"
-# Seed of the scrambling: the same points at each run.
+# Seed of the scrambling, by which all runs have the same points.
 SEED = 0
 # Quantiles in the table.
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
-# Results in a terminal and in the chart.
+# Results in the terminal and in the chart.
 SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
-# A result whose standard deviation over its mean is smaller does not scatter.
+# Ratio of standard deviation to mean below which a result has no scatter.
 NONE = 1.0e-9
 
 
 def plan_samples(
     file: str, models: Sequence[str] | None, mesh_size: float | None, count: int
 ) -> tuple[Plan, pd.DataFrame]:
-    """Return the points of a sampling, and the sampled numbers (columns) in the case's units.
+    """Return the plan of the samples, and a table of the sampled numbers in the case's units.
 
     Raises:
         BadInput: the case is invalid or has no distribution, the count is no power of 2 above the
@@ -86,7 +86,7 @@ def plan_samples(
 
 
 def normal_points(dimensions: int, count: int) -> Array:
-    """Return standard normal points (count, dimensions) with exact means and covariances."""
+    """Return samples (count, dimensions) of mean 0, variance 1 and no correlation."""
     from scipy.stats import norm, qmc
 
     uniform = qmc.Sobol(dimensions, seed=SEED).random(count)
@@ -97,7 +97,7 @@ def normal_points(dimensions: int, count: int) -> Array:
 
 
 def results_of(plan: Plan, outcomes: Sequence[Outcome]) -> dict[str, pd.DataFrame]:
-    """Return each result (columns) of each point (rows), by the model's name, in SI units."""
+    """Return a table of results in SI units by model, with a row per point, a column per result."""
     names = [one.name for one in QUANTITIES if one.charted]
     return {
         model: pd.DataFrame(
@@ -108,7 +108,7 @@ def results_of(plan: Plan, outcomes: Sequence[Outcome]) -> dict[str, pd.DataFram
 
 
 def scatter(results: pd.DataFrame) -> pd.DataFrame:
-    """Return mean, standard deviation and quantiles (columns) of each result with scatter."""
+    """Return a table of mean, standard deviation and quantiles, with a row per varying result."""
     parts = np.nanquantile(results, QUANTILES, axis=0, method="hazen")
     table = pd.DataFrame(parts.T, results.columns, QUANTILES)
     table.insert(0, "mean", results.mean())
@@ -149,7 +149,7 @@ def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None
 
 
 def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
-    """Yield the statistics of each main result with scatter."""
+    """Yield the main results that vary, with their statistics."""
     table = scatter(results)
     for one in QUANTITIES:
         if one.name in SHOWN and one.name in table.index:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Bisection for the value of a key at which a quantity reaches a bound: ``--until 'tip<0.9'``."""
+"""Bisection for the value of a key at which a quantity reaches a bound, ``--until 'tip<0.9'``."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from runs.sweep.points import Plan
 from runs.sweep.run import Outcome
 
 OPTION = "--until"
-# Width of the final bracket over the larger of its ends.
+# Width of the final bracket as a fraction of its larger end.
 CLOSE = 1.0e-3
 
 _BOUND = re.compile(r"\s*([a-z_]+)\s*(<|>)=?\s*([-+.\deE]+)\s*")
@@ -65,13 +65,16 @@ def run_until(
     plan_of: Callable[[Sequence[str]], Plan],
     run: Callable[[Plan], list[Outcome]],
 ) -> tuple[Plan, list[Outcome]]:
-    """Run a plan, bisect to a narrow bracket of the bound, and return plan and outcomes.
+    """Run a plan, and bisect until two values enclose the bound closely.
 
     Args:
         plan: plan of the first values.
-        bound: bound of a quantity, which the first values enclose; None for no bisection.
+        bound: bound of a quantity that the first values enclose; None for no bisection.
         plan_of: function that returns the plan of other variations KEY=VALUES.
         run: function that runs a plan and returns its outcomes.
+
+    Returns:
+        The plan with the values of all steps, and its outcomes.
 
     Raises:
         BadInput: the first values do not enclose the bound exactly once, or a point has no value.
@@ -85,12 +88,12 @@ def run_until(
         if values[high] - values[low] <= CLOSE * max(abs(values[low]), abs(values[high])):
             return plan, outcomes
         middle = 0.5 * (values[low] + values[high])
-        tried = ",".join(map(repr, (*values, middle)))
-        plan = plan_of([f"{plan.variations[0].key}={tried}"])
+        values_text = ",".join(map(repr, (*values, middle)))
+        plan = plan_of([f"{plan.variations[0].key}={values_text}"])
 
 
 def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float]:
-    """Return the bounded quantity at each point in SI units.
+    """Return the quantity of the bound at each point, in SI units.
 
     Raises:
         BadInput: a point has no value.
@@ -107,7 +110,7 @@ def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float
 
 
 def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int, int]:
-    """Return the indices of the values on both sides of the bound."""
+    """Return the indices of the two adjacent values that enclose the bound."""
     values = numbers(plan, outcomes, bound)
     within = [bound.is_met_by(value) for value in values]
     changes = [pair for pair in pairwise(range(len(values))) if within[pair[0]] != within[pair[1]]]
@@ -126,7 +129,7 @@ def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int
 
 
 def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console: Console) -> None:
-    """Print the bracket, and a caution if the quantity is not monotonic."""
+    """Print the two values that enclose the bound, and a note if the quantity is not monotonic."""
     results, key = np.array(numbers(plan, outcomes, bound)), plan.variations[0].key
     quantity, values = bound.quantity, plan.variations[0].values
     rows = [
@@ -143,15 +146,15 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
         f"{quantity.title}\n{quantity.shown_unit}": ".5g",
         "satisfied": "",
     }
-    ways = np.sign(np.diff(results))
+    signs = np.sign(np.diff(results))
     note = f"The {quantity.title} is not monotonic over {key}: other values may meet it, too."
-    notes = [note] if (ways > 0.0).any() and (ways < 0.0).any() else []
+    notes = [note] if (signs > 0.0).any() and (signs < 0.0).any() else []
     notes += rigid_wall_cautions(plan.points[0].case, plan.coordinates["model"][0])
     Table.of_rows("search", f"Bracket of {key}: {bound}", columns, rows, notes).show(console)
 
 
 def rigid_wall_cautions(case: Case, name: str) -> list[str]:
-    """Return a caution if a model of a case is a beam and walls under pads govern its tip."""
+    """Return a caution if a beam ignores walls under pads that change the tip considerably."""
     model = next(one for one in case.models if one.name == name)
     boom = build_boom(case)
     if model.needs_shell or statics(case, boom) is None:

@@ -31,12 +31,12 @@ from runs.sweep.variation import Variation, numbers
 
 OPTION = "--sensitivity"
 CSV = "sensitivity.csv"
-# Relative change of a number in both directions.
+# Relative change by which each number is increased and decreased.
 CHANGE = 0.01
-# Results in a terminal of 80 columns, and maximum number of rows.
+# Results in the terminal, and maximum number of rows.
 SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
 MOST_ROWS = 20
-# Smaller relative changes are round-off.
+# Relative change of a result below which it counts as round-off.
 NONE = 1.0e-7
 
 # Tables that do not describe the boom.
@@ -46,9 +46,9 @@ _OTHER = {"time", "model", "observe", "life"}
 def plan_changes(
     file: str, models: Sequence[str] | None, mesh_size: float | None
 ) -> tuple[Plan, list[str]]:
-    """Return the points of a sensitivity analysis, and the keys that cannot be changed.
+    """Return the plan of a sensitivity analysis, and the keys whose change makes the case invalid.
 
-    The first point is the case. Each number of the case has two points, below and above its value.
+    The first point is the case itself. Two points follow for each number, below and above it.
 
     Raises:
         BadInput: the case is invalid, or does not have exactly one model to run.
@@ -60,7 +60,7 @@ def plan_changes(
         raise BadInput(file, OPTION, what)
     plates: dict[Sequence[Setting], Plates] = {}
     points: list[Point] = [*make_points(case, file, models, mesh_size, [()], plates)]
-    refused = []
+    rejected_keys = []
     tables = tables_of(case)
     for place, value in numbers({k: v for k, v in tables.items() if k not in _OTHER}):
         if not (isinstance(value, float) and value):
@@ -71,15 +71,15 @@ def plan_changes(
             settings = [[(variation, value)] for value in values]
             points += make_points(case, file, models, mesh_size, settings, plates)
         except BadInput:
-            refused.append(place.name)
-    return Plan(file, case.title, (), (), (), points), refused
+            rejected_keys.append(place.name)
+    return Plan(file, case.title, (), (), (), points), rejected_keys
 
 
 def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
-    """Return the relative change of each result (columns) by a change of each key (index) by 1 %.
+    """Return a table of relative changes of results for an increase of each key by 1 %.
 
-    Keys are in descending order of their largest effect on the main results. Keys without effect
-    are left out.
+    It has a column per result and a row per key that has an effect. Rows are in descending order
+    of the largest effect on the main results.
     """
     (model,) = plan.coordinates["model"]
     names = [one.name for one in QUANTITIES if one.charted]
@@ -97,7 +97,7 @@ def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
 
 
 def write(data: pd.DataFrame, folder: Path) -> None:
-    """Write ``sensitivity.csv`` into the folder of a sweep: changes in % by 1 %."""
+    """Write the relative changes in % to ``sensitivity.csv`` in the folder of a sweep."""
     with folder_lock(folder), modified_folder(folder) as part, atomic_path(part / CSV) as path:
         percent = (TO_PERCENT * data).rename_axis("key").reset_index()
         percent.to_csv(path, index=False, float_format="%.6g", lineterminator="\r\n")
@@ -106,7 +106,7 @@ def write(data: pd.DataFrame, folder: Path) -> None:
 def print_influences(
     data: pd.DataFrame, case: Case, refused: Sequence[str], console: Console
 ) -> None:
-    """Print the numbers with the largest influence."""
+    """Print the table of the keys with the largest influence."""
     top = data.head(MOST_ROWS)
     columns = [Column("1 % more of", list(top.index))]
     columns += [

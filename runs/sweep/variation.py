@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Parser of ``--vary KEY=VALUES``.
 
-KEY is a path in the case file, such as ``joint[1].play``, ``segment[2].span[2]``,
-``payload.mass``; indices start at 1. Without an index it means all tables: ``joint.play``. VALUES
-are START:STOP:COUNT, evenly spaced, or a list 0.0,0.005,0.014.
+KEY is a path in the case file, such as ``joint[1].play``, ``segment[2].span[2]`` or
+``payload.mass``; indices start at 1. A path without an index, ``joint.play``, means all tables of
+this name. VALUES are START:STOP:COUNT, evenly spaced, or a list such as 0.0,0.005,0.014.
 """
 
 from __future__ import annotations
@@ -23,10 +23,10 @@ from runs.case.messages import BadInput
 from runs.case.schema import PLAIN_NUMBER_KEYS, Case
 from runs.case.units import scale
 
-# A case file as plain tables and lists.
+# A case as nested dictionaries and lists.
 Tables = dict[str, Any]
 
-# Tables that have no effect on runs of a sweep, with the reason.
+# Tables without effect on sweeps, with the reason.
 _NO_RUN = dict.fromkeys(("limits", "load_case", "combination", "spectrum"), "no run depends on it")
 UNUSED = {"ensemble": "a sweep runs no ensembles", **_NO_RUN}
 
@@ -36,7 +36,7 @@ _CURVES = {"table", "force_table"}
 # Maximum number of points: more would take weeks.
 MOST_POINTS = 10_000
 
-# Digits of evenly spaced numbers. Rounding makes the points of a finer sweep contain them.
+# Digits to which evenly spaced values are rounded, so that a finer sweep has the same values.
 _DIGITS = 12
 
 _STEP = re.compile(r"([^\[\]]+?)(?:\[([0-9]{1,9})\])?")
@@ -46,19 +46,19 @@ _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """Location of a number in a case."""
+    """Location of a number in a case, as a path of keys and indices."""
 
     steps: tuple[str | int, ...]  #: keys and indices of the path
-    size: Fraction = Fraction(1)  #: size in SI units of the unit of the case
+    size: Fraction = Fraction(1)  #: size of the number's unit in SI units
 
     @property
     def name(self) -> str:
-        """The name in messages, with indices from 1."""
+        """The path as text for messages, with indices from 1."""
         parts = (f".{step}" if isinstance(step, str) else f"[{step + 1}]" for step in self.steps)
         return "".join(parts).removeprefix(".")
 
     def put(self, tables: Tables, value: Any) -> None:
-        """Set the number, and create missing tables on its path."""
+        """Set the number in ``tables``, and create missing tables on its path."""
         here: Any = tables
         for step in self.steps[:-1]:
             here = here.setdefault(step, {}) if isinstance(step, str) else here[step]
@@ -70,7 +70,7 @@ class Place:
 
     @property
     def shapes_sections(self) -> bool:
-        """True if the number determines a section; the play does not count."""
+        """True if sections depend on the number; a play does not count."""
         if self.steps[0] == "segment":
             return self.steps[2:] == ("material", "density") or self.steps[2] in {
                 "mass_per_length", "second_moment_of_area", "height_to_width", "section",
@@ -81,15 +81,15 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Variation:
-    """One option ``--vary``."""
+    """One option ``--vary``: a key of the case, and its values."""
 
     key: str  #: key as the user gave it
     values: tuple[float, ...]  #: values, ascending, in the unit of the case
-    places: tuple[Place, ...]  #: numbers that get the same value
+    places: tuple[Place, ...]  #: places of the numbers to which the key refers
 
     @property
     def shapes_sections(self) -> bool:
-        """True if the key determines a section; the play does not count."""
+        """True if sections depend on the key; a play does not count."""
         return any(place.shapes_sections for place in self.places)
 
 
@@ -116,7 +116,7 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
             raise BadInput(file, option, f"{unused}; leave it out")
         try:
             variations.append(Variation(key, _values(numbers), find(key, tables)))
-        except Unplaced as reason:
+        except InvalidVariation as reason:
             raise BadInput(file, option, str(reason)) from None
     num_points = math.prod(len(variation.values) for variation in variations)
     if num_points > MOST_POINTS:
@@ -127,7 +127,7 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
 
 
 def numbers(here: Any, steps: tuple[str | int, ...] = ()) -> Iterator[tuple[Place, float]]:
-    """Yield the numbers of tables and lists with their places, except numbers of curves."""
+    """Yield all numbers in nested tables and lists with their places, except tabulated curves."""
     if isinstance(here, Mapping):
         for key, value in here.items():
             if key not in _CURVES:
@@ -154,77 +154,77 @@ def unit_of(place: Place, case: Case) -> str:
     return units[0] if len(units) == 1 and units[0] != "1" else ""
 
 
-class Unplaced(Exception):
-    """Error for a key that is not in the case, or an option without values."""
+class InvalidVariation(Exception):
+    """Error for a key that is not in the case, or for invalid values."""
 
 
 def find(key: str, tables: Tables) -> tuple[Place, ...]:
-    """Return the numbers of a case to which a key refers.
+    """Return the places of the numbers to which a key refers.
 
     Raises:
-        Unplaced: the case has no such number.
+        InvalidVariation: the case has no such number.
     """
     steps = [_STEP.fullmatch(step) for step in key.split(".")]
     path = [(step[1], step[2] and int(step[2])) for step in steps if step is not None]
     if len(path) < len(steps):
-        raise Unplaced("not understood; give a key such as joint[1].play")
+        raise InvalidVariation("not understood; give a key such as joint[1].play")
     return tuple(_places(tables, path, Place(())))
 
 
 def _places(
-    here: Any, path: Sequence[tuple[str, int | str | None]], before: Place
+    here: Any, path: Sequence[tuple[str, int | str | None]], parent: Place
 ) -> Iterator[Place]:
-    """Yield all numbers at a path, including missing ones."""
+    """Yield the places of all numbers at a path, also of keys that the case leaves out."""
     if not path:
-        yield before
+        yield parent
         return
     (name, number), rest = path[0], path[1:]
     if not isinstance(here, Mapping):
-        raise Unplaced(f"{before.name} is not a table; end the key there")
+        raise InvalidVariation(f"{parent.name} is not a table; end the key there")
     value = here.get(name)
-    place = Place((*before.steps, name))
+    place = Place((*parent.steps, name))
     if value is None:
         # The schema decides whether the key is valid.
         yield from _places({}, rest, place)
         return
     tables = isinstance(value, list) and (not value or isinstance(value[0], Mapping))
     if tables and not value:
-        raise Unplaced(f"the case has no {place.name}; there is nothing to vary")
+        raise InvalidVariation(f"the case has no {place.name}; there is nothing to vary")
     if isinstance(number, int):
         if not isinstance(value, list):
-            raise Unplaced(f"{place.name} is not a list; leave out [{number}]")
+            raise InvalidVariation(f"{place.name} is not a list; leave out [{number}]")
         if not 1 <= number <= len(value):
-            raise Unplaced(
+            raise InvalidVariation(
                 f"the case has no {place.name}[{number}], its last one is "
                 f"{place.name}[{len(value)}]"
             )
-        chosen = [number - 1]
+        indices = [number - 1]
     elif tables and rest:
-        chosen = list(range(len(value)))
+        indices = list(range(len(value)))
     else:
         yield from _places(value, rest, place)
         return
-    for i in chosen:
+    for i in indices:
         yield from _places(value[i], rest, Place((*place.steps, i)))
 
 
 def _values(text: str) -> tuple[float, ...]:
     parts = [part.strip() for part in text.split(":")]
     if len(parts) == 3 and not _WHOLE.fullmatch(parts[2]):
-        raise Unplaced(f"COUNT must be a whole number, got {parts[2]!r}; {_REMEDY}")
+        raise InvalidVariation(f"COUNT must be a whole number, got {parts[2]!r}; {_REMEDY}")
     if len(parts) == 3:
         start, stop, count = _number(parts[0]), _number(parts[1]), int(parts[2])
         if not 2 <= count <= MOST_POINTS:
-            raise Unplaced(f"COUNT must be from 2 to {MOST_POINTS}, got {count}")
+            raise InvalidVariation(f"COUNT must be from 2 to {MOST_POINTS}, got {count}")
         numbers = [float(f"{x:.{_DIGITS}g}") for x in np.linspace(start, stop, count)]
     elif len(parts) == 1:
         numbers = [_number(part) for part in text.split(",")]
     else:
-        raise Unplaced(f"{text!r} is not understood; {_REMEDY}")
+        raise InvalidVariation(f"{text!r} is not understood; {_REMEDY}")
     if len(numbers) == 1:
-        raise Unplaced("there is only one value; give two or more")
+        raise InvalidVariation("there is only one value; give two or more")
     if len(set(numbers)) < len(numbers):
-        raise Unplaced(f"a value is given twice in {text!r}; give each once")
+        raise InvalidVariation(f"a value is given twice in {text!r}; give each once")
     return tuple(sorted(numbers))
 
 
@@ -234,5 +234,5 @@ def _number(text: str) -> float:
     except ValueError:
         number = math.nan
     if not math.isfinite(number):
-        raise Unplaced(f"must be finite numbers, got {text.strip()!r}; {_REMEDY}")
+        raise InvalidVariation(f"must be finite numbers, got {text.strip()!r}; {_REMEDY}")
     return number

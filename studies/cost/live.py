@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from runs import CASES
-from runs.live.knobs import Draft
+from runs.live.controls import Draft
 from runs.live.server import LivePage, make_server
 from tests.system.browser import Page, blank_page, find_browser
 

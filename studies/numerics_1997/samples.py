@@ -23,7 +23,7 @@ from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.paper.rules import CONFORMITY, DIVERGENCE
-from runs.paper.run_query import peaks_apart
+from runs.paper.run_query import peak_distances
 from runs.pipeline.members import slow_cutoff
 from runs.pipeline.models import MotionPlan
 from studies.motions import gap_system, model_of, run_parallel
@@ -124,7 +124,7 @@ class Sample:
         if min(one.divergence_time for one in self.models) < np.inf:
             return np.inf, np.nan
         tips = np.array([one.tip for one in self.models])
-        time, apart = peaks_apart(tips, self.elements.time, cutoff)
+        time, apart = peak_distances(tips, self.elements.time, cutoff)
         early = time <= CONFORMITY
         return float(apart[early].max(initial=0.0)), float(apart[~early].max(initial=0.0))
 

@@ -15,7 +15,7 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.folder.cache import Cache
 from runs.live.beam import beam_results
-from runs.live.knobs import Draft
+from runs.live.controls import Draft
 from runs.pipeline.models import build
 from runs.pipeline.proportions import proportion_cautions
 from runs.pipeline.static_results import tilts

@@ -11,7 +11,7 @@ from scipy.stats import norm
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.trajectory import PointwiseDifferences
-from runs.paper.run_query import apart_at_the_end, peaks_apart
+from runs.paper.run_query import final_differences, peak_distances
 from runs.pipeline.comparison import (
     Comparison,
     Distributions,
@@ -121,11 +121,11 @@ def swing(delay: float = 0.0, height: float = 1.0) -> np.ndarray:
     return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay)))
 
 
-def test_apart_at_the_end_is_relative_to_the_larger_range() -> None:
+def test_final_differences_are_relative_to_the_larger_range() -> None:
     """Reference: analytic."""
     one = np.array([TIME, TIME])
     other = np.array([1.25 * TIME, TIME])
-    found = apart_at_the_end(one, other, TIME >= 9.0)
+    found = final_differences(one, other, TIME >= 9.0)
     assert found == pytest.approx([2.5 / 12.5, 0.0])
 
 
@@ -135,7 +135,7 @@ def test_apart_at_the_end_is_relative_to_the_larger_range() -> None:
 def test_distance_of_peaks(delay: float, height: float, expected: float) -> None:
     """Reference: analytic, the larger of the delay over the period and the difference in height."""
     curves = np.array([swing(), swing(delay, height)])
-    first, apart = peaks_apart(curves, TIME, CUTOFF)
+    first, apart = peak_distances(curves, TIME, CUTOFF)
     assert first[1:-1] == pytest.approx(
         np.arange(1, first.size - 1) + 0.5 + min(delay, 0.0), abs=3e-3
     )
@@ -146,20 +146,20 @@ def test_missing_peaks_have_infinite_distance() -> None:
     """This concerns all peaks until one and a half periods before the end."""
     still = swing()
     still[TIME > 4.0] = 0.0
-    first, apart = peaks_apart(np.array([swing(), still]), TIME, CUTOFF)
+    first, apart = peak_distances(np.array([swing(), still]), TIME, CUTOFF)
     missed = np.isinf(apart)
     assert first[missed][:4] == pytest.approx([4.5, 5.5, 6.5, 7.5], abs=3e-3)
     assert (first[~missed] < 4.0).all()
 
 
 def test_peak_near_the_end_is_not_missing() -> None:
-    first, apart = peaks_apart(np.array([swing(), swing(0.6)]), TIME, CUTOFF)
+    first, apart = peak_distances(np.array([swing(), swing(0.6)]), TIME, CUTOFF)
     assert np.isfinite(apart).all()
     assert first.size == 9
 
 
 def test_motions_without_peaks_have_no_distance() -> None:
-    first, apart = peaks_apart(np.array([TIME, TIME]), TIME, CUTOFF)
+    first, apart = peak_distances(np.array([TIME, TIME]), TIME, CUTOFF)
     assert (first.size, apart.size) == (0, 0)
 
 

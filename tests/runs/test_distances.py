@@ -26,7 +26,7 @@ from runs.sweep.distances import (
     DISTANCES,
     Features,
     Quantities,
-    comparable_until,
+    comparison_end,
     sustained_force,
 )
 from runs.sweep.points import Plan, plan
@@ -119,7 +119,7 @@ def test_sweep_reports_the_distances_of_its_models(against: Plan) -> None:
         "sweep-distances.png",
         "sweep-lines.png",
     ]
-    assert run(against)[0].off.keys() == {"kantorovich-4", "beam-fe-bonded"}
+    assert run(against)[0].differences.keys() == {"kantorovich-4", "beam-fe-bonded"}
     table = shown(data, against).partition("Distances from kantorovich-5")[2]
     first = [line.split()[0] for line in table.splitlines() if line.strip()]
     assert [word for word in first if word in MODELS] == ["kantorovich-4", "beam-fe-bonded"]
@@ -232,7 +232,7 @@ def test_chaos_is_compared_until_its_horizon() -> None:
     case = case_file.select(shipped("coarse"), "", ["kantorovich-4"])
     case = change(case, **{"time.duration": 3.0})
     (model,) = case.models
-    until = comparable_until(case, model, run_case(case), None, None)
+    until = comparison_end(case, model, run_case(case), None, None)
     moving = MotionPlan.of(build(case, build_boom(case), model).system, case, model)
     found = measure_horizons(
         moving.motion, [CHANGE], "load", partners=1, integrator=moving.integrator
@@ -241,7 +241,7 @@ def test_chaos_is_compared_until_its_horizon() -> None:
     assert 0.12 < until < 3.0
     joint = replace(case.joints[0], friction=0.2, normal_forces=(4500.0, 5000.0))
     rubbing = case.model_copy(update={"joints": (joint,)})
-    assert comparable_until(rubbing, model, run_case(rubbing), None, None) == 3.0
+    assert comparison_end(rubbing, model, run_case(rubbing), None, None) == 3.0
 
 
 @pytest.mark.slow
@@ -252,6 +252,6 @@ def test_shell_reference_is_limited_by_its_horizon(tmp_path: Path) -> None:
     case = change(case, **{"time.duration": 0.3})
     outcome = run_point(case, Cache(tmp_path / "cache"), "shell")
     assert outcome.failures == {}
-    off = outcome.off["timoshenko"]["tip_off"]
+    off = outcome.differences["timoshenko"]["tip_off"]
     assert off is not None
     assert 0.0 < off < 0.2

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The live page without a browser: knobs, answers and refused requests."""
+"""The live page without a browser: controls, answers and refused requests."""
 
 import json
 import re
@@ -19,7 +19,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.live import beam
-from runs.live.knobs import Draft
+from runs.live.controls import Draft
 from runs.live.server import LivePage, make_server
 from runs.pipeline.context import RunContext
 from runs.pipeline.models import build
@@ -36,32 +36,32 @@ def draft() -> Draft:
     return Draft.load(LIFT)
 
 
-def test_equal_numbers_of_joints_share_a_knob(draft: Draft) -> None:
-    knobs = {knob.key: knob for knob in draft.knobs()}
-    assert knobs["joint.play"].keys == ["joint[1].play", "joint[2].play"]
-    assert (knobs["joint[1].extension"].value, knobs["joint[2].extension"].value) == (4.8, 4.4)
-    assert knobs["gravity.angle"].range == (-90.0, 90.0)
+def test_equal_numbers_of_joints_share_a_control(draft: Draft) -> None:
+    by_key = {control.key: control for control in draft.controls()}
+    assert by_key["joint.play"].keys == ["joint[1].play", "joint[2].play"]
+    assert (by_key["joint[1].extension"].value, by_key["joint[2].extension"].value) == (4.8, 4.4)
+    assert by_key["gravity.angle"].range == (-90.0, 90.0)
     # The overlap of the file is 1.2 m.
-    assert knobs["joint[2].extension"].range == pytest.approx((2.2, 5.6))
-    assert knobs["payload.mass"].unit == "kg"
-    assert knobs["joint.pad.length"].range == pytest.approx((0.012, 0.24))
-    assert [knobs[key].label for key in ("joint.play", "joint[2].extension", "gravity.angle")] == [
+    assert by_key["joint[2].extension"].range == pytest.approx((2.2, 5.6))
+    assert by_key["payload.mass"].unit == "kg"
+    assert by_key["joint.pad.length"].range == pytest.approx((0.012, 0.24))
+    assert [by_key[key].label for key in ("joint.play", "joint[2].extension", "gravity.angle")] == [
         "Play, all joints",
         "Extension, fly",
         "Luffing angle",
     ]
-    assert draft.knob("cylinder[1].depth").label == "cylinder[1].depth"
+    assert draft.control("cylinder[1].depth").label == "cylinder[1].depth"
     # Half the flange of the fly section, 146 mm, less the width of the pads, 40 mm.
-    assert draft.knob("joint[2].pad.offset").range == pytest.approx((0.0, 0.033))
+    assert draft.control("joint[2].pad.offset").range == pytest.approx((0.0, 0.033))
 
 
-def test_knobs_have_the_unit_of_the_case(tmp_path: Path) -> None:
+def test_controls_have_the_unit_of_the_case(tmp_path: Path) -> None:
     text = Path(LIFT).read_text(encoding="utf-8")
     path = tmp_path / "shown.toml"
     path.write_text(f'shown_units = "mm-t-s"\n{text}', encoding="utf-8")
-    knob = Draft.load(str(path)).knob("joint[1].play")
+    control = Draft.load(str(path)).control("joint[1].play")
     # The mid-lines are 300 and 256 mm high; the flanges of 6 and 5 mm take 11 mm.
-    assert (knob.value, knob.unit, knob.range) == (3.0, "mm", (0.0, pytest.approx(33.0)))
+    assert (control.value, control.unit, control.range) == (3.0, "mm", (0.0, pytest.approx(33.0)))
     changed = Draft.load(str(path)).changed({"joint[1].play": 4.5})
     assert changed.joints[0].play == 0.0045
 
@@ -72,7 +72,7 @@ def test_number_outside_the_schema_is_named(draft: Draft) -> None:
     assert caught.value.key == "joint[1].play"
     assert caught.value.what == "must be a number not less than 0, got -0.001"
     with pytest.raises(BadInput, match="is not a number of the case; choose one of the list"):
-        draft.knob("joint[3].play")
+        draft.control("joint[3].play")
     with pytest.raises(BadInput, match="must be a number of the case, got 'wide'"):
         draft.changed({"joint[1].play": "wide"})  # type: ignore[dict-item]
 

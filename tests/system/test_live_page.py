@@ -12,7 +12,7 @@ import pytest
 
 from runs import CASES
 from runs.case.schema import Case
-from runs.live.knobs import Draft
+from runs.live.controls import Draft
 from runs.live.server import LivePage, make_server
 from tests.system.browser import Page, blank_page, find_browser
 
@@ -89,7 +89,7 @@ def test_a_refusal_stands_at_its_field(page: Page) -> None:
     page.evaluate(SET.format(-1, "joint.play"))
     page.wait_for(REFUSED)
     message = (
-        "document.getElementById('number joint.play').closest('.knob').querySelector('.message')"
+        "document.getElementById('number joint.play').closest('.control').querySelector('.message')"
     )
     assert page.evaluate(f"{message}.textContent") == "must be a number not less than 0, got -1"
     page.evaluate(SET.format(0.003, "joint.play"))

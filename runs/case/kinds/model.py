@@ -46,14 +46,14 @@ class BeamSegments:
 
     @cached_property
     def lines(self) -> list[Line]:
-        """The lines along the segments."""
+        """The rows of deflections and section forces along each segment."""
         from beam_model.lines import lines
 
         return lines(self.boom.bonded if self.model.bonded else self.boom, self.segments)
 
     @cached_property
     def critical_factor(self) -> float | None:
-        """The buckling factor of the boom's axial forces, see :class:`BuiltModel`, or None."""
+        """The buckling factor, see :class:`BuiltModel`; None if it cannot be computed."""
         from beam_model.boom_modes import critical_factor
 
         if not self.boom.compressed:
@@ -68,7 +68,7 @@ class BeamSegments:
 
 @dataclass(frozen=True, slots=True)
 class ModelBoom:
-    """The boom of a case with the contact laws of one model, and the beam segments of it."""
+    """The boom of a case with the contact laws of one model, and its beam segments."""
 
     boom: Boom  #: boom of the case, with the model's contact laws in its joints
     _beams: list[BeamSegments] = field(default_factory=list, init=False, repr=False, compare=False)
@@ -106,7 +106,7 @@ class BuiltModel:
     critical_factor: float | None = float("inf")
     shell: ReducedShell | None = None  #: the reduced shell, of a shell model
     calibration: Calibration | None = None  #: calibration of a beam by a shell
-    lines: Sequence[Line] = ()  #: lines along the segments, on the first rank
+    lines: Sequence[Line] = ()  #: rows of section forces along segments, on the first rank
     beams: BeamSegments | None = None  #: beam segments of a model without calibration
 
 
@@ -169,7 +169,7 @@ class ModelTable(CaseTable):
 
     @property
     def plates_remedy(self) -> str:
-        """The text of a remedy for missing sections, besides giving them, for messages."""
+        """The end of the message on missing sections: another remedy than giving them."""
         return ""
 
     def with_shells(self, update: Mapping[str, object]) -> Self:
@@ -177,11 +177,7 @@ class ModelTable(CaseTable):
         return self.model_copy(update=update) if self.meshed else self
 
     def coarsen(self, boom: Boom) -> Self:
-        """Return a coarse model for fast checks; the model itself if it is coarse enough.
-
-        Args:
-            boom: boom of the case.
-        """
+        """Return a coarse model for fast checks; the model itself if it is coarse enough."""
         return self
 
     @property
@@ -231,7 +227,7 @@ class ModelTable(CaseTable):
 
     @abstractmethod
     def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
-        """Return the built model. Collective for a meshed model.
+        """Return the built model. All ranks must call it for a meshed model.
 
         Args:
             model_boom: the boom with the contact laws of the model.
@@ -334,10 +330,10 @@ class ModelTable(CaseTable):
 
     @abstractmethod
     def lines(self, boom: Boom, built: BuiltModel) -> list[Line]:
-        """Return the lines along the segments of the built model, on the first rank."""
+        """Return rows of deflections and section forces along each segment, on the first rank."""
 
     def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        """Return gap system and lines of the bonded boom; None if the model has no such system."""
+        """Return the system of the bonded boom, and its lines; None if the model has none."""
         return None
 
     @abstractmethod

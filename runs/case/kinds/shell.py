@@ -64,7 +64,7 @@ class _ShellSurrogate(BeamTable):
 
 
 class Shell(ModelTable):
-    """Flat facet shell elements on the folded box, reduced for contact forces and loads."""
+    """Flat shell elements on the walls of the segments, reduced to fewer coordinates."""
 
     meshed: ClassVar[bool] = True
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The numbers of a case that a designer may change, with their units and ranges."""
+"""Controls of the live page: the numbers of a case that a designer may change."""
 
 from __future__ import annotations
 
@@ -30,13 +30,13 @@ from runs.case.schema import Case
 from runs.sweep.points import hold_plates, infer_plates
 from runs.sweep.variation import Place, Tables, numbers, unit_of
 
-# Name of the page's beam, and number of elements of the longest segment.
+# Name of the beam on the page, and number of its elements in the longest segment.
 BEAM, ELEMENTS = "beam", 4
 
-# Tolerance of the beam's motion, which is only drawn.
+# Tolerance of the motion of the beam, which is only shown as a curve.
 TOLERANCE = 1.0e-2
 
-# Ends of a range without limits, as multiples of the number.
+# Ends of a slider whose number has no limits, as multiples of the number.
 _LEAST, _MOST = 0.5, 2.0
 
 # Shortest pad of the slider, as a fraction of the length in the file.
@@ -60,7 +60,7 @@ _FIRST = {
     r"limits\.(\w+)": "Limit of {}",
 }
 
-# Tables whose numbers cannot be changed in the page, which has its own beam.
+# Tables whose numbers the page does not change. The page has its own beam as model.
 _WITHOUT = (
     "ensemble", "model", "title", "units", "shown_units", "load_case", "combination",
     "spectrum",
@@ -68,24 +68,24 @@ _WITHOUT = (
 
 
 @dataclass(frozen=True, slots=True)
-class Knob:
-    """A number of a case, or several equal ones, with a range."""
+class Control:
+    """A slider and a number box for a number of a case, or for several equal numbers."""
 
     key: str  #: key in the case file, ``joint[1].play``, or ``joint.play`` for all joints
-    keys: Sequence[str]  #: keys of its numbers
-    label: str  #: label of the slider
+    keys: Sequence[str]  #: key of each of these numbers, such as ``joint[1].play``
+    label: str  #: label of the control
     help: str  #: description of the key
     value: float  #: value in the unit
     unit: str  #: unit in the case's system; empty for dimensionless numbers
-    range: tuple[float, float] | None  #: lower and upper end of the slider; None without a range
+    range: tuple[float, float] | None  #: ends of the slider in the unit; None if they coincide
 
 
 @dataclass(frozen=True)
 class Draft:
-    """Case with editable numeric values; inferred plates stay as in the file."""
+    """Case with editable numbers. Plates inferred from the file stay as they are."""
 
     file: str  #: file of the case
-    case: Case  #: checked case, with inferred plates as given ones
+    case: Case  #: checked case, with tables of sections for inferred plates
     boom: Boom  #: boom of the file
 
     @classmethod
@@ -99,7 +99,7 @@ class Draft:
         return cls(file, hold_plates(case, infer_plates(case)), build_boom(case))
 
     def _label(self, keys: Sequence[str]) -> str:
-        """Return the label of a knob; the key if its number has no label."""
+        """Return the label of a control for numbers at these keys; the key itself by default."""
         segments, joints = self.boom.segments, self.boom.joints
         owners = {f"segment[{i}]": one.name for i, one in enumerate(segments, 1)}
         owners |= {f"joint[{i}]": segments[one.inner].name for i, one in enumerate(joints, 1)}
@@ -118,7 +118,7 @@ class Draft:
 
     @cached_property
     def _numbers(self) -> Mapping[str, tuple[Place, float]]:
-        """The place and the value in SI units of each number, by key."""
+        """The place and the value in SI units of each number that the page can edit, by key."""
         tables = {name: value for name, value in self._tables.items() if name not in _WITHOUT}
         return {
             place.name: (
@@ -136,9 +136,9 @@ class Draft:
         """The keys of all numeric values of the case that the page can edit."""
         return list(self._numbers)
 
-    def knobs(self) -> list[Knob]:
-        """Return the sliders, most important first; a value that is equal in all joints has one."""
-        keys_of_knobs: dict[str, list[str]] = {}
+    def controls(self) -> list[Control]:
+        """Return the controls, most important first. Numbers that all joints share have one."""
+        keys_of_controls: dict[str, list[str]] = {}
         for pattern in _FIRST:
             keys = [key for key in self._numbers if re.fullmatch(pattern, key)]
             groups: dict[str, list[str]] = {}
@@ -146,18 +146,18 @@ class Draft:
                 groups.setdefault(re.sub(r"^joint\[\d+\]", "joint", key), []).append(key)
             for common, several in groups.items():
                 equal = len({self._numbers[key][1] for key in several}) == 1
-                keys_of_knobs |= {common: several} if equal else {key: [key] for key in several}
-        return [self._knob(key, several) for key, several in keys_of_knobs.items()]
+                keys_of_controls |= {common: several} if equal else {key: [key] for key in several}
+        return [self._control(key, several) for key, several in keys_of_controls.items()]
 
-    def knob(self, key: str) -> Knob:
-        """Return the knob of a key.
+    def control(self, key: str) -> Control:
+        """Return the control of a key.
 
         Raises:
             BadInput: the case has no such number.
         """
-        return self._knob(key, [key])
+        return self._control(key, [key])
 
-    def _knob(self, key: str, keys: Sequence[str]) -> Knob:
+    def _control(self, key: str, keys: Sequence[str]) -> Control:
         if keys[0] not in self._numbers:
             raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
         place, value = self._numbers[keys[0]]
@@ -165,7 +165,7 @@ class Draft:
         ranges = [self._range(*self._numbers[one]) for one in keys]
         low, high = max(one[0] for one in ranges), min(one[1] for one in ranges)
         in_unit = [system.of(one, unit or "1") for one in (value, low, high)]
-        return Knob(
+        return Control(
             key,
             keys,
             self._label(keys),
@@ -184,7 +184,7 @@ class Draft:
                 ends = self._range_that_fits(place, value, *ends)
             low, high = max(low, ends[0]), min(high, ends[1])
         for usual in usual_ranges(self.case, self.boom):
-            # The numbers of a joint range over all that fits.
+            # The range of a joint's number is every value that fits the segments.
             if usual.key == place.name and usual.value == value and place.steps[0] != "joint":
                 low, high = max(low, usual.least), min(high, usual.most)
                 if value == 0.0 and math.isfinite(usual.most):
@@ -208,7 +208,7 @@ class Draft:
         return [low, high]
 
     def changed(self, values: Mapping[str, float]) -> Case:
-        """Return the case with other numbers, before its checks.
+        """Return the case with changed numbers, not checked beyond its schema.
 
         Args:
             values: values by key, in the unit of the case.
@@ -232,7 +232,7 @@ class Draft:
         return select_kind(Shell, self.case.models) or [Shell()]
 
     def beam(self, case: Case) -> CheckedCase:
-        """Return a validated edited case whose only model is the live page's beam.
+        """Return the checked case with the beam of the page as its only model.
 
         Raises:
             BadInput: the case is invalid.
@@ -246,27 +246,27 @@ class Draft:
             contact=with_play.contact,
         )
         time = case.time.model_copy(update={"tolerance": max(case.time.tolerance, TOLERANCE)})
-        # Each load case would be checked with a boom of its own.
+        # The check would build a boom for each load case.
         proofs = dict.fromkeys(("load_cases", "combinations", "spectra"), ())
-        alone = case.model_copy(update={"models": (beam,), "time": time, **proofs})
-        return reading.check(alone, self.file)
+        beam_case = case.model_copy(update={"models": (beam,), "time": time, **proofs})
+        return reading.check(beam_case, self.file)
 
 
 def _field(case: Case, place: Place) -> Any:
-    """Return the field of a number in its innermost table; None within a plain mapping."""
-    here: Any = case
+    """Return the schema field of a number; None if the number is in a mapping of free keys."""
+    value: Any = case
     field = None
     for step in place.steps:
-        if is_table(here):
-            name = names_of(type(here))[str(step)]
-            field, here = fields_of(type(here))[name], getattr(here, name)
+        if is_table(value):
+            name = names_of(type(value))[str(step)]
+            field, value = fields_of(type(value))[name], getattr(value, name)
         else:
-            here = here[step]
+            value = value[step]
     return field
 
 
 def _limits(case: Case, place: Place) -> tuple[float, float]:
-    """Return the limits of the schema; infinite without limits."""
+    """Return the limits of a number in the schema; infinite if it has none."""
     field = _field(case, place)
     rules = [] if field is None else field.metadata
     low = max((rule.ge for rule in rules if hasattr(rule, "ge")), default=-math.inf)
