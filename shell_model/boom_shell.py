@@ -38,9 +38,9 @@ class ShellOptions:
 
     #: edge length in m; in a graded mesh, the length far from contacts and supports
     mesh_size: float = 0.1
-    #: position of contact. With ``near webs``, forces act between the webs of both segments, like
-    #: forces of pads in the corners; with ``across``, over the width of the inner flanges, which
-    #: bend, in a flat boom. With ``surface``, contact is possible over the whole overlap.
+    #: position of contact. With ``near webs``, forces act at the corners, like forces of slide
+    #: pads; with ``across``, in a flat boom, over the width of the inner flanges, which bend; with
+    #: ``surface``, contact is possible over the whole overlap.
     contact_line: ContactLine = "near webs"
     surface: SurfaceOptions = field(default_factory=SurfaceOptions)  #: options of surface contact
     krylov: KrylovOptions = field(default_factory=KrylovOptions)  #: options of the reduction
@@ -50,7 +50,7 @@ class ShellOptions:
 
     @property
     def order(self) -> float:
-        """The lower bound of the convergence order of the local compliance."""
+        """The lower bound of the order of convergence of the local compliance."""
         return 1.0 if self.contact_tolerance is None or self.contact_line == "surface" else 2.0
 
     @property
@@ -80,7 +80,7 @@ class BoomShell:
     loads: Sequence[tuple[Load, Array]]
     observed: Mapping[str, OutputOperator[Operator]]  #: outputs of a motion
     lines: Sequence[GroundLine] = ()  #: springs and dashpots to the ground
-    #: (segment, load vector), see :func:`geometry.axial.pin_moments`
+    #: (segment, load vector) of moments of axial forces, see :func:`geometry.axial.pin_moments`
     pin_moments: Sequence[tuple[int, Array]] = ()
     helper: Executor | None = None  #: second process for the reduction
 
@@ -112,7 +112,7 @@ class BoomShell:
         return np.column_stack([self.joint_rows(number), dashpots, self.fixed_loads(number)])
 
     def fixed_loads(self, number: int) -> Array:
-        """Return the load vectors (num_owned, num_loads) of a segment's loads and ground lines."""
+        """Return the load vectors (num_owned, num_loads) of loads and ground lines of a segment."""
         loads = [push for load, push in self.loads if load.segment == number]
         loads += [push for segment, push in self.pin_moments if segment == number]
         loads += [line.push for line in self.lines if line.segment == number]
@@ -123,7 +123,7 @@ class BoomShell:
         return self.columns(number, [*self.joint_operators, *self.ties])
 
     def columns(self, number: int, operators: Iterable[Operator]) -> Array:
-        """Return the operators' parts on a segment as columns (num_owned, num_rows). Collective."""
+        """Return operators' rows on a segment as columns (num_owned, num_rows). Collective."""
         shell = self.shells[number]
         rows = [shell.row(operator[number]) for operator in operators if number in operator]
         return np.array(rows).reshape(-1, shell.free.size).T
@@ -135,7 +135,7 @@ def assemble_boom(
     comm: MPI.Comm,
     stages: Stages | None = None,
 ) -> BoomShell:
-    """Assemble the unreduced shells of a boom with contacts, loads and outputs. Collective.
+    """Return the full shells of a boom with contacts, loads and outputs. Collective.
 
     Args:
         boom: boom whose segments all have sections.
@@ -168,7 +168,7 @@ def assemble_boom(
 def assemble_segments(
     boom: Boom, options: ShellOptions, comm: MPI.Comm, stages: Stages | None = None
 ) -> list[SegmentShell]:
-    """Assemble the shells of all segments, without contacts. Collective."""
+    """Return the full shells of all segments, without contacts. Collective."""
     watch = stages or Stages()
     shells, count = [], len(boom.segments)
     for number, segment in enumerate(boom.segments):
@@ -180,7 +180,7 @@ def assemble_segments(
 
 
 def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
-    """Mesh the walls of one segment, with mesh lines at all contacts, loads and supports."""
+    """Return the mesh of a segment, with mesh lines at all contacts, loads and supports."""
     segment = boom.segments[number]
     if segment.section is None:
         raise BoomError(
@@ -192,8 +192,8 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     supports = sorted(support.x for support in segment.supports)
     breaks |= {f"support-{k}": x for k, x in enumerate(supports, start=1)}
     breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(number), start=1)}
-    seen = (place.x for place in boom.observations if place.segment == number)
-    breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(seen), start=1)}
+    observed = (place.x for place in boom.observations if place.segment == number)
+    breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(observed), start=1)}
     breaks |= {f"axial-{k}": x for k, x in enumerate(segment.compression.places, start=1)}
     breaks |= {f"extension-{k}": x for k, x in enumerate(boom.moving_intervals(number), start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)

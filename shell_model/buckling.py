@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Linear buckling of the walls of a shell under the membrane forces of a static state.
 
-A shell that carries the membrane forces N_ab buckles under λ times these forces where
+A shell that carries the membrane forces n_ab, positive in tension, buckles under λ times these
+forces in the shape d where
 
-    (K + λ K_G) φ = 0,    uᵀ K_G u = ∫ N_ab u,a · u,b dA,
+    (K + λ K_n) d = 0,    dᵀ K_n d = ∫ n_ab u,a · u,b dA,
 
-with all three components of the displacement u, so that plates buckle and columns bend alike
+with all three components of its displacement u, which includes buckling of plates and of columns
 (Bryan 1891; Zienkiewicz 1971). Forces keep their directions, and displacements before buckling are
 neglected. Since K is positive definite, the lowest λ are the reciprocals of the largest eigenvalues
-of −K_G φ = μ K φ: shift-and-invert at λ = 0, with one Cholesky factorisation of K. Many modes of
+of −K_n d = λ⁻¹ K d: shift-and-invert at λ = 0, with one Cholesky factorisation of K. Many modes of
 walls have nearly the same λ; a Krylov space with several vectors for each mode separates them.
 
 Each segment buckles separately, on its supports, its cylinders and the tangent stiffness of its
@@ -77,7 +78,7 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
 
     Args:
         shell: shell without rigid motions.
-        forces: (num_triangles, 3) membrane forces N_x, N_s, N_xs in N/m, positive in tension, in
+        forces: (num_triangles, 3) membrane forces n_x, n_s, n_xs in N/m, positive in tension, in
             the frame of :func:`shell_model.stress.fields.wall_frame`; the same on every rank.
         count: number of modes.
 
@@ -115,8 +116,8 @@ def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
     first, _ = shell.owned
     lengths = np.linalg.norm(shapes[shell.node_dofs - first], axis=1)
     largest = np.max(shell.comm.allgather(lengths.max(axis=0, initial=0.0)), axis=0)
-    pressed = inverse > 0.0
-    return BucklingModes(1.0 / inverse[pressed], (shapes / largest)[:, pressed])
+    positive = inverse > 0.0
+    return BucklingModes(1.0 / inverse[positive], (shapes / largest)[:, positive])
 
 
 def _has_compression(forces: Array) -> bool:
@@ -127,7 +128,7 @@ def _has_compression(forces: Array) -> bool:
 
 
 def with_springs(springs: Attachments, rows: Array, stiffness: Array) -> Attachments:
-    """Return springs extended by further springs.
+    """Return ``springs`` with further springs.
 
     Args:
         springs: existing springs.
@@ -138,7 +139,7 @@ def with_springs(springs: Attachments, rows: Array, stiffness: Array) -> Attachm
 
 
 def _geometric_stiffness(shell: Shell, forces: Array) -> PETSc.Mat:
-    """Assemble −K_G (num_dofs, num_dofs) of membrane forces (num_triangles, 3). Collective."""
+    """Return −K_n (num_dofs, num_dofs) of membrane forces (num_triangles, 3). Collective."""
     domain = shell.space.mesh
     along, around, _ = wall_frame(domain)
     n_x, n_s, n_xs = (compat.cellwise_function(domain, one) for one in forces.T)
@@ -203,8 +204,8 @@ class SegmentBuckling:
     factors: Array  #: (num_modes,) λ in ascending order, extrapolated to a mesh size of zero
     mesh_errors: Array  #: (num_modes,) relative error of each factor on the finer mesh
     mesh: PlatedMesh | None  #: the finer mesh, on rank 0
-    #: (num_modes, num_points, 3) displacements of its points, on rank 0; the magnitude of the
-    #: largest one is about 1
+    #: (num_modes, num_points, 3) displacements of the points of ``mesh``, on rank 0; the
+    #: magnitude of the largest one is about 1
     shapes: Array | None
 
 
@@ -218,9 +219,9 @@ def buckle_segments(
 ) -> list[SegmentBuckling]:
     """Return the lowest buckling modes of each segment of a boom at rest. Collective.
 
-    The function computes them on the mesh and on one with edges of half the length, and
-    extrapolates the logarithm of each factor (Richardson 1911), so that it stays positive.
-    It pairs the factors of both meshes by their order, since close modes may change places.
+    Factors are computed on the given mesh and on one with edges of half the length. The logarithm
+    of each factor is extrapolated (Richardson 1911), so that the factor stays positive. Factors of
+    both meshes are paired in ascending order, since close modes may change places.
 
     Args:
         boom: boom of the shells.
@@ -273,12 +274,12 @@ def _modes_on(
     for number, shell in enumerate(shells):
         springs = [
             *(
-                (shell.row(one[number]), k or rigid(shell))
+                (shell.row(one[number]), k or rigid_stiffness(shell))
                 for one, k in joined
                 if number in one and k != 0.0
             ),
             *((one.push, one.stiffness) for one in lines if one.segment == number),
-            *sideways(boom, number, shell),
+            *lateral_springs(boom, number, shell),
         ]
         rows, stiffness = (np.array(one) for one in zip(*springs, strict=True))
         held = replace(shell, springs=with_springs(shell.springs, rows.T, stiffness))
@@ -290,13 +291,13 @@ def _modes_on(
         yield modes.factors, shapes
 
 
-def rigid(shell: SegmentShell) -> float:
+def rigid_stiffness(shell: SegmentShell) -> float:
     """Return the stiffness in N/m of a spring that is rigid compared with a segment."""
     segment = shell.segment
     return RIGID_TURN * segment.material.youngs_modulus * segment.area / segment.length
 
 
-def sideways(boom: Boom, number: int, shell: SegmentShell) -> Iterator[tuple[Array, float]]:
+def lateral_springs(boom: Boom, number: int, shell: SegmentShell) -> Iterator[tuple[Array, float]]:
     """Yield (row, stiffness) of rigid springs against lateral motion, twist and axial motion.
 
     Rows are (num_owned,); stiffness is in N/m or N·m/rad. Collective.
@@ -309,6 +310,6 @@ def sideways(boom: Boom, number: int, shell: SegmentShell) -> Iterator[tuple[Arr
     for x in sorted(places):
         outline = shell.outline(x)
         torsion = segment.material.shear_modulus * outline.section.torsion_constant
-        yield shell.row(outline.wall_deflection("y")), rigid(shell)
+        yield shell.row(outline.wall_deflection("y")), rigid_stiffness(shell)
         yield shell.row(outline.twist()), RIGID_TURN * torsion / segment.length
-    yield shell.row(outline.mean_displacement(0)), rigid(shell)
+    yield shell.row(outline.mean_displacement(0)), rigid_stiffness(shell)

@@ -42,9 +42,9 @@ _JIT_DEFAULTS["cache_dir"] = (Path(_FORMS) / "protractile", *_MEANING)
 def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., Any]:
     """Return a compiler that waits until no other process compiles. Collective.
 
-    FFCx marks a form while it compiles it. Another process that needs the form waits for ten
-    seconds at most. Then it fails, for example if the first process was killed. So this program's
-    forms have their own folder, and only one process compiles in it at a time. An unfinished form
+    FFCx marks a form that it compiles. Another process that needs the form waits for at most ten
+    seconds, and then fails, for example if the first process was killed. So the forms of this
+    program have their own folder, in which only one process compiles at a time. An unfinished form
     there belongs to a killed process and is removed.
     """
 
@@ -78,7 +78,7 @@ _ASSEMBLE_DIAGONAL = (
 
 
 def create_mesh(comm: MPI.Comm, points: Array, cells: Indices) -> Any:
-    """Create a distributed mesh in three dimensions.
+    """Return a distributed mesh in three dimensions. Collective.
 
     Args:
         comm: the ranks that share the mesh.
@@ -117,17 +117,17 @@ def _edge_arguments(comm: MPI.Comm, points: Array, triangles: Indices) -> dict[s
     by_edge = np.argsort(edges, kind="stable")
     _, first, count = np.unique(edges[by_edge], return_index=True, return_counts=True)
     begins = first[count == _CELLS_OF_AN_EDGE]
-    together = by_edge[begins[:, None] + np.arange(_CELLS_OF_AN_EDGE)] // 3
-    if not comm.bcast(together.size):
+    on_one_rank = by_edge[begins[:, None] + np.arange(_CELLS_OF_AN_EDGE)] // 3
+    if not comm.bcast(on_one_rank.size):
         return {}
-    # Without that argument, an edge with two cells on one rank is not shared with other ranks
-    # (FEniCS/dolfinx issue 3063), so that all its cells must be on one rank. Each rank gets the
-    # same number of cells, in the order of x.
+    # Without ``max_facet_to_cell_links``, an edge with two cells on one rank is not shared with
+    # other ranks (FEniCS/dolfinx issue 3063), so that all its cells must be on one rank. Each rank
+    # gets the same number of cells, in the order of x.
     midpoints = points[triangles].mean(axis=1)
     place = np.empty(len(triangles), dtype=np.int64)
     place[np.lexsort(midpoints.T[::-1])] = np.arange(len(triangles))
     ranks = (comm.size * place // max(1, len(triangles))).astype(np.int32)
-    ranks[together] = ranks[together[:, :1]]
+    ranks[on_one_rank] = ranks[on_one_rank[:, :1]]
     destinations = cpp.graph.AdjacencyList_int32(ranks[:, None])
     return {"partitioner": lambda *_: destinations}
 
@@ -168,14 +168,14 @@ def cellwise_function(domain: Any, values: Array) -> Any:
 
 
 def assemble_matrix(form: Any, bcs: list[Any], diagonal: float) -> PETSc.Mat:
-    """Assemble a matrix, with ``diagonal`` on the diagonal of constrained rows."""
+    """Return the matrix of a form, with ``diagonal`` on the diagonal of constrained rows."""
     matrix = fem_petsc.assemble_matrix(form, bcs, **{_ASSEMBLE_DIAGONAL: diagonal})
     matrix.assemble()
     return matrix
 
 
 def assemble_vector(form: Any) -> Array:
-    """Assemble this rank's rows of a vector, including contributions of other ranks."""
+    """Return this rank's rows of the vector of a form, with contributions of other ranks."""
     vector = fem_petsc.assemble_vector(form)
     vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
     rows = vector.array.copy()
@@ -184,7 +184,7 @@ def assemble_vector(form: Any) -> Array:
 
 
 def cell_nodes(space: Any) -> Indices:
-    """Return this rank's nodes of each cell (num_cells, num_nodes)."""
+    """Return the node numbers (num_cells, num_nodes) of this rank's cells."""
     nodes = space.dofmap.list
     return np.asarray(getattr(nodes, "array", nodes), dtype=np.int64).reshape(
         -1, space.dofmap.dof_layout.num_dofs

@@ -47,9 +47,9 @@ class ReducedShell:
     #: displacements and stresses of all modes on rank 0, see
     #: :func:`shell_model.stress.fields.gather_fields`
     fields: xr.Dataset | None
-    #: largest reduction errors of all segments, ``contact_compliance`` relative to the local
-    #: compliance, NaN without contacts; ``deflections``, the relative error of outputs such as the
-    #: tip. Natural frequencies are accurate up to ``frequency_limit_in_hz``.
+    #: largest reduction errors of all segments: ``contact_compliance``, relative to the local
+    #: compliance, NaN without contacts; ``deflections``, of outputs such as the tip. Natural
+    #: frequencies are accurate up to ``frequency_limit_in_hz``.
     errors: dict[str, float]
     #: local compliances (num_rows,) of the contacts in m/N, see
     #: :func:`shell_model.contact.local_compliance.local_compliance`
@@ -146,7 +146,7 @@ def reduce_boom(
 
 
 def _mesh_compliance(boom: Boom, options: ShellOptions, comm: MPI.Comm = MPI.COMM_SELF) -> Array:
-    """Return the local compliance (num_contacts,) in m/N of unreduced shells. Collective."""
+    """Return the local compliance (num_contacts,) in m/N of full shells. Collective."""
     shell = assemble_boom(boom, options, comm)
     return _contact_local_compliance(full_compliance(shell.shells, shell.rows.contacts), shell)
 
@@ -158,18 +158,18 @@ def _contact_local_compliance(whole: Array, shell: BoomShell) -> Array:
 
 
 def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> tuple[Array, Array]:
-    """Return the compliance of contacts in m/N, and its error, from the reduced segments.
+    """Return compliance (num_contacts, num_contacts) of contacts, and its error, both in m/N.
 
-    The compliance is (num_contacts, num_contacts), its largest error (num_contacts,).
+    The error (num_contacts,) is the sum of the errors of all reduced segments. Collective.
     """
-    apart = BoomCoordinates(full.comm, full.shells, segments, ())
+    separate = BoomCoordinates(full.comm, full.shells, segments, ())
     contacts = full.rows.contacts
-    rows = np.array([apart.row(contact.operator) for contact in contacts])
+    rows = np.array([separate.row(contact.operator) for contact in contacts])
     lost = np.zeros(len(contacts))
     for number, segment in enumerate(segments):
         touching = [i for i, contact in enumerate(contacts) if number in contact.operator]
         lost[touching] += segment.lost_compliance[: len(touching)]
-    return compliance(apart.omega2, rows.reshape(-1, apart.omega2.size)), lost
+    return compliance(separate.omega2, rows.reshape(-1, separate.omega2.size)), lost
 
 
 def _reduce(
@@ -179,11 +179,11 @@ def _reduce(
     stages: Stages,
     extra_forces: Sequence[Array],
 ) -> list[ReducedSegment]:
-    """Reduce all segments for their forces, outputs and probes. Collective.
+    """Return all segments, reduced for their forces, outputs and probes. Collective.
 
     ``extra_forces`` are further load vectors (num_owned, num_extra) of each segment.
     """
-    krylov, observed = options.krylov, [seen.operator for seen in full.observed.values()]
+    krylov, observed = options.krylov, [output.operator for output in full.observed.values()]
     at_surface = options.contact_line == "surface"
     if at_surface:
         krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)

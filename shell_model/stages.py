@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Progress reporter: wall time and progress of the stages of a computation."""
+"""Progress reporter of the stages of a computation, with their wall times."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from time import perf_counter
 
 
 class Stages:
-    """Progress reporter that also sums the wall time of each stage in s.
+    """Progress reporter; ``seconds`` has the wall time in s of each stage.
 
     >>> stages = Stages(print)
     >>> with stages.stage("mesh") as progress:
@@ -30,7 +30,7 @@ class Stages:
     def stage(
         self, name: str, number: int = 0, count: int = 1
     ) -> Iterator[Callable[[float], None]]:
-        """Time part ``number`` of ``count`` of a stage, and yield its progress callback."""
+        """Measure part ``number`` of ``count`` of a stage, and yield a progress callback for it."""
         begin = perf_counter()
         self.progress(name, number / count)
         yield lambda part: self.progress(name, (number + part) / count)

@@ -3,7 +3,7 @@
 
 The reduced coordinates do not depend on play and magnitudes of loads. So the boom is reduced
 without play and under unit loads, and its system then receives play, loads and histories. In space,
-contact points depend on the play, so that only booms of the same play share a shell.
+contact points depend on the play, so that only booms of equal play have a common shell.
 """
 
 from __future__ import annotations
@@ -19,11 +19,11 @@ from shell_model.reduced_shell import ReducedShell
 
 
 def standard_boom(boom: Boom) -> Boom:
-    """Return the boom with unit loads, and without play if it is flat."""
+    """Return the boom with unit loads, if flat also without play."""
     joints = boom.joints
     if not boom.spatial:
         joints = tuple(
-            one if _shimmed(one) else replace(one, play=0.0, play_above=None, interference=0.0)
+            one if _has_shims(one) else replace(one, play=0.0, play_above=None, interference=0.0)
             for one in joints
         )
     return replace(
@@ -41,22 +41,22 @@ def standard_boom(boom: Boom) -> Boom:
 
 
 def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
-    """Return the shell of a boom, from the shell of its :func:`standard_boom`."""
+    """Return the reduced shell of ``boom``, from ``shell``, that of its :func:`standard_boom`."""
     system = shell.system
-    more = [
+    clearances = [
         joint.clearances("z")
         for joint in boom.joints
-        if not (joint.bonded or boom.spatial or _shimmed(joint))
+        if not (joint.bonded or boom.spatial or _has_shims(joint))
         for _ in joint.stations
     ]
     # Rows of stops, and all rows of 3-D booms, already have their clearances.
-    more += [(0.0, 0.0)] * (len(system.stations) - len(more))
+    clearances += [(0.0, 0.0)] * (len(system.stations) - len(clearances))
     factors = np.array([_own_load(segment) for segment in boom.segments])
     changing = [load for load in boom.loads if _is_varying(load)]
-    opened = replace(
+    system_with_play = replace(
         system,
         laws=[
-            law.with_clearance(*more[station]) if any(more[station]) else law
+            law.with_clearance(*clearances[station]) if any(clearances[station]) else law
             for law, station in zip(system.laws, system.station_of_row.tolist(), strict=True)
         ],
         load=system.load - shell.own_loads.sum(axis=0) + factors @ shell.own_loads,
@@ -65,7 +65,7 @@ def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
             for load, unit in zip(changing, system.excitations, strict=True)
         ],
     )
-    return replace(shell, system=opened, own_loads=factors[:, None] * shell.own_loads)
+    return replace(shell, system=system_with_play, own_loads=factors[:, None] * shell.own_loads)
 
 
 def _own_load(segment: Segment) -> float:
@@ -88,5 +88,5 @@ def _is_varying(load: Load) -> bool:
     return not isinstance(load.history, ReleasedLoad | InitialImpulse)
 
 
-def _shimmed(joint: Joint) -> bool:
+def _has_shims(joint: Joint) -> bool:
     return any(pad.shim for pad in joint.pads)

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells of telescoping booms: modes of segments, and springs that move with pads.
 
-A Krylov basis for forces at all extensions would be large. But pads excite few modes of segments,
-and springs represent the remaining compliance of walls (:mod:`shell_model.reduction.pad_springs`).
-Rows and springs are sampled at extensions one mesh size apart, and interpolated by splines. The
-geometric stiffness of a moving axial force follows from the slope of the mean deflection, a spline
-between mesh lines. Local bending of walls has the geometric stiffness of the initial extension.
+A Krylov basis for pad forces at all extensions would be large. But pads excite few modes of
+segments, and springs represent the remaining compliance of walls
+(:mod:`shell_model.reduction.pad_springs`). Rows and springs are sampled at extensions one mesh size
+apart, with splines between them. The geometric stiffness of a moving axial force follows from the
+slope of the mean deflection, a spline between mesh lines. Local bending of walls has the geometric
+stiffness of the initial extension.
 """
 
 from __future__ import annotations
@@ -35,11 +36,11 @@ from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.stress.stresses import lines_around
 
-# Maximum frequency of modes in Hz; frequency up to which all modes are kept; minimum contribution
-# of higher modes to the residual compliance, as a fraction.
+# Maximum frequency of modes in Hz, frequency in Hz up to which all modes are kept, and minimum
+# contribution of a higher mode as a fraction of the compliance of springs.
 _CUTOFF, _SLOWEST, _PART = 1500.0, 100.0, 0.003
 
-# Number of moments of the reduction, and stride of the extensions whose forces it includes.
+# Number of moments of the reduction, which includes pad forces at every fourth extension.
 MOMENTS = 2
 _EVERY = 4
 
@@ -67,7 +68,7 @@ class _SampledRows:
         return self.extensions.size * len(self.moving)
 
     def columns(self, shell: SegmentShell, number: int, step: int = 1) -> Array:
-        """Return columns (num_owned, num_extensions · num_moving); ``step`` skips extensions."""
+        """Return rows as columns (num_owned, num_columns), at each ``step``-th extension."""
         nothing = np.zeros(shell.free.size)
 
         def read(operator: Operator) -> Array:
@@ -79,8 +80,8 @@ class _SampledRows:
     def moving_and_constant_rows(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
         """Return masks (num_extensions · num_moving,) of moving and constant rows. Collective.
 
-        On this segment, moving rows depend on the extension. Constant rows do not, and are
-        marked at the first extension only.
+        ``columns`` are the rows of one segment. Constant rows do not depend on the extension on
+        this segment, and are marked at the first extension only.
         """
         rows = columns.T.reshape(self.extensions.size, len(self.moving), -1)
         same = comm.allreduce((rows[0] == rows[-1]).all(axis=1), MPI.LAND)
@@ -95,7 +96,7 @@ class _SampledRows:
 
 
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
-    """Sample all rows of a boom at extensions one mesh size (in m) apart."""
+    """Return all rows of a boom, sampled at extensions ``size`` in m apart."""
     samples = []
     for group in telescoping_stations(boom):
         pieces = [
@@ -127,8 +128,8 @@ class TelescopingShell:
         boom: boom whose joints have drives.
         full: shells of the boom.
         size: edge length of the meshes in m.
-        reduce: function that reduces all segments, from the forces (num_owned, num_columns) of
-            pads at several extensions on each.
+        reduce: function that returns all reduced segments from the load vectors
+            (num_owned, num_columns) of pads at several extensions on each segment.
         test: frequency in Hz at which the error of springs is measured.
 
     Attributes:
@@ -159,7 +160,7 @@ class TelescopingShell:
         self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
 
     def compliance_error(self, contacts: int) -> Array:
-        """Return the largest error (num_contacts,) of the compliance over all extensions in m/N."""
+        """Return the largest error (num_contacts,) in m/N of the compliance over all extensions."""
         sigma, errors = squared(self._test), np.zeros(contacts)
         for k, sampled in enumerate(self._sampled):
             omega2, pulls = self._springs[k]
@@ -173,7 +174,7 @@ class TelescopingShell:
         return errors
 
     def with_springs(self, system: GapSystem, coordinates: BoomCoordinates) -> GapSystem:
-        """Return a gap system in the coordinates of the boom, with springs and travels."""
+        """Return ``system``, which is in the coordinates of the boom, with springs and travels."""
         first_of, stacked = {}, 0
         for kind in ROW_KINDS:
             first_of[kind] = stacked
@@ -208,13 +209,13 @@ class TelescopingShell:
     def _with_few_modes(
         self, number: int, segment: ReducedSegment, columns: Array
     ) -> ReducedSegment:
-        """Reduce a segment to modes that pads excite, and to responses to all other forces.
+        """Return a segment with the modes that pads excite, and responses to all other forces.
 
         ``columns`` (num_owned, num_columns) are the rows of pads at all extensions.
         """
 
         def project(columns: Array) -> Array:
-            """Project columns on the modes of the segment."""
+            """Return modal rows (num_columns, num_modes) of columns (num_owned, num_columns)."""
             rows = [exact_product(self._full.comm, column, segment.shapes) for column in columns.T]
             return np.array(rows).reshape(-1, segment.omega2.size)
 
@@ -223,17 +224,17 @@ class TelescopingShell:
             sampled.moving_and_constant_rows(self._full.comm, part)
             for sampled, part in zip(self._sampled, np.split(columns, bounds, axis=1), strict=True)
         ]
-        moving, staying = (np.concatenate(which) for which in zip(*masks, strict=True))
-        seen = [one.operator for one in self._full.observed.values()]
-        rows, observed = project(columns), project(self._full.columns(number, seen))
+        moving, constant = (np.concatenate(which) for which in zip(*masks, strict=True))
+        outputs = [one.operator for one in self._full.observed.values()]
+        rows, observed = project(columns), project(self._full.columns(number, outputs))
         parts = rows[moving] ** 2 / (segment.omega2 + squared(SLOW))
         below = segment.omega2 < squared(_CUTOFF)
         local = np.diag(self._responses[number].compliance)[moving]
         left = local - parts[:, below].sum(axis=1)
         slow = segment.omega2 < squared(_SLOWEST)
         slow |= below & (parts > _PART * left[:, None]).any(axis=0)
-        stays = self._full.fixed_loads(number), self._full.columns(number, self._full.ties)
-        pushes = [*(project(some) for some in stays), observed, rows[staying]]
+        fixed = self._full.fixed_loads(number), self._full.columns(number, self._full.ties)
+        pushes = [*(project(some) for some in fixed), observed, rows[constant]]
         modes = np.flatnonzero(slow), np.flatnonzero(~slow)
         omega2, shapes = reduce_modes(segment.omega2, np.vstack(pushes), *modes, MOMENTS)
         order = np.argsort(omega2, kind="stable")
@@ -248,22 +249,22 @@ class TelescopingShell:
         )
 
     def _transfer_error(self, many: tuple[Array, Array, Array], few: tuple[Array, Array]) -> float:
-        """Return the error of the response of outputs to pad forces.
+        """Return the largest error of the response of an output to a pad force.
 
-        It is relative to the geometric mean of both compliances. ``many`` has ω², the rows of pads
-        and the rows of outputs in all modes; ``few`` has ω² and the shapes of the kept modes.
+        It is relative to the geometric mean of the compliances of output and pad. ``many`` has ω²,
+        the rows of pads and the rows of outputs in all modes, ``few`` ω² and shapes of kept modes.
         """
         omega2, rows, observed = many
         shifted, shapes = (1.0 / (one + squared(self._test)) for one in (omega2, few[0])), few[1]
         of_many, of_few = shifted
-        missed = (observed * of_many) @ rows.T
-        missed -= ((observed @ shapes) * of_few) @ (rows @ shapes).T
+        error = (observed * of_many) @ rows.T
+        error -= ((observed @ shapes) * of_few) @ (rows @ shapes).T
         sizes = (np.sqrt(one**2 @ of_many) for one in (observed, rows))
         scale = np.maximum(np.outer(*sizes), np.finfo(float).tiny)
-        return float((np.abs(missed) / scale).max(initial=0.0))
+        return float((np.abs(error) / scale).max(initial=0.0))
 
     def _residuals(self, k: int) -> tuple[Array, Array]:
-        """Return compliance and inertia of sampled rows, less the contribution of the modes."""
+        """Return compliance and inertia of sampled rows, less the contributions of modes."""
         rows, shifted = self._rows[k], self._segment_coordinates.omega2 + squared(SLOW)
         compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
         return self._compliance(k, "compliance") - compliance, self._compliance(

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Local compliance of walls at contacts, the scale of errors of mesh and reduction.
 
-The compliance B (Ω² + σ)⁻¹ Bᵀ of a contact row at a low shift is mainly rigid motion, about 1e-6
-m/N compared with 3e-9 m/N of the wall. Opposite unit forces on both sides of a station cause no
-rigid motion and no beam bending. Half of their relative displacement is the *local compliance*.
+The compliance of a contact row at a low shift is mainly rigid motion, about 1e-6 m/N compared with
+3e-9 m/N of the wall. Opposite unit forces on both sides of a station cause no rigid motion and no
+beam bending. Half of the relative displacement of both sides is the *local compliance*.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import ShiftedSolver
 
-# Frequency of the shift in Hz, between rigid and elastic modes.
+# Frequency f in Hz of the shift σ = (2π f)², between rigid and elastic modes.
 SLOW = 20.0
 
 
 def compliance(omega2: Array, rows: Array) -> Array:
-    """Return the compliance B (Ω² + σ)⁻¹ Bᵀ (num_rows, num_rows) in m/N of rows B at 20 Hz."""
+    """Return B diag(ω² + σ)⁻¹ Bᵀ (num_rows, num_rows) in m/N for rows B (num_rows, num_modes)."""
     return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
 
 
 def full_compliance(
     shells: Sequence[SegmentShell], contacts: Sequence[LawRow[Operator, ContactLaw]]
 ) -> Array:
-    """Return the compliance (num_contacts, num_contacts) of unreduced shells. Collective."""
+    """Return the compliance (num_contacts, num_contacts) in m/N of full shells. Collective."""
     compliance = np.zeros((len(contacts), len(contacts)))
     for number, shell in enumerate(shells):
         touching = [i for i, contact in enumerate(contacts) if number in contact.operator]
@@ -46,7 +46,7 @@ def full_compliance(
 
 
 def shell_compliance(symmetry: SymmetryReduction, rows: Array, frequency: float = SLOW) -> Array:
-    """Return the compliance (num_rows, num_rows) in m/N of an unreduced shell. Collective.
+    """Return the compliance (num_rows, num_rows) in m/N of a full shell. Collective.
 
     Rows are (num_owned, num_rows). The frequency of the shift is in Hz.
     """
@@ -77,11 +77,11 @@ def local_compliance(
 
 
 def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
-    """Estimate the relative discretisation error of values by extrapolation (Richardson 1911).
+    """Return the relative discretisation error of ``fine`` by extrapolation (Richardson 1911).
 
     Args:
         fine, coarse: values of the mesh, and of a mesh with edges of twice the length.
-        order: convergence order of the values.
+        order: order of convergence of the values.
     """
     return np.asarray(np.abs(1.0 - coarse / fine) / (2.0**order - 1.0))
 
@@ -89,9 +89,9 @@ def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
 def _opposite(
     laws: Sequence[ContactLaw], station_of_row: Sequence[int]
 ) -> Iterator[tuple[int, int]]:
-    """Yield pairs of rows on opposite sides of a station.
+    """Yield pairs of indices of rows on opposite sides of a station.
 
-    If one side has more rows, several of them have the same opposite row.
+    If one side has more rows, several rows of this side have the same opposite row.
     """
     for station in set(station_of_row):
         there = [i for i, at in enumerate(station_of_row) if at == station]

@@ -2,7 +2,7 @@
 """Rows of contacts, friction and bonded joints between the shells of a boom.
 
 At a station, contact is possible above and below the inner segment, in 3-D also at its sides. The
-joint determines the sides, since facet normals of a mesh have arbitrary signs. With surface
+sides follow from the joint, since facet normals of a mesh have arbitrary signs. With surface
 contact, stations have friction only. The weights of points on each wall sum to one, so that a
 uniform displacement gives the contact law exactly.
 """
@@ -44,7 +44,7 @@ class _PadOperators:
     walls: Sequence[WallPoints]  #: walls of all segments; empty if no contact is on a wall
 
     def contact(self, line: ContactLine) -> tuple[list[_Point], Operator]:
-        """Return the contact points of the pad, and the operator of its sliding. Collective."""
+        """Return the contact points and the operator of the sliding displacement. Collective."""
         pad = self.pad
         if pad.joint.lateral_play is not None:
             if pad.patch is None:
@@ -70,7 +70,7 @@ class _PadOperators:
         return points, sum(others, first)
 
     def at_corners(self, direction: Direction, inner: Offset, outer: Offset) -> Operator:
-        """Return the operator of u − w on the corners at offsets (y, z) in m."""
+        """Return the operator of u − w on the corners at offsets (y, z) in m of both segments."""
         places = zip(self._ends, self.pad.intervals, (inner, outer), strict=True)
         rows = (self.corners[n].deflection(at, direction, *offset) for n, at, offset in places)
         return self._approach(*rows)
@@ -91,7 +91,7 @@ class _PadOperators:
             yield side, share, self._approach(*rows)
 
     def over_patch(self, patch: Patch, side: Side, half: int) -> Operator:
-        """Return the mean of u − w over a patch, on which the pressure is uniform. Collective."""
+        """Return the operator of the mean of u − w over a patch. Collective."""
         x, along = gauss(patch.start, patch.end, _POINTS)
         near, far = patch.across(self._inner_section.face(self.pad.direction, side))
         y, over = gauss(half * near, half * far, _POINTS)
@@ -106,7 +106,7 @@ class _PadOperators:
 
     @property
     def _inner_section(self) -> Section:
-        """Return the section of the inner segment at the pad."""
+        """The section of the inner segment at the pad."""
         inner = self.walls[self.pad.joint.inner].segment
         return inner.section_at(self.pad.x + self.pad.travel[0])
 
@@ -183,9 +183,10 @@ class ShellContacts:
 
 
 def ties(boom: Boom, shells: Sequence[SegmentShell]) -> list[Operator]:
-    """Return the constraints of bonded joints: deflections, in 3-D booms also twist. Collective.
+    """Return operators that bonded joints constrain to zero. Collective.
 
-    Their forces act in the planes of walls.
+    They are relative deflections, in 3-D booms also twist. Constraint forces act in the planes of
+    walls.
     """
     reads: list[Callable[[SectionNodes], Row]] = [
         partial(SectionNodes.wall_deflection, direction=direction) for direction in boom.directions

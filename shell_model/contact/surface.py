@@ -2,9 +2,9 @@
 """Surface contact over the whole overlap: points on the facing walls of two segments.
 
 They are Gauss points along the overlap and across each half of the wall of the inner segment. The
-stiffness of a point is the penalty k_A in N/mⁿ⁺² times its area. Displacements are interpolated in
-the triangles that contain the point. The joint determines the side in contact, since facet normals
-have arbitrary signs.
+stiffness of a point is the penalty k_A in N/mⁿ⁺² times the area of the point. Displacements are
+interpolated in the triangles that contain the point. The side in contact follows from the joint,
+since facet normals have arbitrary signs.
 """
 
 from __future__ import annotations
@@ -45,8 +45,8 @@ class SurfaceOptions:
             stiffnesses of the stations over the area, so that a uniform displacement causes the
             same force.
         shifts, moments: shifts and moments of the reduction, see
-            :class:`shell_model.reduction.krylov.KrylovOptions`. Since all points are inputs, few
-            suffice: more of them change the tip deflection of the paper's boom with friction by
+            :class:`shell_model.reduction.krylov.KrylovOptions`. Few suffice, since all points are
+            inputs: more moments change the tip deflection of the paper's boom with friction by
             0.05 % of its range.
     """
 
@@ -143,14 +143,14 @@ def _on_wall(
 def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) -> ReducedSegment:
     """Return the segment without the highest modes, whose compliance is negligible. Collective.
 
-    With many contact points, the basis has modes up to the frequencies of thickness shear of
-    plates, which would require short time steps.
+    With many contact points, the basis has modes of very high frequencies, up to the thickness
+    shear of plates, which would require short time steps.
 
     Args:
         comm: ranks that share the segment.
         reduced: reduced coordinates of the segment.
         rows: (num_owned, num_rows) this rank's part of the rows of contacts, friction and bonded
-            joints.
+            joints, as columns.
     """
     gains = np.array([exact_product(comm, row, reduced.shapes) for row in rows.T])
     elastic = reduced.omega2 > 0.0

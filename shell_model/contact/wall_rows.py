@@ -2,9 +2,9 @@
 """Rows of displacements of a shell along the corners of a section, and at points of walls.
 
 The compliance under a point force at a fold diverges with the logarithm of the edge length. The
-compliance under a force along an interval of the fold is finite. Corner rows are exact for any
-mesh. The row of a point on a wall has the six shape functions of the triangle that contains the
-point. So the meshes of two segments need not match.
+compliance under a force along an interval of the fold is finite. Its row is exact for any mesh. The
+row of a point on a wall has the six shape functions of the triangle that contains the point. So the
+meshes of two segments need not match.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class _CornerLine(NamedTuple):
     dofs: Indices  #: (num_nodes, 3) global rows of the displacement components
 
     def mean(self, stretch: ContactInterval, direction: Direction) -> Row:
-        """Return the mean displacement, weighted by the line load, by Simpson's rule."""
+        """Return the row of the mean displacement, weighted by the line load of the interval."""
         left, right = self.x[:-2:2], self.x[2::2]
         low, high = np.maximum(left, stretch.start), np.minimum(right, stretch.end)
         (edges,) = np.nonzero(low < high)
@@ -58,10 +58,10 @@ class CornerLines:
             self._lines.append(_CornerLine(x[order], dofs[order]))
 
     def deflection(self, stretch: ContactInterval, direction: Direction, y: float, z: float) -> Row:
-        """Return u_z or u_y of a face in m, linear between its two corners.
+        """Return the row of u_z or u_y of a face, linear between both corners of the face.
 
-        A force on the face acts on its corners in static equilibrium, and bends no plate. The row
-        is exact for a rotation of the section.
+        A force on the row acts on the corners in static equilibrium, and bends no plate. The row is
+        exact for a rotation of the section.
 
         Args:
             stretch: interval of x on the corners.
@@ -124,7 +124,7 @@ class WallPoints:
         self._along = WallsAlong(shell.segment, self._places[:, 0])
 
     def rows(self, wall: Wall, places: Array, direction: Direction) -> list[Row]:
-        """Return the row of each point, the same on every rank. Collective.
+        """Return the row of the displacement of each point, the same on every rank. Collective.
 
         Args:
             wall: wall with the points.
@@ -139,10 +139,10 @@ class WallPoints:
         on_ranks = self._comm.allgather(own_candidates)
         rows: list[Row] = []
         for place, candidates in zip(places, zip(*on_ranks, strict=True), strict=True):
-            held = [candidate for candidate in candidates if candidate is not None]
-            if not held:
+            found = [candidate for candidate in candidates if candidate is not None]
+            if not found:
                 raise ValueError(f"no wall is at x = {place[0]:g} m, {place[1]:g} m across")
-            rows.append(min(held, key=lambda candidate: candidate.corners).row)
+            rows.append(min(found, key=lambda candidate: candidate.corners).row)
         return rows
 
     def mean(self, wall: Wall, places: Array, weights: Array, direction: Direction) -> Row:
@@ -151,7 +151,7 @@ class WallPoints:
         return sum((w * row for w, row in zip(weights.tolist(), rows, strict=True)), Row())
 
     def _near(self, wall: Wall, x: Array) -> Indices:
-        """Return the nodes (num_cells, 6) of triangles that may contain points at some x."""
+        """Return the nodes (num_cells, 6) of wall triangles that may contain points at ``x``."""
         margin = self._along.near
         plate = self.segment.widest.face(wall.normal, wall.side).plate
         flat = self._along.distance(plate, self._places[:, 1:]) < margin
@@ -166,7 +166,7 @@ class WallPoints:
         if not len(cells):
             return None
         corners = self._places[cells[:, :3]][:, :, [0, wall.across]]
-        holding = np.flatnonzero(_shares(corners, place).min(axis=1) > -_ON_EDGE)
+        holding = np.flatnonzero(_barycentric(corners, place).min(axis=1) > -_ON_EDGE)
         if not holding.size:
             return None
         # The order depends only on coordinates, so that round-off does not depend on ranks.
@@ -176,7 +176,7 @@ class WallPoints:
             key=lambda k: corners[holding[k]][orders[k]].ravel().tolist(),
         )
         cell, order = holding[first], orders[first]
-        a, b, c = _shares(corners[cell][order][None], place)[0]
+        a, b, c = _barycentric(corners[cell][order][None], place)[0]
         # Nodes of Lagrange's quadratic triangle: corners, then mid-sides opposite to them.
         weights = (
             a * (2.0 * a - 1.0), b * (2.0 * b - 1.0), c * (2.0 * c - 1.0),
@@ -196,7 +196,7 @@ def gauss(start: float, end: float, count: int) -> tuple[Array, Array]:
     return 0.5 * (start + end) + 0.5 * (end - start) * nodes, 0.5 * weights
 
 
-def _shares(corners: Array, place: Array) -> Array:
+def _barycentric(corners: Array, place: Array) -> Array:
     """Return the barycentric coordinates (num_triangles, 3) of a point.
 
     Corners are (num_triangles, 3, 2).

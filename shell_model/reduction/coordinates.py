@@ -16,7 +16,7 @@ from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 
-# Fraction of the largest stiffness below which a constraint is neglected.
+# Fraction of the largest singular value below which a singular value is round-off.
 ROUND_OFF = 1.0e-9
 
 # Number of rows of a batch, whose products are in memory.
@@ -89,7 +89,7 @@ class BoomCoordinates:
         return self.of_rows(np.concatenate(parts))
 
     def of_rows(self, apart: Array) -> Array:
-        """Return rows (…, num_modes) in modes of the boom, from rows in modes of its segments."""
+        """Return rows (…, num_modes) in modes of the boom from rows in modes of the segments."""
         if self._combination is None:
             return apart
         return np.asarray(apart @ self._combination.astype(apart.dtype, copy=False))
@@ -101,7 +101,7 @@ def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array,
     Args:
         omega2: ω² (num_modes,) without constraints and springs.
         tied: rows (num_ties, num_modes) of displacements that are zero.
-        pulls: rows (num_springs, num_modes) of springs times the roots of stiffnesses, in 1/s.
+        pulls: rows (num_springs, num_modes) of springs times the root of their stiffness, in 1/s.
     """
     free = null_space(tied) if tied.size else np.eye(omega2.size)
     held = pulls @ free
@@ -120,8 +120,8 @@ def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array,
 def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
     """Return leftᵀ right (num_columns,), bitwise equal for any number of ranks. Collective.
 
-    The factors are (num_owned,) and (num_owned, num_columns). Sums have double the usual precision,
-    so that their order has no effect.
+    ``left`` is (num_owned,), ``right`` (num_owned, num_columns). Sums have double the usual
+    precision, so that their order has no effect.
     """
     rows = np.flatnonzero(left != 0.0)
     parts = [np.zeros((1, right.shape[1]))]

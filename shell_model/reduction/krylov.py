@@ -18,7 +18,7 @@ from geometry.probe_responses import PROBE_FREQUENCY
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, times
 
-# Fraction of a vector's length below which its new part is round-off.
+# Fraction of a vector's length below which the part beyond the basis is round-off.
 _DEPENDENT = 1.0e-9
 
 # Maximum number of blocks at each shift; more blocks do not reduce the error.
@@ -29,7 +29,7 @@ _MAX_MOMENTS = 12
 class KrylovOptions:
     """Shifts and moments of a Krylov basis, or its permitted error."""
 
-    #: frequencies in Hz at which moments match
+    #: frequencies f in Hz of the shifts σ = (2π f)², at which moments match
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0)
     moments: int = 3  #: number of matched moments (derivatives with respect to ω²) at each shift
     #: permitted relative error of the contact compliance and of the response of outputs. If it is
@@ -43,8 +43,8 @@ class KrylovOptions:
     def order(self) -> Iterator[float]:
         """The shifts of successive blocks in Hz.
 
-        Successive blocks at the same shift need only one factorisation. But with a tolerance the
-        basis may end early, so that the first blocks have different shifts.
+        Successive blocks at the same shift need only one factorisation. But with ``tolerance`` or
+        ``most`` the basis may end early, so that the first blocks have different shifts.
         """
         if self.tolerance is None and self.most is None:
             return chain.from_iterable(repeat(shift, self.moments) for shift in self.shifts)
@@ -90,10 +90,10 @@ def reduce_class(
     options: KrylovOptions,
     progress: Callable[[float], None],
 ) -> ClassCoordinates:
-    """Reduce a shell that is stored on this rank only.
+    """Return the coordinates of a reduced shell that is stored on this rank only.
 
     Args:
-        shell: the full model.
+        shell: full model.
         inputs: load vectors (num_rows, num_inputs); they may be zero or dependent.
         outputs: rows (num_rows, num_outputs) of outputs.
         probes: load vectors (num_rows, num_probes) of probes.
@@ -117,9 +117,9 @@ def reduce_class(
         full = [_FullResponse.at(frequency, solve, forces, rows) for frequency in tests]
     for done, frequency in enumerate(order, start=1):
         solve.move(frequency)
-        grown = basis.grow(solve)
+        has_grown = basis.grow(solve)
         progress(done / stages)
-        if not grown or (
+        if not has_grown or (
             options.tolerance is not None and max(basis.errors(full, rows)) <= options.tolerance
         ):
             break
@@ -151,9 +151,9 @@ def reduce_class(
 
 
 class _FullResponse(NamedTuple):
-    """Responses of the full model at a frequency, with the scales of their errors."""
+    """Responses of the full model at a shift, with the scales of their errors."""
 
-    sigma: float  #: (2π frequency)² in rad²/s²
+    sigma: float  #: shift σ in rad²/s²
     compliance: Array  #: compliance (num_forces, num_forces) of the forces
     scale: Array  #: geometric means of pairs of diagonal entries of ``compliance``
     transfer: Array  #: responses (num_outputs, num_forces) of outputs to forces
@@ -209,10 +209,10 @@ class _Basis:
         self._append(solve(pushes[:, sizes > _DEPENDENT * sizes.max(initial=0.0)]))
 
     def errors(self, full: Sequence[_FullResponse], rows: Array) -> tuple[float, float]:
-        """Return the relative errors of the compliance and of the response at outputs.
+        """Return the largest relative errors of the compliance and of the response at outputs.
 
         Args:
-            full: responses of the full model at the sample frequencies.
+            full: responses of the full model at several shifts.
             rows: output rows (num_rows, num_outputs).
         """
         gains, read = self._vectors.T @ self._forces, self._vectors.T @ rows
@@ -243,7 +243,7 @@ class _Basis:
         return lost
 
     def modes(self) -> tuple[Array, Array]:
-        """Return ω² and shapes of the modes, rigid motions first."""
+        """Return ω² (num_modes,) and shapes (num_rows, num_modes), rigid motions first."""
         if self._forces.shape[1] == 0:
             # Only probes excite this class.
             return np.zeros(0), self._vectors[:, :0]
@@ -261,7 +261,7 @@ class _Basis:
         return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * signs
 
     def _append(self, block: Array) -> Array:
-        """Orthonormalise a block, append it to the basis, and return the new vectors."""
+        """Append a block, orthonormalised, to the basis, and return the new vectors."""
         before = self.size
         vectors = np.empty((len(block), before + block.shape[1]), order="F")
         vectors[:, :before] = self._vectors
@@ -293,7 +293,7 @@ class _Basis:
 
 
 def _independent(block: Array) -> Array:
-    """Return an orthonormal basis of the columns of a block."""
+    """Return an orthonormal basis (num_rows, rank) of the columns of a block."""
     lengths = np.linalg.norm(block, axis=0)
     basis = np.empty((len(block), 0))
     for column in (block[:, lengths > 0.0] / lengths[lengths > 0.0]).T[:, :, None]:
@@ -310,9 +310,9 @@ def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSol
 
     Modes above the first inaccurate one are not tested.
 
-    With the residual r = (K − ω² M) x of a mass-normalised x, some eigenvalue λ satisfies
-    (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r (expand r in eigenvectors). The error itself is of the
-    order of the square of this bound.
+    With the residual r = (K − ω² M) φ of a mass-normalised mode φ, some eigenvalue λ satisfies
+    (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r, as r expanded in eigenvectors shows. The error itself is
+    of the order of the square of this bound.
     """
     accurate = np.asarray(omega2 == 0.0)
     for i in np.flatnonzero(~accurate):

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Symmetry classes of motions of a section with mirror planes in y, in z, or in both.
 
-Symmetric and antisymmetric motions do not couple. In a segment with both mirrors, vertical bending,
-lateral bending, twist, and breathing with stretching are separate classes. With the mirror in y
-only, vertical bending couples with breathing and stretching, and lateral bending with twist. The
-symmetry cell, a quarter or a half of the segment on the positive side of the mirrors, represents a
-class, with symmetry conditions in the mirror planes.
+Symmetric and antisymmetric motions do not couple. In a segment with both mirror planes, vertical
+bending, lateral bending, twist, and breathing with stretching are separate classes. With the mirror
+plane normal to y only, vertical bending couples with breathing and stretching, and lateral bending
+with twist. Motions of a class are computed on the symmetry cell, the quarter or half of the segment
+on the positive side of the mirror planes, with symmetry conditions in these planes.
 """
 
 from __future__ import annotations
@@ -28,9 +28,9 @@ _ON_PLACE = 1.0e-8
 
 
 class SymmetryClass(NamedTuple):
-    """Symmetry class of motions, given by the parity of each mirror.
+    """Symmetry class of motions, given by the parity for the mirror planes normal to y and z.
 
-    The parity is 1 for symmetric motions, −1 for antisymmetric motions, 0 without the mirror.
+    The parity is 1 for symmetric, −1 for antisymmetric motions, 0 without the mirror plane.
     """
 
     y: int
@@ -38,7 +38,7 @@ class SymmetryClass(NamedTuple):
 
     @property
     def signs(self) -> Array:
-        """The factors (4, 6) of components in each image relative to the cell (:func:`image_of`).
+        """The factors (4, 6) of components in each image (:func:`image_of`), relative to the cell.
 
         The first columns are components of the displacement, a polar vector; the others are
         components of the rotation, an axial vector.
@@ -53,9 +53,9 @@ class SymmetryClass(NamedTuple):
         return signs
 
     def fixed_components(self, axis: int) -> list[tuple[int, int]]:
-        """Return the components that are zero in a mirror plane.
+        """Return the components that are zero in the mirror plane normal to an axis (1 y, 2 z).
 
-        They are (0, i) of the displacement and (1, i) of the rotation.
+        They are (0, i) for the displacement and (1, i) for the rotation.
         """
         signs = self.signs[1 if axis == 1 else 2]
         return [(int(i) // 3, int(i) % 3) for i in np.flatnonzero(signs < 0.0)]
@@ -73,13 +73,13 @@ BREATHING, ALONG_Z, ALONG_Y, TWISTING = (
 
 
 def symmetry_classes(mirrors: Sequence[Direction]) -> list[SymmetryClass]:
-    """Return the symmetry classes of a section with these mirrors."""
+    """Return the symmetry classes of a section; ``mirrors`` are the normals of its planes."""
     parities = ((1, -1) if axis in mirrors else (0,) for axis in COMPONENT)
     return [SymmetryClass(*parity) for parity in product(*parities)]
 
 
 def image_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
-    """Return each point's image (num_places,): 1 at negative y, 2 at negative z, 3 at both, else 0.
+    """Return the image (num_places,) of points: 1 at negative y, 2 at negative z, 3 at both, or 0.
 
     Only coordinates along ``mirrors`` count.
     """
@@ -88,7 +88,7 @@ def image_of(places: Array, mirrors: Sequence[Direction]) -> Indices:
 
 
 def mirror_to_cell(places: Array, mirrors: Sequence[Direction]) -> Array:
-    """Return points (num_places, 3), mirrored to the positive side of all mirrors."""
+    """Return points (num_places, 3) mirrored to the positive side of all mirror planes."""
     images = places.copy()
     for axis in mirrors:
         images[:, COMPONENT[axis]] = np.abs(images[:, COMPONENT[axis]])
@@ -109,7 +109,7 @@ def match_points(places: Array, among: Array) -> Indices | None:
 
 
 def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
-    """Return the part of a mesh on the positive side of the mirrors of its section.
+    """Return the part of a mesh on the positive side of the mirror planes of its section.
 
     Raises:
         NumericsError: the mesh or its thickness is not symmetric.
@@ -141,7 +141,7 @@ def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
 
 
 def _sorted(triangles: Indices, thickness: Array) -> tuple[Indices, Array]:
-    """Return triangles and their thickness in a unique order."""
+    """Return triangles, with their points sorted, and thicknesses in a unique order."""
     corners = np.sort(triangles, axis=1)
     order = np.lexsort(corners.T)
     return corners[order], thickness[order]

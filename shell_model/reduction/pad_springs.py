@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Springs that move with pads: the compliance of walls beyond the modes of segments.
 
-At the extension x, pad forces cause the response B(x) (K + σ M)⁻¹ B(x)ᵀ. Modes with frequencies ω_k
-and rows b_k(x) give Σ_k b_k(x) b_k(x)ᵀ / (ω_k² + σ) of it. The difference R(x, σ) is a compliance
-of walls, with small inertia up to about 1000 Hz. Springs with the frequencies W^½ and the rows
-L(x) = R^½ Q (W + σ)^½ represent it: L (W + σ)⁻¹ Lᵀ = R for all x at one shift σ (residual
-flexibility; MacNeal 1971). W and the orthogonal Q represent the inertia R′ = −dR/dσ (Rubin 1975)
-by the mean of R^−½ R′ R^−½ = Q (W + σ)⁻¹ Qᵀ over all extensions. The symmetric root is smooth.
+At the extension s, pads with the rows B(s) have the compliance B (K + σ M)⁻¹ Bᵀ at the shift σ.
+Modes of the circular frequencies ω_i and the rows b_i(s) contribute Σ_i b_i b_iᵀ / (ω_i² + σ). The
+difference Γ(s, σ) is a compliance of walls, with small inertia up to about 1000 Hz. Springs with
+the diagonal matrix Ω_p of circular frequencies and the rows L(s) = Γ^½ X (Ω_p² + σ)^½ represent it:
+L (Ω_p² + σ)⁻¹ Lᵀ = Γ for all s at one σ (residual flexibility; MacNeal 1971). Ω_p and the
+orthogonal matrix X represent the inertia Γ′ = −dΓ/dσ by the mean of Γ^−½ Γ′ Γ^−½ = X (Ω_p² + σ)⁻¹
+Xᵀ over all extensions (Rubin 1975). The symmetric root Γ^½ is smooth in s.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from geometry.arrays import Array
 from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.solver import ShiftedSolver, times
 
-# Frequencies in Hz: the shift σ, between rigid and residual modes, and the maximum of springs.
+# Frequencies in Hz: of the shift σ, between rigid and residual modes, and maximum of springs.
 SLOW, _FASTEST = 50.0, 10000.0
 
 # Fraction of the largest compliance below which the compliance of a force pattern is neglected.
@@ -31,11 +32,14 @@ class PadResponses(NamedTuple):
 
     compliance: Array  #: B (K + σ M)⁻¹ Bᵀ in m/N at the shift of springs
     inertia: Array  #: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, the negative derivative by σ
-    tested: Array  #: compliance in m/N at another shift
+    tested: Array  #: compliance in m/N at the shift for the test of springs
 
 
 def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> PadResponses:
-    """Return the responses to columns (num_owned, num_columns); ``test`` is in Hz. Collective."""
+    """Return the responses to columns (num_owned, num_columns) of pads. Collective.
+
+    ``test`` is the frequency in Hz of the shift for ``tested``.
+    """
 
     def of_class(_: int, job: Job) -> Array:
         shell = job.shell(symmetry.cell)
@@ -57,8 +61,8 @@ def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> P
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     """Return ω² (num_springs,) and rows (num_extensions, num_rows, num_springs) of springs.
 
-    ω² is in rad²/s², rows in 1/√kg. The residual R (num_extensions, num_rows, num_rows) is in m/N,
-    its inertia R′ in m s²/N.
+    ω² is in rad²/s², rows in 1/√kg. ``residual`` Γ (num_extensions, num_rows, num_rows) is in m/N,
+    ``inertia`` Γ′ in m s²/N.
     """
     sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
     scale = np.outer(sizes, sizes)
@@ -71,9 +75,9 @@ def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     slowness, turn = np.linalg.eigh((back @ (inertia / scale) @ back).mean(axis=0))
     shifted = 1.0 / np.maximum(slowness, 1.0 / squared(_FASTEST))
     pulls = root @ turn
-    pulling = np.abs(pulls).max(axis=(0, 1)) > _NEGLIGIBLE
+    kept = np.abs(pulls).max(axis=(0, 1)) > _NEGLIGIBLE
     rows = sizes[:, None] * pulls * np.sqrt(shifted)
-    return (shifted - squared(SLOW))[pulling], rows[..., pulling]
+    return (shifted - squared(SLOW))[kept], rows[..., kept]
 
 
 def squared(frequency: float) -> float:

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Reduction of a segment by a block rational Krylov basis of its loads and contact forces.
 
-The basis spans (K + σ M)⁻¹ F and its moments for several shifts σ > 0 (Ruhe 1984; the static modes
-of Craig and Hurty are the case σ = 0 with one moment). So the response to contact forces is
-accurate from statics to the frequencies of the shifts. It includes local compliance, for which
-natural modes would need thousands of vectors. Rigid motions are separate, so that their frequency
-is exactly zero. Each symmetry class has its own basis on one rank, so that results are bitwise
-equal for any number of ranks (:mod:`shell_model.reduction.symmetry`). Errors are measured against
-full solves at frequencies between the shifts.
+The basis spans (K + σ M)⁻¹ F and its moments for load vectors F and several shifts σ > 0 (Ruhe
+1984; the static modes of Craig and Hurty are the case σ = 0 with one moment). So the response to
+contact forces is accurate from statics to the frequencies of the shifts. It includes local
+compliance, for which thousands of natural modes would be necessary. Rigid motions are separate, so
+that their frequency is exactly zero. Each symmetry class has its own basis on one rank, so that
+results are bitwise equal for any number of ranks (:mod:`shell_model.reduction.symmetry`). Errors
+are measured against the full model at frequencies between the shifts.
 """
 
 from __future__ import annotations
@@ -39,11 +39,11 @@ class ReducedSegment:
     #: largest error of the response of outputs to inputs, relative to the geometric mean of both
     #: compliances
     output_error: float
-    #: largest error (num_inputs,) of the compliance of each input in m/N. The error of a pair is at
-    #: most the geometric mean of both (Galerkin).
+    #: largest error (num_inputs,) in m/N of the compliance of each input. The error for a pair of
+    #: inputs is at most the geometric mean of their errors (Galerkin).
     lost_compliance: Array
     frequency_limit: float  #: frequency in Hz up to which natural frequencies are accurate to 0.1 %
-    geometric: Array  #: K_G (num_modes, num_modes), to be subtracted from diag(ω²)
+    geometric: Array  #: geometric stiffness K_G (num_modes, num_modes) in 1/s²
     #: compliance (num_probes, num_probes) of the full model to probes, at ``PROBE_FREQUENCY``
     probe_compliance: Array
 
@@ -63,7 +63,7 @@ def reduce_segments(
     progress: Callable[[float], None] = lambda _: None,
     helper: Executor | None = None,
 ) -> list[ReducedSegment]:
-    """Reduce segments for their inputs and outputs. Collective.
+    """Return segments reduced for their inputs and outputs. Collective.
 
     Args:
         segments: data of each segment.
@@ -122,9 +122,9 @@ def _join(
     classes: Sequence[SymmetryClass],
     results: Sequence[tuple[int, ClassCoordinates | None]],
 ) -> ReducedSegment:
-    """Return the coordinates of a segment from its symmetry classes. Collective.
+    """Return the coordinates of a segment from those of its symmetry classes. Collective.
 
-    Results are the rank of each class, and its coordinates on that rank.
+    ``results`` has the rank of each class, and the coordinates of the class on that rank.
     """
     comm = symmetry.shell.comm
     parts = [

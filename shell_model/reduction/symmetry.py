@@ -3,8 +3,8 @@
 
 A symmetry cell is a quarter or half of the shell of a segment. So matrices are small, round-off
 does not mix classes, and results are bitwise equal on any rank. Ranks exchange only forces and
-shapes, in sums of fixed order. Round-off must not depend on the number of ranks, since contact
-amplifies it.
+shapes, in sums of fixed order. Contact amplifies round-off, which therefore must not depend on the
+number of ranks.
 """
 
 from __future__ import annotations
@@ -49,7 +49,7 @@ _Result = TypeVar("_Result")
 # Components of the displacement, and of the rotation.
 _COMPONENTS = np.arange(6).reshape(2, 3)
 
-# Fraction of the largest value of a force below which its part in a class is round-off.
+# Fraction of the largest value of a column below which its part in a class is round-off.
 _ROUND_OFF = 1.0e-9
 
 
@@ -61,12 +61,12 @@ class SymmetryCell:
     """
 
     segment: Segment  #: the whole segment
-    mirrors: Sequence[Direction]  #: mirrors of the section
+    mirrors: Sequence[Direction]  #: normals of the mirror planes
     mesh: PlatedMesh  #: mesh of the cell
 
     @cached_property
     def plates(self) -> Plates:
-        """The plates of the cell on this rank, with matrices that count all images of the cell."""
+        """The plates of the cell on this rank; their matrices have the energy of all images."""
         copies = 2.0 ** len(self.mirrors)
         return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh, copies)
 
@@ -91,7 +91,7 @@ class SymmetryCell:
         return {}
 
     def matrix(self, form: Any) -> _FreeMatrix:
-        """Return the matrix of a form without supports; its energy is that of the whole segment."""
+        """Return the matrix of a form without supports, with the energy of the whole segment."""
         if form not in self._matrices:
             whole = compat.assemble_matrix(form, [], 0.0)
             first, columns, values = whole.getValuesCSR()
@@ -207,10 +207,10 @@ class SymmetryReduction:
             self._component[dofs - first] = _COMPONENTS[part]
 
     def jobs(self, inputs: Array, outputs: Array, probes: Array) -> list[Job]:
-        """Return a job for each excited symmetry class on rank 0. Collective.
+        """Return a job for each symmetry class that inputs or probes excite, on rank 0. Collective.
 
-        Inputs, output rows (``outputs``) and loads of probes are (num_owned, num_columns) on the
-        whole segment. Inputs and probes excite classes.
+        Load vectors ``inputs``, output rows ``outputs`` and load vectors ``probes`` are
+        (num_owned, num_columns) on the whole segment.
         """
         shell = self.shell
         blocks = inputs, outputs, probes, shell.springs.rows, shell.masses.rows
@@ -233,8 +233,8 @@ class SymmetryReduction:
     ) -> Array:
         """Add the results of all classes to ``total``, and return it. Collective.
 
-        ``compute`` returns the result of a class from its index and job; columns
-        (num_owned, num_columns) are the forces of jobs.
+        ``columns`` (num_owned, num_columns) are the forces of jobs. ``compute`` returns the result
+        of a class from its index and job.
         """
         jobs = self.jobs(columns, columns[:, :0], columns[:, :0])
         for root, part in share_jobs(self._comm, jobs, compute):
@@ -273,9 +273,9 @@ class SymmetryReduction:
         return self._comm.gather(mine)
 
     def _images(self, gathered: list[_Entries]) -> Array:
-        """Return the images (4, num_rows, num_columns) of a block.
+        """Return the entries (4, num_rows, num_columns) of a block in each image of the cell.
 
-        Both images of an entry on a mirror plane have half of it.
+        An entry on a mirror plane is divided equally between the images on both sides.
         """
         images = np.zeros((4, self.cell.component.size, gathered[0].columns))
         for entries in gathered:
@@ -296,7 +296,7 @@ def share_jobs(
 ) -> Iterator[tuple[int, _Result | None]]:
     """Compute the jobs of rank 0 on all ranks, and yield (rank, result) of each. Collective.
 
-    The result is None on other ranks. ``submit`` passes every second job to another process.
+    On all other ranks the result is None. ``submit`` sends every second job to another process.
     """
     roots = [number % comm.size for number in range(comm.bcast(len(jobs)))]
     mine = {
@@ -380,9 +380,9 @@ _IMAGES: Mapping[Direction, Sequence[tuple[int, int]]] = {
 
 
 def _sum_of_class(images: Array, signs: Array) -> Array:
-    """Return the part (num_rows, num_columns) of images that belongs to a symmetry class.
+    """Return the part (num_rows, num_columns) of images in the symmetry class with these signs.
 
-    It is free of round-off.
+    Columns that are only round-off are zero.
     """
     part = np.zeros(images.shape[1:])
     for image, sign in zip(images, signs, strict=True):

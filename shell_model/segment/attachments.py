@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Springs and masses that act on a displacement of a section, such as its mean deflection.
 
-A spring k on the displacement with the row r adds k r rᵀ to the stiffness. The row distributes its
-force over the section, and other motions stay free.
+A spring k on the displacement with the row r adds k r rᵀ to the stiffness. The row distributes the
+force over the section; other motions of the section stay free.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ class Attachments(NamedTuple):
     def from_rows(
         cls, rows: Sequence[Array], factors: Sequence[float], num_owned: int
     ) -> Attachments:
-        """Return attachments of several rows (num_owned,)."""
+        """Return the attachments with these rows (num_owned,) and factors."""
         return cls(np.array(rows).reshape(-1, num_owned).T, np.array(factors, dtype=np.float64))
 
     def add_to(self, comm: MPI.Comm, matrix: PETSc.Mat) -> None:
-        """Add factor · r rᵀ of each row to a matrix that is distributed by rows. Collective."""
+        """Add factor · r rᵀ for each row r to a matrix that is distributed by rows. Collective."""
         for row, factor in zip(self.rows.T, self.factors, strict=True):
             _add_outer_product(comm, matrix, row, float(factor))
 

@@ -20,11 +20,11 @@ _X = 0
 
 
 class Row(dict[int, float]):
-    """Linear combination of degrees of freedom: weights by global number."""
+    """Linear combination of degrees of freedom: weights by the global number of each."""
 
     @classmethod
     def from_weights(cls, dofs: Indices, weights: Array) -> Row:
-        """Return the row with these weights; several weights of a degree of freedom are added."""
+        """Return the row with these weights; weights of the same degree of freedom are added."""
         row = cls()
         for dof, weight in zip(dofs.tolist(), weights.tolist(), strict=True):
             row[dof] = row.get(dof, 0.0) + weight
@@ -111,7 +111,7 @@ class SectionNodes:
     def distortion(self) -> Row:
         """Return the row of the increase of the section's height in m.
 
-        It is the mean u_z of the highest plates less that of the lowest ones, by their midpoints.
+        It is the mean u_z of the plates with the highest midpoints, less that of the lowest ones.
         """
         plates = self.section.plates
         levels = np.array([plate.midpoint[1] for plate in plates])
@@ -128,18 +128,18 @@ class SectionNodes:
     def wall_deflection(self, direction: Direction) -> Row:
         """Return the row of the mean u_z or u_y of the shear-carrying plates in m.
 
-        The in-plane displacements of plates are weighted by their fractions of the shear force. So
-        a force on this row bends no plate.
+        The in-plane displacement of each plate is weighted by the force that the plate carries of a
+        unit shear force. So a force on this row bends no plate.
         """
         carriers = self.section.shear_plates(direction)
         plates = self.section.plates
         return sum((force * self._slide(plates[n]) for n, force in carriers), Row())
 
     def twist(self) -> Row:
-        """Return the row of the twist about x in rad: circulation over twice the enclosed area.
+        """Return the row of the twist about x in rad.
 
-        By Stokes' theorem it is exact for a rigid rotation. The distortion of a box into a
-        parallelogram does not contribute.
+        It is the circulation of the displacement over twice the enclosed area, exact for a rigid
+        rotation (Stokes). The distortion of a box into a parallelogram does not contribute.
         """
         turn = Row()
         for plate in self.section.plates:
@@ -158,9 +158,9 @@ class SectionNodes:
         return Row.from_weights(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def along(self, plate: Plate) -> tuple[Indices, Array]:
-        """Return the nodes of a plate, alternately ends and midpoints, and their positions in m.
+        """Return the nodes of a plate, alternately ends and midpoints, and positions in m along it.
 
-        They are in the order of y, or of z if the plate is steep.
+        Nodes are in ascending order of y, or of z if the plate is steep.
         """
         on_plate = np.flatnonzero(plate.distance(self.places[:, 1:]) < self.section.near)
         tangent = plate.tangent

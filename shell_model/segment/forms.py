@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Shell forms in UFL: flat facets with displacement u and rotation θ, both 3D vectors.
+"""Shell forms in UFL: flat facets with the displacement u and the rotation θ, both 3D vectors.
 
 Reissner-Mindlin kinematics in the frame of the facet: membrane strain ε, bending strain κ,
 transverse shear γ. The rotation about the normal (drilling) has no stiffness in this theory. A
-penalty couples it to the in-plane rotation of the displacement (Hughes and Brezzi 1989), so that
-bending moments pass folds. Quadratic displacements with Crouzeix-Raviart rotations (Campello,
-Pimenta and Wriggers 2003) do not lock in thin walls.
+penalty couples this rotation to the in-plane rotation of the displacement (Hughes and Brezzi 1989),
+so that bending moments pass folds. Quadratic displacements with Crouzeix-Raviart rotations
+(Campello, Pimenta and Wriggers 2003) do not lock in thin walls.
 """
 
 from __future__ import annotations
@@ -22,18 +22,18 @@ from geometry.boom import Material
 
 SHEAR_CORRECTION = 5.0 / 6.0
 
-# Drilling penalty as a fraction of G t. It is independent of the mesh, so that refinement does not
-# stiffen the shell. The drilling frequency is at least √(12 DRILLING G/ρ)/(2π t), 27 kHz for a wall
-# of 6.5 mm.
+# Drilling penalty as a fraction of G t_w for a wall of the thickness t_w. It is independent of the
+# mesh, so that refinement does not stiffen the shell. The drilling frequency is at least
+# √(12 DRILLING G/ρ)/(2π t_w), 27 kHz for t_w = 6.5 mm.
 #
 # At a fold, the penalty must be soft: it couples the slope of one plate to the in-plane rotation of
 # the other, which includes half of its shear strain. A stiff penalty would resist the shear flow.
 DRILLING = 1.0e-2
 
-# Drilling penalty as a fraction of G t for facets of a curved surface, where it must be stiff: a
-# surface with the twist b (1/m) has a couple b M about its normal, and a soft penalty adds about
-# (b t)² / DRILLING of the bending. The fraction 2 corresponds to the modulus G, since the skew
-# strain counts twice (Hughes and Brezzi 1989).
+# Drilling penalty as a fraction of G t_w for facets of a curved surface, where it must be stiff. In
+# a surface with the twist b in 1/m, a bending moment m_ab has a couple b m_ab about the normal, and
+# a soft penalty adds about (b t_w)² / DRILLING of the bending. The fraction 2 corresponds to the
+# modulus G, since the skew strain counts twice (Hughes and Brezzi 1989).
 DRILLING_OF_CURVED = 2.0
 
 
@@ -79,14 +79,14 @@ def plane_stress(young: Any, nu: Any, strain: Any) -> Any:
 
 
 class ShellForms:
-    """Bilinear forms of a shell, and the linear form of a load of 1 N/m³. First use compiles them.
+    """Bilinear forms of a shell, and the linear form of a load of 1 N/m³, compiled at first use.
 
     Args:
         space: displacement and rotation, see :func:`compat.shell_space`.
-        thickness: wall thickness t in m, constant on each cell.
+        thickness: wall thickness t_w in m, constant on each cell.
         material: isotropic material.
-        drilling: drilling penalty as a fraction of G t.
-        shear_correction: transverse shear stiffness as a fraction of G t; a large value gives the
+        drilling: drilling penalty as a fraction of G t_w.
+        shear_correction: transverse shear stiffness as a fraction of G t_w; a large value gives the
             thin shell of Kirchhoff and Love.
         compression: membrane force along x in N/m, constant on each cell, positive in compression.
 

@@ -36,22 +36,22 @@ class SegmentShell(Shell):
     def unit_loads(self) -> Mapping[Direction, Array]:
         """The load vectors (num_owned,) of 1 N/m in each direction. Collective.
 
-        Loads act on the walls without collars and diaphragms, and are zero in fixed rows.
+        Loads act on the walls, not on collars and diaphragms, and are zero in fixed rows.
         """
         loads = self._loads_on(lambda mesh: mesh.load_weight)
         return {direction: load / self.segment.area for direction, load in loads.items()}
 
     @cached_property
     def plain_loads(self) -> Mapping[Direction, Array]:
-        """The inertia loads (num_owned,) of the walls in each direction. Collective.
+        """The inertia loads (num_owned,) in each direction, with a mean of 1 N/m. Collective.
 
-        They exclude collars and diaphragms. The mean load is 1 N/m; without taper it is uniform.
+        They exclude collars and diaphragms.
         """
         loads = self._loads_on(lambda mesh: mesh.plain)
         return {direction: load / self.segment.area for direction, load in loads.items()}
 
     def outline(self, x: float) -> SectionNodes:
-        """Return the outline at x, the same on every rank. Collective."""
+        """Return the outline at x in m, the same on every rank. Collective."""
         section = self.segment.section_at(x)
         return SectionNodes.gather(self.comm, self.nodes, self.node_dofs, section, x)
 
@@ -110,10 +110,9 @@ class SegmentShell(Shell):
     def _loads_on(self, thickness: Callable[[PlatedMesh], Array]) -> dict[Direction, Array]:
         """Return load vectors (num_owned,) of a body force of 1 N/m³. Collective.
 
-        ``thickness`` returns thicknesses (num_triangles,) in m. Loads are zero in fixed rows. They
-        are exactly zero at vertices, since the integral of their quadratic shape functions
-        vanishes. Elsewhere at most two cells of a plain box contribute, so that the order of
-        summation has no effect.
+        ``thickness`` returns thicknesses (num_triangles,) in m. Loads are zero in fixed rows, and
+        at vertices, where the integrals of quadratic shape functions vanish. Elsewhere at most two
+        cells of a plain box contribute, so that the order of summation has no effect.
         """
         of_cells = self.comm.bcast(None if self.mesh is None else thickness(self.mesh))
         forms = self.plates.forms
@@ -133,12 +132,12 @@ class SegmentShell(Shell):
 
 
 def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) -> SegmentShell:
-    """Assemble the shell of a segment. Collective.
+    """Return the shell of a segment. Collective.
 
     A rigid support fixes the outline of the section along y and z; a clamped support fixes all its
     displacements and rotations. An elastic support is a spring on the mean deflections of the walls
     along z and y, and fixes the twist. Rotational restraints are springs on the rotation of the
-    section. Point masses act on the same mean deflections. The segment is free along x.
+    section. Point masses act on the mean deflections of the walls. The segment is free along x.
 
     Args:
         comm: ranks that share the shell.

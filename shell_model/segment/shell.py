@@ -44,7 +44,7 @@ class Plates:
 
     @cached_property
     def nodes(self) -> Sequence[tuple[Array, Indices]]:
-        """The (positions in m, global rows) of this rank's nodes, each (num_owned_nodes, 3).
+        """The positions in m and global rows of this rank's nodes, each (num_owned_nodes, 3).
 
         The first pair is for nodes of the displacement, the second for nodes of the rotation.
         """
@@ -61,7 +61,7 @@ class Plates:
 
 @dataclass(frozen=True)
 class Shell:
-    """Shell model M ü + K u = f, distributed by rows. Matrices are assembled on first use.
+    """Matrices of a shell, distributed by rows and assembled on first use.
 
     Args:
         comm: ranks that share the shell.
@@ -78,12 +78,12 @@ class Shell:
 
     @cached_property
     def stiffness(self) -> PETSc.Mat:
-        """The stiffness (num_dofs, num_dofs). Fixed rows have a positive diagonal. Collective."""
+        """The stiffness K (num_dofs, num_dofs); fixed rows have a positive diagonal. Collective."""
         return self._assemble(self.plates.forms.stiffness, 1.0, self.springs)
 
     @cached_property
     def mass(self) -> PETSc.Mat:
-        """The mass matrix (num_dofs, num_dofs), with 0 on the diagonal of fixed rows. Collective.
+        """The mass matrix M (num_dofs, num_dofs), with 0 in fixed rows. Collective.
 
         So modes of fixed degrees of freedom have infinite frequency.
         """
@@ -91,7 +91,7 @@ class Shell:
 
     @cached_property
     def geometric(self) -> PETSc.Mat | None:
-        """The matrix K_G (num_dofs, num_dofs); None without axial forces. Collective."""
+        """The geometric stiffness (num_dofs, num_dofs); None without axial force. Collective."""
         if not self.plates.compressed:
             return None
         return self._assemble(
@@ -136,7 +136,7 @@ class Shell:
         return int(first), int(last)
 
     def rigid_motions(self) -> Array:
-        """Return a basis (num_owned, num_free) of the unrestrained rigid motions. Collective.
+        """Return a basis (num_owned, num_free) of the rigid motions that are free. Collective.
 
         Without supports and springs there are six.
         """
@@ -151,12 +151,12 @@ class Shell:
         held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
         # All ranks use the basis of rank 0. The translation along x is separate, since no force
         # excites it.
-        unheld = np.eye(6)
+        free = np.eye(6)
         if held.size:
             slides = 0 if held[:, 0].any() else 1
             others = null_space(qr(held[:, slides:], mode="r")[0][:6])
-            unheld = block_diag(np.eye(slides), others)
-        return np.asarray(motions @ self.comm.bcast(unheld))
+            free = block_diag(np.eye(slides), others)
+        return np.asarray(motions @ self.comm.bcast(free))
 
     def turn(self, axis: Array, x: float) -> Array:
         """Return the motion (num_owned,) of a rotation by 1 rad about an axis (3,) at x in m."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Linear solvers for K + σ M."""
+"""Direct solver for K + σ M of a shell, and products with blocks of columns."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ _PREFIX, _ORDERING = "shifted_", "mat_mumps_icntl_7"
 
 
 class ShiftedSolver:
-    """Direct solver for K + σ M with σ = (2π f)² at a frequency f in Hz. Collective."""
+    """Direct solver for K + σ M with the shift σ = (2π f)² of a frequency f in Hz. Collective."""
 
     def __init__(self, shell: Shell, frequency: float) -> None:
         self._mass = shell.mass
@@ -68,7 +68,7 @@ class ShiftedSolver:
         options.delValue(_ORDERING)
 
     def move(self, frequency: float) -> None:
-        """Factorise at another frequency in Hz, with the same symbolic analysis."""
+        """Factorise K + σ M at another frequency in Hz, with the same symbolic analysis."""
         sigma = (2.0 * np.pi * frequency) ** 2
         if sigma == self.sigma:
             return

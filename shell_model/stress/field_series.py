@@ -15,19 +15,19 @@ import xarray as xr
 from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
 # Maximum number of frames of a series, and of triangles in all frames: at about 110 bytes per
-# triangle, a series has at most 110 MB. Compression would hardly reduce the size.
+# triangle, a series has at most 110 MB. Compression would hardly reduce this.
 FRAMES, TRIANGLES = 51, 1_000_000
 
 
 def series_times(fields: xr.Dataset) -> list[float]:
-    """Return the times of a series in s, evenly spaced over the run, including its ends."""
+    """Return the evenly spaced times of a series in s, from the start to the end of the run."""
     times = fields["time"].values
     frames = max(2, min(FRAMES, TRIANGLES // fields.sizes["triangle"]))
     return [float(t) for t in np.linspace(times[0], times[-1], frames)]
 
 
 def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:
-    """Write displacements and stresses for ParaView at the output times nearest to given times.
+    """Write displacements and stresses for ParaView at the output times nearest to ``times``.
 
     Each ``.vtu`` file has displacements in m at points, and on triangles the number of the segment,
     the von Mises stresses of both faces and the middle, and six stress components, in Pa.

@@ -32,9 +32,9 @@ from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 
 
 def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
-    """Return stress components (num_modes, num_triangles, 6) of shapes in Pa. Collective.
+    """Return stresses (num_modes, num_triangles, 6) in Pa on rank 0, None elsewhere. Collective.
 
-    Shapes are this rank's rows (num_owned, num_modes). The result is on rank 0, None elsewhere.
+    ``shapes`` (num_owned, num_modes) are this rank's rows of the shapes.
     """
     form, component = _stress_form(shell.space, shell.segment)
     columns = []
@@ -76,7 +76,7 @@ def wall_frame(domain: Any) -> tuple[Any, Any, Any]:
 
 
 def _stress_form(space: Any, segment: Segment) -> tuple[Any, Any]:
-    """Return the form (cell, dof) of stress times area, and its constant that selects a component.
+    """Return the form (cell, dof) of stress times area, and the constant that selects a component.
 
     Bending stress is per unit of distance from the mid-surface.
     """
@@ -128,9 +128,8 @@ def gather_fields(
         1/√kg: the displacement in m is the sum of the modal coordinates times ``modes``. Segment k,
         from 1 on, has ``coordinates_k`` (own_k, mode), ``stress_k`` (own_k, triangle_k, stress) and
         ``plate_k``. ``coordinates_k`` transforms the modal coordinates to the coordinates of the
-        segment, which include the forces of its cylinders. Their sum times ``stress_k`` is the
-        stress in Pa. ``plate_k`` has the plate names to which ``wall`` refers. Coordinates of other
-        segments cause no stress and are not stored.
+        segment, which include the forces of its cylinders. The sum of these coordinates times
+        ``stress_k`` is the stress in Pa. ``plate_k`` has the plate names to which ``wall`` refers.
     """
     moved = [
         vertex_displacements(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)
@@ -188,9 +187,9 @@ def vertex_displacements(shell: SegmentShell, shapes: Array) -> _Numbers | None:
 
 
 def _axial_stress_of(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) -> Array:
-    """Return the axial stress (num_triangles,) in Pa of a normal force N(x) in N.
+    """Return the axial stress (num_triangles,) in Pa of an axial force in N as a function of x.
 
-    The force acts on the walls, and spreads over the thickness of collars.
+    The force acts on the walls, and is distributed over the thickness including collars.
     """
     return force(mesh.along) / segment.area * mesh.load_weight / mesh.thickness
 

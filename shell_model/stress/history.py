@@ -2,8 +2,8 @@
 """Stress maxima of a run: near stations and supports at every output time, and overall.
 
 At a line force, for example beside a web, the stress of the nearest triangles increases with mesh
-refinement. It gives position and time of the maximum, but is no design stress. The mean over a
-patch of fixed size converges.
+refinement. It gives position and time of the maximum, but is no design stress. A patch stress, the
+mean over a part of a wall of fixed size, converges.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from shell_model.stress.stresses import Face, Modes, ShellStress, Stress, WallFo
 
 @dataclass(frozen=True, slots=True)
 class LargestPatch:
-    """Largest mean stress of a patch in Pa, with time in s, segment, and x of its band in m."""
+    """Largest patch stress in Pa, with time in s, segment, and x in m of the centre of the band."""
 
     von_mises: float
     time: float
@@ -40,7 +40,7 @@ class WallForcesAt:
 
 @dataclass(frozen=True, slots=True)
 class PlaceHistory:
-    """Largest stresses in Pa of a segment near x in m, in each interval of the run."""
+    """Largest triangle and patch stresses in Pa of a segment near x in m, by interval of a run."""
 
     segment: str
     x: float
@@ -50,7 +50,7 @@ class PlaceHistory:
 
 @dataclass(frozen=True, slots=True)
 class StressHistory:
-    """Largest stresses near each place in intervals of a run, and centres of intervals in s."""
+    """Largest stresses near each place in intervals of a run, and mean times of intervals in s."""
 
     time: list[float]
     places: list[PlaceHistory]
@@ -58,7 +58,7 @@ class StressHistory:
 
 @dataclass(frozen=True, slots=True)
 class StressSummary:
-    """Largest stress of a run, and the wall forces at its time.
+    """Largest stress of a run, and the wall forces at the time of this stress.
 
     Args:
         von_mises: largest stress of a triangle in Pa.
@@ -85,20 +85,20 @@ class StressSummary:
     history: StressHistory
 
 
-# Half-length in m of the band at a position. A patch is half of a wall in the band.
+# Half-length in m of the band at a place. A patch is a half of a wall within the band.
 BAND = 0.25
 
 # Number of intervals in the history of a summary.
 PARTS = 80
 
-# Faces of a wall, whose larger stress counts.
+# Faces of a wall. The stress of a triangle is the larger one of both faces.
 _FACES: tuple[Face, ...] = ("outer", "inner")
 
-# Number of output times of an interval for bounds of stresses, the fraction of the largest motion
-# above which motions are principal, the round-off of bounds, and a stress in Pa that is zero.
+# Number of output times of an interval for bounds of stresses, fraction of the largest motion above
+# which motions are principal, round-off of bounds, and a negligible stress in Pa.
 _INTERVAL, _REST, _ROUND_OFF, _TINY = 24, 1.0e-6, 1.0e-3, 1.0e-30
 
-# Minimum number of instants at which stresses outside bands are evaluated.
+# Minimum number of output times at which stresses outside bands are evaluated.
 INSTANTS = 400
 
 
@@ -122,8 +122,7 @@ def stress_near_places(
 
     Returns:
         ``von_mises`` (time, segment, place) in Pa, the maximum over triangles and faces, and
-        ``von_mises_patch``, the maximum of the mean stresses of patches; NaN where a segment is
-        absent.
+        ``von_mises_patch``, the maximum over patches; NaN where a segment is absent.
     """
     shape = (shell.time.size, len(names), len(places))
     largest, patched = (np.full(shape, np.nan, dtype=np.float32) for _ in range(2))
@@ -219,7 +218,7 @@ def _summed_history(history: xr.Dataset) -> StressHistory:
 
 
 def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:
-    """Return the largest stress: of bands at all output times, of all triangles at some times."""
+    """Return the largest stress in bands at all output times, and elsewhere at some of them."""
     bands = history["von_mises"].values
     stride = max(1, shell.time.size // INSTANTS)
     segments = np.unique(shell.segment)
@@ -245,17 +244,17 @@ def _peaks(
 ) -> tuple[Modes, Indices]:
     """Return the largest stress (num_steps,) of a segment's triangles in Pa, and its triangle.
 
-    The von Mises stress is a norm. So it is at most the sum of the norms of its parts: of axial
-    forces, of principal motions, and of the rest of the motion. Stresses are evaluated only for
-    triangles with such a bound above the largest known stress of an interval.
+    The von Mises stress is a norm. So it is at most the sum of the norms of three parts: axial
+    forces, principal motions, and the rest of the motion. Stresses are evaluated only for triangles
+    whose bound exceeds the largest known stress of an interval.
     """
     number = int(shell.segment[triangles[0]])
     modes = shell.modes[number].take(triangles - np.searchsorted(shell.segment, number), axis=1)
-    # No stress of a coordinate exceeds its weight: (σ_x, σ_s, τ_xs) of a face has at most twice the
-    # squares of both parts, and the von Mises stress at most three times its own.
+    # A unit of a coordinate causes no von Mises stress above the weight of the coordinate. The
+    # factor 6 is 2 for the sum of membrane and bending stress, times 3 for the von Mises stress.
     weights = np.sqrt(6.0 * np.einsum("mtc,mtc->m", modes, modes, dtype=float)) + _TINY
     states = shell.states[number][steps] * weights
-    # The squares of singular values suffice, since any rest of the motion enters the bound.
+    # Principal motions need not be accurate, since the bound includes the rest of the motion.
     squares, directions = np.linalg.eigh(states.T @ states)
     motions = directions[:, squares > _REST**2 * squares[-1]].T
     parts = states @ motions.T
@@ -276,7 +275,7 @@ def _peaks(
 
 
 def _patches(shell: ShellStress, band: Indices) -> Array:
-    """Return the area weights (num_patches, num_triangles) of patches, half walls in a band."""
+    """Return weights by area (num_patches, num_triangles) of the patches in a band."""
     wall, places = shell.wall[band], shell.centroids[band, 1:]
     # A level wall is divided at its middle, a steep wall or a diaphragm at half its height.
     flat = np.abs(shell.outward[band, 2]) > np.sqrt(0.5)

@@ -2,8 +2,8 @@
 """Deflections and section forces along segments of shells.
 
 Mesh lines around the whole section divide a segment into bands. Deflections of a band are means
-over its walls; section forces are integrals of membrane and bending stresses over its walls,
-divided by its length. An axial force P adds P times the mean slope to the shear force.
+over the walls; section forces are integrals of membrane and bending stresses over the walls,
+divided by the length of the band. The shear force also has the part −P w′ of the compression P.
 """
 
 from __future__ import annotations
@@ -17,14 +17,14 @@ from scipy.sparse import csr_matrix
 from dynamics.line import Line, Quantity
 from geometry.arrays import Array, Indices
 from geometry.boom import Boom
-from shell_model.stress.stresses import SAME_LINE, ShellStress, lines_around, within
+from shell_model.stress.stresses import SAME_LINE, ShellStress, linear_stress_weights, lines_around
 
 # Maximum number of bands of a segment.
 _BANDS = 60
 
 
 def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
-    """Return the rows along each segment, with band boundaries at supports, loads and contacts."""
+    """Return the line of each segment, with band boundaries at supports, loads and contacts."""
     unit_states = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )
@@ -63,7 +63,7 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
 
 
 def band_boundaries(spans: Array, places: Sequence[float]) -> Array:
-    """Return ascending x in m of mesh lines around the whole section that bound bands.
+    """Return the ascending x in m of the boundaries of bands, which are mesh lines.
 
     Args:
         spans: smallest and largest x (num_triangles, 2) of the triangles in m.
@@ -157,7 +157,8 @@ def _forces(
     s_y, s_z = up, -across
     bending_moment = shell.thickness[triangles] * strength / 6.0
     within_z, within_y = (
-        within(part, reach, strength, place) for reach, place in zip(reaches, (z, y), strict=True)
+        linear_stress_weights(part, reach, strength, place)
+        for reach, place in zip(reaches, (z, y), strict=True)
     )
     weights = (
         {2: s_z * strength, 0: -slope * up * strength},

@@ -21,7 +21,8 @@ Modes = npt.NDArray[np.float32]
 
 Face = Literal["outer", "middle", "inner"]
 
-# Stress components along x, along s and in shear: membrane, then bending at the outer face.
+# Stress components along x, along the coordinate s around the section, and in shear: membrane, then
+# bending at the outer face.
 COMPONENTS = (
     "membrane_x",
     "membrane_s",
@@ -43,7 +44,7 @@ _NEGLIGIBLE = 1.0e-300
 # Number of values of a batch of times, which fits in the cache of the processor.
 _AT_ONCE = 1_000_000
 
-# Number of instants that are computed together.
+# Number of output times that are computed together.
 _TOGETHER = 10
 
 
@@ -64,8 +65,7 @@ class Stress(NamedTuple):
     """Stresses at the centroids of triangles, in Pa."""
 
     membrane: npt.NDArray[np.float32]  #: σ_x, σ_s, τ_xs (..., 3) of the mid-surface
-    #: stress (..., 3) of the outer face less the stress of the mid-surface; the inner face has the
-    #: opposite difference
+    #: stress (..., 3) of the outer face less that of the mid-surface; opposite for the inner face
     bending: npt.NDArray[np.float32]
 
     def at(self, face: Face) -> npt.NDArray[np.float32]:
@@ -78,7 +78,7 @@ class Stress(NamedTuple):
         return np.asarray(np.sqrt(x * x - x * s + s * s + 3.0 * xs * xs))
 
     def largest(self) -> npt.NDArray[np.float32]:
-        """Return the larger von Mises stress (...) of both faces in Pa."""
+        """Return the larger of the von Mises stresses (...) of both faces in Pa."""
         return np.maximum(self.von_mises("outer"), self.von_mises("inner"))
 
 
@@ -125,7 +125,7 @@ class ShellStress:
 
     @classmethod
     def at_rest(cls, mesh: PlatedMesh, modes: Modes) -> ShellStress:
-        """Return the stresses of one segment at rest, from its stress components in Pa."""
+        """Return the stresses of one segment, from constant stress components ``modes`` in Pa."""
         return cls(
             **_geometry(mesh.points, mesh.triangles),
             thickness=mesh.thickness,
@@ -145,7 +145,7 @@ class ShellStress:
     def instants(self, times: Sequence[float]) -> Iterator[Stress]:
         """Yield the stress of all triangles at the output times nearest to ``times`` in s."""
         steps = [int(np.abs(self.time - t).argmin()) for t in times]
-        # Modes exceed the cache of a processor, so that each is read once for a batch of times.
+        # Modes exceed the cache of the processor, so that each is read once for several times.
         for begin in range(0, len(steps), _TOGETHER):
             some = steps[begin : begin + _TOGETHER]
             values = [
@@ -159,13 +159,12 @@ class ShellStress:
     def over_time(
         self, triangles: Indices, steps: slice = slice(None), means: Array | None = None
     ) -> Iterator[tuple[slice, Stress]]:
-        """Yield stresses (num_of_these_times, num_triangles, 3) of triangles, in batches of times.
+        """Yield a slice of output times and the stresses of triangles at these times.
 
         Args:
             triangles: indices of triangles of one segment.
             steps: slice of output times; the yielded slices are relative to its start.
-            means: weights (num_means, num_triangles); if they are given, weighted means are yielded
-                instead of stresses of triangles.
+            means: weights (num_means, num_triangles) of means, which then replace the triangles.
         """
         (number,) = np.unique(self.segment[triangles])
         first = int(np.searchsorted(self.segment, number))
@@ -185,7 +184,7 @@ class ShellStress:
             yield part, _stress(values.transpose(0, 2, 1))
 
     def largest(self, triangles: Indices, steps: slice = slice(None)) -> npt.NDArray[np.float32]:
-        """Return the larger von Mises stress (num_times, num_triangles) of both faces over time."""
+        """Return the larger von Mises stress (num_times, num_triangles) of both faces in Pa."""
         return np.concatenate([s.largest() for _, s in self.over_time(triangles, steps)])
 
     def holds(self, segment: int, x: float) -> bool:
@@ -199,10 +198,9 @@ class ShellStress:
         return np.flatnonzero(close & (self.segment == segment))
 
     def row(self, segment: int, x: float) -> Indices:
-        """Return the triangles of walls between two neighbouring mesh lines around x in m.
+        """Return the wall triangles between the two mesh lines around the section that enclose x.
 
-        Mesh lines are around the whole section. If x is on such a line, the triangles are those
-        beyond it.
+        x is in m. If it is on such a line, the triangles are those beyond the line.
         """
         mine = (self.segment == segment) & (self.wall < len(self.plates[segment]))
         lines = lines_around(self.spans[mine])
@@ -217,7 +215,7 @@ class ShellStress:
 
 
 def lines_around(spans: Array) -> Array:
-    """Return the x in m, ascending, that no triangle crosses.
+    """Return the ascending x in m of mesh lines around the section, which no triangle crosses.
 
     ``spans`` (num_triangles, 2) has the smallest and the largest x of triangles in m.
     """
@@ -263,7 +261,7 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
         _, across, up = shell.outward[part].mean(axis=0).round(12)
         bending_moment = up * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
         reach, whole = np.array([abs(across) * width.sum()]), np.zeros(part.size, dtype=np.int64)
-        moment = (strength * z + within(whole, reach, strength, z)) @ sigma
+        moment = (strength * z + linear_stress_weights(whole, reach, strength, z)) @ sigma
         # The coordinate s runs along -z on the right and along -y on the bottom.
         sense = np.sign(up if abs(up) > abs(across) else -across)
         forces[name] = WallForces(
@@ -274,8 +272,8 @@ def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[st
     return forces
 
 
-def within(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
-    """Return weights (num_triangles,) in m³ of the moment of linear stress within triangles.
+def linear_stress_weights(part: Indices, reach: Array, strength: Array, place: Array) -> Array:
+    """Return weights (num_triangles,) in m³ for the moment of linear stress within triangles.
 
     Args:
         part: index (num_triangles,) of the wall in its band.
