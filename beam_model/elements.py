@@ -10,8 +10,9 @@ the local flexibility (Eisenberger and Reich 1989).
 
 from __future__ import annotations
 
+from collections.abc import Hashable
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, Literal, Protocol
 
 import numpy as np
@@ -23,9 +24,17 @@ from geometry.segment import Segment
 
 Theory = Literal["euler-bernoulli", "timoshenko"]
 
+# Gauss points and weights from ξ = 0 to 1, exact for products of two cubics.
+_POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+GAUSS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 
-class Element(Protocol):
+
+class Element(Hashable, Protocol):
     """Shape functions of an element at ξ = x/ℓ_e, with x from its first node."""
+
+    @property
+    def h(self) -> float:
+        """The length in m."""
 
     def deflection(self, xi: Array) -> Array:
         """Return the shape functions (4, num_points) of w."""
@@ -51,6 +60,16 @@ def element(segment: Segment, theory: Theory, start: float, h: float) -> Element
     bending = [1.0 / place.bending_stiffness for place in places]
     shear = [_shear_flexibility(place, theory) for place in places]
     return TaperedElement(h, _parabola(bending), _parabola(shear))
+
+
+@lru_cache(maxsize=256)
+def quadrature(element: Element) -> tuple[Array, Array, Array, Array, Array]:
+    """Return the weights in m and the shape functions of w, w′ and β (4, num_points) at the Gauss
+    points, and the stiffness (4, 4). Equal elements share them.
+    """
+    xi, weights = GAUSS[0], element.h * GAUSS[1]
+    shapes = element.deflection(xi), element.slope(xi), element.rotation(xi)
+    return weights, *shapes, element.stiffness(xi, weights)
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,7 +138,7 @@ class PrismaticElement:
         return bending + shear_stiffness * products(self.slope(xi) - self.rotation(xi), weights)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class TaperedElement:
     """Element with a varying section.
 

@@ -15,14 +15,11 @@ from operator import attrgetter
 import numpy as np
 
 from beam_model.component import Component, Motion, SegmentModel, products
-from beam_model.elements import Theory, element
+from beam_model.elements import GAUSS, Theory, element, quadrature
 from geometry.arrays import Array
 from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 from geometry.contact_places import load_places
 from geometry.segment import APART
-
-# Gauss points and weights, exact for products of two cubics.
-_GAUSS = np.polynomial.legendre.leggauss(4)
 
 # Distance from another node, as a fraction of a segment's length, within which a mass or a jump of
 # the axial force has no node of its own: eigenvalues lose digits with the inverse fourth power of
@@ -91,20 +88,17 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     num_dofs = 2 * nodes.size
     stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
     unit_load, rotation_load, inertia_load = np.zeros((3, num_dofs))
-    points, weights = _GAUSS
     lengths = np.diff(nodes).tolist()
     elements = [element(segment, theory, *one) for one in zip(nodes, lengths, strict=False)]
     for k, (here, h) in enumerate(zip(elements, lengths, strict=True)):
         dofs = slice(2 * k, 2 * k + 4)
-        xi, weight = 0.5 * (points + 1.0), 0.5 * h * weights
-        w, slope = here.deflection(xi), here.slope(xi)
-        x = nodes[k] + h * xi
+        weight, w, slope, beta, stiff = quadrature(here)
+        x = nodes[k] + h * GAUSS[0]
         heavy, turned = (weight * segment.property_ratio(number, x) for number in (_MASS, _ROTARY))
-        stiffness[dofs, dofs] += here.stiffness(xi, weight)
+        stiffness[dofs, dofs] += stiff
         mass[dofs, dofs] += segment.mass_per_length * products(w, heavy)
         rotation_load[dofs] += segment.mass_per_length * w @ (heavy * x)
         if rotary_inertia:
-            beta = here.rotation(xi)
             mass[dofs, dofs] += segment.rotary_inertia * products(beta, turned)
             rotation_load[dofs] += segment.rotary_inertia * beta @ turned
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
