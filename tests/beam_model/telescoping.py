@@ -121,7 +121,7 @@ class Beam:
 
 
 def runge_kutta(
-    boom: Boom, history: SCurve, times: Array, thrust: float = 0.0
+    boom: Boom, history: SCurve, times: Array, thrust: float
 ) -> tuple[Array, float]:
     """Return the tip deflection (num_times,) in m and the work of the drive in J by Hermite
     elements.
@@ -148,11 +148,9 @@ def runge_kutta(
         way = history.travel * (part - sin(2 * pi * part) / (2 * pi))
         speed = history.travel / history.duration * (1 - cos(2 * pi * part))
         q, v = state[:ends], state[ends:-1]
-        rates, power = turned @ q + pushed, 0.0
-        if thrust:
-            slope = outer.rows(tail + way)[1] @ q[:n]
-            rates += inverse[:, :n] @ (thrust * outer.pressed(tail + way) @ q[:n])
-            power -= 0.5 * thrust * speed * slope**2
+        softened = thrust * outer.pressed(tail + way) @ q[:n]
+        rates = turned @ q + pushed + inverse[:, :n] @ softened
+        power = -0.5 * thrust * speed * (outer.rows(tail + way)[1] @ q[:n]) ** 2
         for x_outer, x_inner, moved in ((tail + way, tail, 0), (head, head - way, 1)):
             (w, w_slope), (u, u_slope) = outer.rows(x_outer), inner.rows(x_inner)
             gap = u @ q[n:] - w @ q[:n]

@@ -36,17 +36,17 @@ def five_terms(
 
 
 def test_a_small_change_stays_small(five_terms: GapSystem) -> None:
-    """Reference: the same boom. A relative change of the load of 1e-9 changes its motion for 10 s
+    """Reference: the same boom. A relative change of the load of 1e-9 changes its motion for 5 s
     as little.
     """
     changed = replace(five_terms, load=five_terms.load * (1.0 + 1e-9))
-    one, other = (FixedStep(STEP)(Motion(system, 10.0)) for system in (five_terms, changed))
+    one, other = (FixedStep(STEP)(Motion(system, 5.0)) for system in (five_terms, changed))
     tip = one.data["tip"].values
     assert np.abs(tip - other.data["tip"].values).max() < 1e-7 * np.ptp(tip)
     assert one.data.attrs["contact_changes"] > 20
     # Without friction the same change grows to the size of the motion.
     free = [
-        AdaptiveStep()(Motion(replace(system, friction_rows=np.zeros((0, 5)), frictions=()), 10.0))
+        FixedStep(STEP)(Motion(replace(system, friction_rows=np.zeros((0, 5)), frictions=()), 5.0))
         for system in (five_terms, changed)
     ]
     apart = np.abs(free[0].data["tip"].values - free[1].data["tip"].values)

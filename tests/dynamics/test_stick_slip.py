@@ -40,15 +40,16 @@ def test_cycles_of_sticking_and_slipping(speed: float) -> None:
     radius = np.hypot(slack, speed / OMEGA)
     period = 2.0 * slack / speed + 2.0 / OMEGA * (np.pi - np.arctan(slack * OMEGA / speed))
     first = 1.5 * FRICTION / STIFFNESS / speed
-    found = drawn(ROPE, speed, first + 9.99 * period, 21_000)
-    time = np.linspace(0.0, first + 9.99 * period, 21_001)
+    duration = first + 4.99 * period
+    found = drawn(ROPE, speed, duration, 11_000)
+    time = np.linspace(0.0, duration, 11_001)
     begins = time[1:][
         (found.series["extension_speed"][:-1] == 0.0) & (found.series["extension_speed"][1:] > 0.0)
     ]
     assert begins[0] == pytest.approx(first, abs=2.0 * time[1])
-    assert (begins[9] - begins[0]) / 9.0 == pytest.approx(period, rel=3e-4)
+    assert (begins[4] - begins[0]) / 4.0 == pytest.approx(period, rel=6e-4)
     told = found.results
-    assert told.sticks == 10
+    assert told.sticks == 5
     assert told.peak == pytest.approx(FRICTION + STIFFNESS * radius, rel=1e-5)
     assert told.speed == pytest.approx(speed + OMEGA * radius, rel=1e-5)
     assert told.acceleration == pytest.approx(radius * OMEGA**2, rel=1e-3)
