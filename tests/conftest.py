@@ -47,9 +47,7 @@ def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
 
 
 def pytest_collection_modifyitems(items: list[pytest.Function]) -> None:
-    """Put slow files first, beginning with shells without motions, so that all workers stay
-    busy.
-    """
+    """Put slow files first, shells without motions before others, so that all workers stay busy."""
     slow = {item.path for item in items if item.get_closest_marker("slow")}
     items.sort(key=lambda item: (item.path not in slow, _moves(item)))
 
@@ -71,9 +69,7 @@ def steel() -> Material:
 
 @pytest.fixture(scope="session")
 def paper_boom(steel: Material) -> Boom:
-    """Return two segments on supports at 0 and 2 m, with a play of 14 mm at 9 and 10 m and the load
-    q.
-    """
+    """Return segments on 0 and 2 m, with a play of 14 mm at 9 and 10 m and the load q."""
     outer_box = infer_outer_section(83.16 / steel.density, 3.7986e-4, 494.5 / 302.7)
     outer = Segment(
         name="outer",

@@ -39,9 +39,7 @@ def raised() -> tuple[Boom, float]:
 
 
 def level() -> tuple[Boom, float]:
-    """Return a level boom under 10 kN at the tip and 50 kN along the boom, and its cylinder force
-    in N.
-    """
+    """Return a level boom under 10 kN at the tip, 50 kN along, and its cylinder force in N."""
     pressed = with_compression([_segment()], [], [Thrust(0, LENGTH, 50.0e3)])
     force = (10.0e3 * LENGTH - 50.0e3 * DEPTH) / ARM
     assert force == pytest.approx(64.7e3, rel=1e-4)

@@ -14,9 +14,7 @@ Laws = ContactLaw | Sequence[ContactLaw]
 
 
 def touching(boom: Boom, laws: Laws, lateral_laws: Laws = ()) -> Boom:
-    """Return the boom with a law in all joints, or one in each; the law of a gap also gives the
-    play.
-    """
+    """Return the boom with a law in all joints, or one in each; a gap's law also has play."""
     changes: list[dict[str, Any]] = [{} for _ in boom.joints]
     for prefix, given in (("", laws), ("lateral_", lateral_laws if boom.spatial else ())):
         each = [given] * len(boom.joints) if isinstance(given, ContactLaw) else given

@@ -93,9 +93,7 @@ def bonded_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str
 
 
 class Span:
-    """Four solutions of EI w'''' = m ω² w on [a, b], each at most 1 there, and their
-    derivatives.
-    """
+    """Four solutions of EI w'''' = m ω² w on [a, b], each at most 1 there, and derivatives."""
 
     def __init__(self, segment: Segment, a: float, b: float, omega: float) -> None:
         self.a, self.b = a, b

@@ -120,9 +120,7 @@ class Beam:
         return np.asarray(powers @ self.cubics[e])
 
 
-def runge_kutta(
-    boom: Boom, history: SCurve, times: Array, thrust: float
-) -> tuple[Array, float]:
+def runge_kutta(boom: Boom, history: SCurve, times: Array, thrust: float) -> tuple[Array, float]:
     """Return the tip deflection (num_times,) in m and the work of the drive in J by Hermite
     elements.
 

@@ -103,9 +103,7 @@ def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
 def test_axial_forces_turn_a_boom_about_its_lowered_pin(
     luffed: Callable[[], tuple[Boom, float]],
 ) -> None:
-    """Reference: analytic, moments about the pin. Without axial forces, the force would be 4 to 21
-    % larger.
-    """
+    """Reference: analytic, moments about the pin; without axial forces 4 to 21 % larger."""
     boom, expected = luffed()
     for models in (
         finite_element_segments(boom, 0.5, "timoshenko", rotary_inertia=True),
@@ -132,9 +130,7 @@ def test_a_lowered_pin_needs_no_cylinder() -> None:
 
 @pytest.mark.parametrize("bonded", [False, True], ids=["one", "of two bonded"])
 def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, bonded: bool) -> None:
-    """Reference: analytic, r √(k / I) about the hinge. Stiff beams agree within 2e-4, rigid ones to
-    round-off.
-    """
+    """Reference: analytic, r √(k / I) about the hinge, within 2e-4; rigid beams to round-off."""
     stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
     whole = beam(supports=(HINGE,), material=stiff)
     parts = (replace(whole, end=6.0), replace(whole, start=6.0, supports=(), name="fly"))

@@ -31,9 +31,7 @@ BOTH_WAYS = PowerContact(SPRING, exponent=1.0).with_clearance(0.0)
 
 
 def decrements(system: GapSystem, position: Array, duration: float, name: str) -> Array:
-    """Return the logarithmic decrements between successive maxima of an output that vibrates about
-    0.
-    """
+    """Return the logarithmic decrements of successive maxima of an output about 0."""
     run = AdaptiveStep()(Motion(system, duration, 1e-4, position))
     swing = run.data[name].values
     inside = swing[1:-1]

@@ -118,9 +118,7 @@ def test_statics_are_exact_at_the_nodes_of_any_mesh(
 def test_places_too_near_for_an_element_share_a_node(
     beam: Beam, theory: Theory, apart: float
 ) -> None:
-    """Reference: analytic, an overhanging beam under a force at the second of two close
-    positions.
-    """
+    """Reference: analytic, an overhanging beam under a force at one of two close positions."""
     segment = beam(supports=(3.0, 4.2), masses=(PointMass(8.0 - apart, 1.0),))
     exact = OverhangingBeam(segment, [(6.1 + apart, 3.0e4)], 0.0, shear_stiffness(segment, theory))
     model = bending(segment, 0.5, (6.1, 6.1 + apart), theory, False)

@@ -24,9 +24,7 @@ STEP = 4.0e-6
 def five_terms(
     paper_boom: Boom, series: Callable[..., list[SegmentModel]], paper_law: PowerContact
 ) -> GapSystem:
-    """Return the five-term series with normal forces of 4500 N at the tail and 5000 N at the
-    head.
-    """
+    """Return the five-term series with normal forces of 4500 N (tail) and 5000 N (head)."""
     system = gap_system(touching(paper_boom, paper_law), series((2, 3)))
     return replace(
         system,
@@ -36,9 +34,7 @@ def five_terms(
 
 
 def test_a_small_change_stays_small(five_terms: GapSystem) -> None:
-    """Reference: the same boom. A relative change of the load of 1e-9 changes its motion for 5 s
-    as little.
-    """
+    """Reference: the same boom. 1e-9 of the load changes its motion for 5 s as little."""
     changed = replace(five_terms, load=five_terms.load * (1.0 + 1e-9))
     one, other = (FixedStep(STEP)(Motion(system, 5.0)) for system in (five_terms, changed))
     tip = one.data["tip"].values
@@ -79,9 +75,7 @@ def test_the_ledger_closes_beside_damping_for_long(five_terms: GapSystem) -> Non
 
 
 def test_a_smaller_step_changes_little(five_terms: GapSystem) -> None:
-    """Reference: a finer step, 1e-6 s. The order is 1 if joints stick: a sixteenth of the step has
-    a tenth of the error.
-    """
+    """Reference: a step of 1 µs. Joints that stick give order 1: a tenth for a sixteenth."""
     tips = [
         FixedStep(step)(Motion(five_terms, 2.0)).data["tip"].values
         for step in (2.56e-4, 1.6e-5, 1e-6)

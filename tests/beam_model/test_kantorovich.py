@@ -45,9 +45,7 @@ def slope(model: Component, x: float) -> Array:
 def test_outer_functions_are_those_of_the_paper(
     paper_boom: Boom, base: Base, first: int, terms: int
 ) -> None:
-    """Reference: external source, (29). The functions span x^i (x − x0)(x − x1) and nothing
-    else.
-    """
+    """Reference: external source, (29). The functions span x^i (x − x0)(x − x1) alone."""
     outer = paper_boom.segments[0]
     model = kantorovich_bending(outer, terms, base, rotary_inertia=False)
     x = np.linspace(0.0, 10.0, 61)
@@ -60,9 +58,7 @@ def test_outer_functions_are_those_of_the_paper(
 @pytest.mark.parametrize("base", ["as printed", "pinned"])
 @pytest.mark.parametrize("terms", [1, 2, 3, 5])
 def test_inner_functions_are_those_of_the_paper(paper_boom: Boom, base: Base, terms: int) -> None:
-    """Reference: external source. The functions span (30) and (31), i = 1, 2, 3, …, and nothing
-    else.
-    """
+    """Reference: external source. The functions span (30) and (31), i = 1, 2, 3, …, alone."""
     inner = paper_boom.segments[1]
     model = kantorovich_bending(inner, terms, base, rotary_inertia=False)
     x = np.linspace(9.0, 19.0, 61)
@@ -104,9 +100,7 @@ def test_printed_inner_functions_keep_the_tip_on_the_tangent_at_the_tail(
 
 @pytest.mark.parametrize("terms", [3, 24, 60])
 def test_complete_and_pinned_are_one_space_on_pinned_supports(paper_boom: Boom, terms: int) -> None:
-    """Reference: analytic. The roots and the supports give the same polynomials, by ascending
-    degree.
-    """
+    """Reference: analytic. Roots and supports give the same polynomials, by ascending degree."""
     outer = paper_boom.segments[0]
     pinned, complete = (
         frequencies(kantorovich_bending(outer, terms, base, rotary_inertia=False))[:3]
@@ -186,9 +180,7 @@ def test_pinned_outer_series_converges_to_the_beam(paper_boom: Boom) -> None:
 
 
 def test_place_of_the_origin_does_not_matter(paper_boom: Boom) -> None:
-    """Reference: analytic. x of (29) is relative to the first support, so that a shift has no
-    effect.
-    """
+    """Reference: analytic. x of (29) begins at the first support: a shift has no effect."""
     for segment in paper_boom.segments:
         moved = replace(
             segment,

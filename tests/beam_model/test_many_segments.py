@@ -31,9 +31,7 @@ def chain(boom: Boom, count: int) -> Boom:
 
 @pytest.mark.parametrize("kind", ["series", "elements"])
 def test_the_size_grows_with_the_number_of_segments(paper_boom: Boom, kind: str) -> None:
-    """Reference: external source, section 5.3. Each segment adds the same number of equations, and
-    two forces.
-    """
+    """Reference: external source, section 5.3. A segment adds its equations and two forces."""
     law = PowerContact(1.0e9, 1.0).with_clearance(7.0e-3)
 
     def model(boom: Boom, number: int, segment: Segment) -> SegmentModel:

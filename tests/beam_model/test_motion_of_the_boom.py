@@ -41,9 +41,7 @@ def test_energy_is_kept_for_ten_seconds(five_terms: GapSystem) -> None:
 
 
 def test_the_step_of_the_paper_keeps_the_first_peak(five_terms: GapSystem) -> None:
-    """Reference: a finer step. The paper has 4375 steps in 7 s. Micro-impacts cause a scatter of
-    2 %.
-    """
+    """Reference: a finer step than the paper's 4375 in 7 s. Micro-impacts scatter by 2 %."""
     coarse = FixedStep(1.6e-3)(Motion(five_terms, 7.0, output_step=1.6e-3))
     fine = FixedStep(1.0e-5)(Motion(five_terms, 0.7))
     assert coarse.data.attrs["steps"] == 4375

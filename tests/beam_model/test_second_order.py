@@ -111,9 +111,7 @@ def test_both_planes_buckle_each_by_its_own_stiffness(
 
 
 def test_buckling_factor_depends_on_the_locked_segment(build: Build) -> None:
-    """Reference: analytic, by inequality. In the overlap, the stiffer arm or the fly carries the
-    force.
-    """
+    """Reference: analytic, by inequality. In the overlap the stiffer segment carries the force."""
     factors = [
         critical_factor(boom, build(boom))
         for boom in (telescope(1e4, locked_at=at) for at in (6.0, 8.0, 0.0))
@@ -148,9 +146,7 @@ def test_in_play_the_boom_rests_as_its_contacts_let_it(build: Build) -> None:
 
 
 def test_weights_of_point_masses_press(build: Build) -> None:
-    """Reference: analytic, Euler's and Greenhill's cantilevers combined by Dunkerley's formula
-    (Timoshenko and Gere 1961).
-    """
+    """Reference: analytic, Euler's and Greenhill's cantilevers (Timoshenko and Gere 1961)."""
     boom = alone(column(supports=CLAMP, masses=(PointMass(10.0, 5.0e4),)), 0.0, gravity=9.80665)
     (segment,) = boom.segments
     factor = critical_factor(boom, build(boom))

@@ -38,9 +38,7 @@ def test_bonded_boom_has_the_published_frequencies(paper_boom: Boom, elements: M
 
 
 def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models) -> None:
-    """Reference: analytic, the determinant of the coupled spans. The error has order 4 in the
-    element length.
-    """
+    """Reference: analytic, the determinant of the coupled spans. Order 4 in element length."""
     exact = bonded_frequencies(paper_boom, 110.0)
     assert exact.size == 5
     errors = [

@@ -61,9 +61,7 @@ def rolled(boom: Boom) -> Boom:
 def test_twisting_frequencies(
     beam: Beam, supports: tuple[Support, ...], numbers: tuple[float, ...], rigid: int
 ) -> None:
-    """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, …. The error is (κπh/L)²/24, from
-    above.
-    """
+    """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, …, and (κπh/L)²/24 above."""
     segment = in_space(beam(supports=supports))
     lateral = segment.lateral
     speed = np.sqrt(
@@ -215,9 +213,7 @@ def same(one: Trajectory, other: Trajectory, names: dict[str, str], tolerance: f
 def test_the_vertical_plane_is_the_flat_boom(
     spatial_boom: Boom, kind: str, duration: float
 ) -> None:
-    """Reference: the flat model, to round-off. Contacts amplify it from 8e-15 after 0.15 s to 3e-8
-    after 0.5 s.
-    """
+    """Reference: the flat model, to round-off, which contacts amplify to 3e-8 in 0.5 s."""
     (joint,) = spatial_boom.joints
     flat = replace(spatial_boom, joints=(replace(joint, lateral_play=None),))
     runs = []
@@ -255,9 +251,7 @@ def test_a_boom_on_its_side_does_the_same_on_its_side(spatial_boom: Boom) -> Non
 
 
 def test_friction_acts_across_the_contact_normal(spatial_boom: Boom) -> None:
-    """Reference: analytic, (10) and (11). A pad with contact along z has friction along y, and
-    conversely.
-    """
+    """Reference: analytic, (10), (11). Pads in contact along z rub along y, and conversely."""
     (joint,) = spatial_boom.joints
     boom = replace(spatial_boom, joints=(replace(joint, friction=0.3),))
     system = gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom))
@@ -276,9 +270,7 @@ def test_friction_acts_across_the_contact_normal(spatial_boom: Boom) -> None:
 
 
 def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
-    """Reference: external source, (28), with N at each station and the sliding displacement u −
-    w.
-    """
+    """Reference: external source, (28), with N at each station and the sliding u − w."""
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))
@@ -320,9 +312,7 @@ def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
 
 
 def test_bonded_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:
-    """Reference: analytic, the frequencies of the flat boom, of the boom on its side, and of
-    twist.
-    """
+    """Reference: analytic, frequencies of the flat boom, the boom on its side, and twist."""
     boom = pushed(spatial_boom, 5.0, 6.0)
     system = gap_system(boom.bonded, beams(boom))
     assert (system.omega2 > 1.0).all()

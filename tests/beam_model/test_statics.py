@@ -120,9 +120,7 @@ MODELS: dict[str, Callable[[Boom], list[SegmentModel]]] = {
 
 @pytest.mark.parametrize("kind", MODELS)
 def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind: str) -> None:
-    """Reference: by hand. Under −100 N/m and −2000 N at the tip, M = 2000 s + 50 s² and
-    V = −2000 − 100 s, s = 8 − x.
-    """
+    """Reference: by hand. −100 N/m and −2000 N: M = 2000 s + 50 s², V = −2000 − 100 s."""
     segment = beam(supports=[Support(3.0, "clamped")], load=-100.0)
     boom = Boom((segment,), (), (Load(0, "z", -2000.0, 8.0, Step()),))
     models = MODELS[kind](boom)
@@ -161,9 +159,7 @@ def test_section_forces_of_a_column_refer_to_the_straight_axis(
 
 
 def test_joint_with_play_transfers_forces_of_the_lever_rule(paper_boom: Boom) -> None:
-    """Reference: by hand, 550.7 N at 14 m on 9 and 10 m. At 10 m M = 55.07 · 9²/2 N m, and V jumps
-    by 2753.5 N.
-    """
+    """Reference: by hand, 550.7 N at 14 m: M = 55.07 · 9²/2 N m at 10 m, V jumps 2753.5 N."""
     models = finite_element_segments(paper_boom, 0.25, "euler-bernoulli", False)
     system = gap_system(touching(paper_boom, PowerContact(1e9, 1.0).with_clearance(7e-3)), models)
     inner = lines(paper_boom, models)[1]
@@ -175,9 +171,7 @@ def test_joint_with_play_transfers_forces_of_the_lever_rule(paper_boom: Boom) ->
 
 
 def test_a_boom_in_space_bends_sideways_and_twists(spatial_boom: Boom) -> None:
-    """Reference: by hand. A lateral force of 300 N at 19 m causes the lateral moment −300 (19 − x)
-    in the inner segment.
-    """
+    """Reference: by hand. 300 N at 19 m along y cause −300 (19 − x) in the inner segment."""
     load = Load(1, "y", 300.0, 19.0, Step())
     boom = replace(spatial_boom.bonded, loads=(load,))
     models = finite_element_segments(boom, 0.5, "timoshenko", True)

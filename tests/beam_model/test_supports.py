@@ -201,9 +201,7 @@ def test_one_spring_leaves_a_rigid_motion(beam: Beam) -> None:
 
 
 def test_complete_functions_converge_on_any_supports(beam: Beam) -> None:
-    """Reference: other code, Hermite elements. Because of the reaction inside the span, the order
-    of convergence is 3.
-    """
+    """Reference: other code, Hermite elements; order 3 due to the reaction inside the span."""
     supports = (Support(3.0, "clamped"), Support(5.0), Support(8.0, stiffness=4.0e6))
     segment = beam(supports=supports)
     fine = frequencies(elements(segment))[:3]
@@ -237,9 +235,7 @@ def test_the_printed_functions_know_pinned_supports_alone(
 
 
 def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: PowerContact) -> None:
-    """Reference: analytic. A uniform load equals the load of the segment; a point load has the row
-    of its deflection.
-    """
+    """Reference: analytic. A uniform load is that of the segment, a point load a row."""
     loads = (
         Load(1, "z", 55.07, None, Step()),
         Load(0, "z", -2.0e3, 10.0, Step()),
@@ -255,9 +251,7 @@ def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: Po
 def test_a_stop_holds_the_tip_up(
     paper_boom: Boom, elements: Models, paper_law: PowerContact
 ) -> None:
-    """Reference: analytic. A stop below the tip pushes upwards, a stop above it pushes downwards or
-    not at all.
-    """
+    """Reference: analytic. A stop below the tip pushes upwards, one above down or not."""
     stop = Stop(1, 19.0, 0.01, PowerContact(0.0, 1.0, stiffness_below=2.0e8))
     boom = replace(paper_boom, stops=(stop,))
     system = gap_system(touching(boom, paper_law), elements(0.5))

@@ -43,9 +43,7 @@ def elements(boom: Boom, theory: Theory) -> list[SegmentModel]:
 
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
 def test_default_elements_are_near_the_cone(theory: Theory) -> None:
-    """Reference: analytic, a cone's tip, first frequency and critical force (Kirchhoff 1879, Dinnik
-    1929), to 1e-4.
-    """
+    """Reference: analytic, a cone's tip, frequency, buckling (Kirchhoff 1879, Dinnik 1929)."""
     boom = taper.arm(0.1 * taper.critical())
     plain = replace(boom, segments=taper.arm().segments)
     system = gap_system(plain, elements(plain, theory))
@@ -87,9 +85,7 @@ def numbers(box: BoxSection) -> tuple[float, float, float, float]:
 
 
 def test_mass_equals_the_mass_of_the_plates() -> None:
-    """Reference: by hand, ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6, and its centroid, for series, elements
-    and rigid segments.
-    """
+    """Reference: by hand, ∫ A dx = 8 (A_0 + 4 A_m + A_1)/6 and its centroid, in all models."""
     sections = [ROOT, BoxSection(0.55, 0.425, 0.015, 0.01), HEAD]
     areas = [section.area for section in sections]
     mass = 7850.0 * 8.0 * (areas[0] + 4.0 * areas[1] + areas[2]) / 6.0
@@ -112,9 +108,7 @@ def test_mass_equals_the_mass_of_the_plates() -> None:
 
 
 def test_axial_weights_follow_the_taper() -> None:
-    """Reference: by hand. In an upright boom the foot carries the whole weight, the midpoint the
-    weight above it.
-    """
+    """Reference: by hand. The foot carries the whole upright boom, the midpoint the upper half."""
     (pressed,) = with_compression([arm()], [], [], gravity=10.0)
     upper = 4.0 * (BoxSection(0.55, 0.425, 0.015, 0.01).area + HEAD.area) / 6.0
     upper += 4.0 * 4.0 * BoxSection(0.425, 0.3875, 0.0125, 0.009).area / 6.0
@@ -125,9 +119,7 @@ def test_axial_weights_follow_the_taper() -> None:
 
 @pytest.mark.parametrize("kind", ["timoshenko", "series"])
 def test_section_forces_are_those_of_statics(kind: str) -> None:
-    """Reference: by hand. Under −1000 N at the tip, M = 1000 s and V = −1000 N for every
-    section.
-    """
+    """Reference: by hand. Under −1000 N at the tip, M = 1000 s, V = −1000 N in any section."""
     boom = Boom((arm(),), (), (Load(0, "z", -1000.0, 8.0, Step()),))
     models = (
         elements(boom, "timoshenko")
@@ -175,9 +167,7 @@ def test_twist_follows_the_local_constant() -> None:
 
 
 def test_tapered_sections_fit_at_the_overlap() -> None:
-    """Reference: by hand. A fly 0.62 m high in an arm of 0.6 m with walls of 20 and 10 mm has a
-    clearance of −0.05 m.
-    """
+    """Reference: by hand, 0.62 m in 0.6 m less 20 and 10 mm walls: clearance −0.05 m."""
     outer = replace(arm(), head_section=replace(ROOT, height=0.6))
     inner = BoxSection(height=0.5, width=0.4, flange=0.01, web=0.01)
     fly = Segment.of_section(

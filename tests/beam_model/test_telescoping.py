@@ -73,9 +73,7 @@ def test_standing_on_the_way_is_the_boom_built_there(paper_boom: Boom, kind: str
 
 
 def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None:
-    """Reference: analytic, the boom built at this extension; the stop's row is at the new
-    position.
-    """
+    """Reference: analytic, the boom built there; the stop's row is at the new position."""
     drives = (Drive(SCurve(1.0, 2.0), ("inner", "outer")), Drive(SCurve(2.0, 2.0), DRIVE.carriers))
 
     def built(ways: tuple[float, float], drives: Sequence[Drive | None]) -> GapSystem:
@@ -108,9 +106,7 @@ def test_in_space_the_rows_turn_with_the_sections(spatial_boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
-    """Reference: analytic, the static state at each extension, within 0.1 % of the tip
-    deflection.
-    """
+    """Reference: analytic, the static tip at each extension, within 0.1 %."""
     boom = telescope(paper_boom, 1.0, Drive(SCurve(3.0, 80.0), DRIVE.carriers))
     system = elements(touching(boom, LAW), length=1.0)
     system = replace(system, damping=np.ones(system.num_modes))
@@ -132,9 +128,7 @@ def test_a_slow_drive_follows_the_statics(paper_boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_an_integration_of_its_own(paper_boom: Boom) -> None:
-    """Reference: other code, Hermite elements with moving rows and thrust by DOP853. The order is
-    2.
-    """
+    """Reference: other code, Hermite elements, moving rows and thrust by DOP853. Order 2."""
     history = SCurve(4.0, 0.4)
     boom = telescope(paper_boom, 0.0, Drive(history, DRIVE.carriers))
     segments = tuple(replace(segment, rotary_inertia=0.0) for segment in boom.segments)
@@ -157,9 +151,7 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
 
 @pytest.mark.slow
 def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
-    """Reference: analytic, the energy balance within 1e-5 of the work of the load, also with
-    friction.
-    """
+    """Reference: analytic, the energy balance within 1e-5 of the load's work; with friction."""
     for changes in ({}, RESISTED):
         boom = telescope(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers), **changes)
         system = elements(touching(boom, LAW), length=1.0)
@@ -171,9 +163,7 @@ def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
 
 
 def test_out_and_in_again(paper_boom: Boom) -> None:
-    """Reference: analytic, the boom without a drive. Without contact the motion continues
-    unchanged.
-    """
+    """Reference: analytic, the boom without a drive: no contact, so an unchanged motion."""
     there_and_back = PiecewiseLinear([0.0, 0.2, 0.4], [0.0, 4.0, 0.0])
     boom = telescope(paper_boom, 0.0, Drive(there_and_back, DRIVE.carriers))
     boom = replace(boom, segments=tuple(replace(one, load=0.0) for one in boom.segments))
@@ -283,9 +273,7 @@ def frequencies(system: GapSystem) -> Array:
 def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
     paper_boom: Boom, kind: str, lock: tuple[Carrier, float | None]
 ) -> None:
-    """Reference: other code path, the boom built at this extension: statics, frequencies,
-    buckling.
-    """
+    """Reference: other code path, the boom built there: statics, frequencies, buckling."""
     build, (carrier, x) = BUILDS[kind], lock
     boom = pressed(paper_boom, 0.0, replace(DRIVE, locked=carrier), x)
     system = gap_system(touching(boom, LAW), build(boom))
@@ -340,9 +328,7 @@ def test_a_slow_drive_follows_the_second_order_statics(paper_boom: Boom) -> None
 
 @pytest.mark.slow
 def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
-    """Reference: analytic, the energy balance to round-off with friction and dashpots. The order of
-    errors is 2.
-    """
+    """Reference: analytic, the energy balance to round-off, with losses. Order 2."""
     for changes in ({}, RESISTED):
         boom = pressed(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers))
         boom = replace(boom, joints=(replace(boom.joints[0], **changes),))

@@ -60,9 +60,7 @@ def test_collars_stiffen_by_the_cube_of_the_thickness() -> None:
 
 
 def test_diaphragm_prevents_wall_deflection() -> None:
-    """Reference: analytic bounds. The compliance is 0 at a diaphragm and unchanged at the far
-    end.
-    """
+    """Reference: analytic bounds: 0 at a diaphragm, unchanged at the far end."""
     plain = float(wall_compliance.wall_compliance(tube(), (pad(),))[0, 0])
     there, beyond = (
         float(

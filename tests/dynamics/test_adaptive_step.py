@@ -46,9 +46,7 @@ def unjoined(motion: Motion) -> Motion:
 
 
 def test_a_schedule_makes_its_steps() -> None:
-    """Reference: by hand. Two windows of 30 outputs have 4 and 16 steps per output, later ones
-    2.
-    """
+    """Reference: by hand. Two windows of 30 outputs have 4 and 16 steps each, later ones 2."""
     run = StepSchedule((4, 16, 2), 30)(unjoined(MOTION))
     assert run.data.attrs["steps"] == 30 * 4 + 30 * 16 + 140 * 2
     assert run.data.attrs["step"] == pytest.approx(1e-2 / 16.0)
@@ -103,9 +101,7 @@ REGULAR = {
 @pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 2e-4])
 @pytest.mark.parametrize("what", REGULAR)
 def test_a_regular_motion_keeps_its_tolerance(what: str, tolerance: float) -> None:
-    """Reference: the same motion with a tenth of the step. The reported error is near the true
-    one.
-    """
+    """Reference: a tenth of the step. The reported error is near the true one."""
     motion = replace(REGULAR[what], output_step=5e-3)
     run = AdaptiveStep(tolerance)(motion)
     substeps = run.data.attrs["substeps"]

@@ -105,9 +105,7 @@ def test_members_make_the_steps_of_the_first() -> None:
 
 
 def test_other_processes_give_the_same() -> None:
-    """Reference: other code path. The motion is chaotic, so that any difference of bits would
-    grow.
-    """
+    """Reference: other code path. Chaos would amplify any difference of bits."""
     motion = Motion(CHAOTIC, 20.0, 1e-2, velocity=THROWN)
     with ProcessPoolExecutor(1, get_context("spawn")) as processes:
         assert processes.submit(os.getpid).result() != os.getpid()
@@ -142,9 +140,7 @@ with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:
 def test_another_rank_gives_the_same(
     two_ranks: Callable[..., subprocess.CompletedProcess[str]],
 ) -> None:
-    """Reference: other code path. The motion is chaotic, so that any difference of bits would
-    grow.
-    """
+    """Reference: other code path. Chaos would amplify any difference of bits."""
     pytest.importorskip("mpi4py", reason="ranks need mpi4py")
     answer = two_ranks(OTHER_RANK)
     assert (answer.returncode, answer.stdout.split()) == (0, ["identical"]), answer.stderr
@@ -162,9 +158,7 @@ def test_keeps_labels_and_nothing_more() -> None:
 
 
 def test_changes_are_uniform_and_spare_member_0() -> None:
-    """Reference: analytic. A uniform distribution within ±ε has the mean 0 and the deviation
-    ε/√3.
-    """
+    """Reference: analytic. Uniform within ±ε: the mean is 0, the deviation ε/√3."""
     changes = perturbations(10_001, 1e-3, 5)
     assert changes[0] == 0.0
     assert np.abs(changes).max() < 1e-3
@@ -175,9 +169,7 @@ def test_changes_are_uniform_and_spare_member_0() -> None:
 def test_the_same_seed_gives_the_same_on_any_number_of_cores(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Reference: other code path. The motion is chaotic, so that any difference of bits would
-    grow.
-    """
+    """Reference: other code path. Chaos would amplify any difference of bits."""
     found = []
     for cores in ({0}, {0, 1, 2, 3, 4}):
         monkeypatch.setattr(os, "sched_getaffinity", lambda _, cores=cores: cores)
@@ -188,9 +180,7 @@ def test_the_same_seed_gives_the_same_on_any_number_of_cores(
 
 
 def test_completed_motion_serves_as_member_0() -> None:
-    """Reference: other code path. The motion is chaotic, so that any difference of bits would
-    grow.
-    """
+    """Reference: other code path. Chaos would amplify any difference of bits."""
     motion, way = Motion(CHAOTIC, 20.0, 1e-2), FixedStep(1e-3)
     found = [
         integrate_ensemble(motion, 3, 1e-6, 3, "load", way, unchanged=unchanged)
@@ -314,9 +304,7 @@ def test_early_divergence_ends_the_run() -> None:
 
 
 def test_horizon_of_a_known_growth() -> None:
-    """Reference: analytic. ±1e-6 exp(2t) exceeds 1 % of the range of 2 at ln(2e4)/2 and 20 % at
-    ln(4e5)/2.
-    """
+    """Reference: analytic. ±1e-6 exp(2t) exceeds 1 % of 2 at ln(2e4)/2, 20 % at ln(4e5)/2."""
     time = np.linspace(0.0, 10.0, 10_001)
     apart = 1e-6 * np.exp(2.0 * time)
     members = np.sin(10.0 * time) + np.array([0.0, 1.0, -1.0, 0.3])[:, None] * apart
@@ -352,9 +340,7 @@ def test_chance_is_no_growth() -> None:
 
 
 def test_smaller_changes_put_off_the_horizon_of_a_chaotic_system() -> None:
-    """Reference: analytic. T decreases with ln ε at the rate λ of the line, with one partner per
-    size as with seven.
-    """
+    """Reference: analytic. T falls with ln ε at the rate λ, with one partner or seven."""
     rates = []
     for partners in (1, 7):
         found = measure_horizons(
@@ -386,9 +372,7 @@ def test_a_finer_step_acts_as_a_change(integrator: Integrator) -> None:
 
 
 def test_says_whether_step_or_physics_limits() -> None:
-    """The error of the step has a larger effect than 1e-12 of the load, and a smaller one than
-    1e-2.
-    """
+    """The error of the step exceeds the effect of 1e-12 of the load, and 1e-2 exceeds it."""
     for relative, expected in ((1e-12, "step"), (1e-2, "physics")):
         found = measure_horizons(Motion(CHAOTIC, 20.0, 1e-2), [relative], "load", partners=1)
         assert found.limits[0] == expected

@@ -46,9 +46,7 @@ def test_spring_carries_the_load_before_contact() -> None:
 
 @pytest.mark.parametrize(("weight", "expected"), [(0.0, 1.0e-3), (4.0, 1.0e-3 - 4.0 / 3.0e6)])
 def test_shim_preload_displaces_an_unloaded_mass(weight: float, expected: float) -> None:
-    """Reference: analytic. A shim 1 mm thicker than the play below lifts a mass until it is
-    free.
-    """
+    """Reference: analytic. A shim 1 mm thicker than the play lifts a mass until it is free."""
     below = PowerContact(3.0e6, 1.0).lower().with_clearance(-1.0e-3)
     above = mass_over_stop(1.0, 0.0)
     row, laws, places = above.rows[0], [*above.laws, below], np.zeros(2, dtype=np.int64)
@@ -100,9 +98,7 @@ def _tipping(one_mass: Callable[..., GapSystem]) -> GapSystem:
 
 
 def test_modes_soften_like_the_whole_stiffness() -> None:
-    """Reference: analytic, the eigenvalues of diag(ω²) − G by another routine. Translations keep
-    ω = 0.
-    """
+    """Reference: analytic, eigenvalues of diag(ω²) − G by another routine; translations keep 0."""
     omega2 = np.array([0.0, 0.0, 4.0e2, 9.0e4])
     slope = np.array([[0.0, 0.3, 0.7, -0.2], [0.0, 0.5, -0.4, 0.6]])
     geometric = 20.0 * slope.T @ slope
@@ -129,9 +125,7 @@ def test_mode_buckles_at_zero_stiffness() -> None:
 
 
 def test_unstable_mass_reaches_its_stop_at_the_analytic_time(tipping: GapSystem) -> None:
-    """Reference: analytic. From rest at a, the mass moves by a cosh κt and touches at
-    acosh(Δ/a)/κ.
-    """
+    """Reference: analytic. From rest at a, a cosh κt, which touches at acosh(Δ/a)/κ."""
     start = 1.0e-4
     motion = Motion(tipping, 2.0, 1e-3, position=np.array([start * np.sqrt(MASS)]))
     run = FixedStep(1e-5)(motion)

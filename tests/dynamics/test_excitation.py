@@ -72,9 +72,7 @@ def test_kinks_within_steps_are_resolved(where: str, step: float) -> None:
 
 
 def test_linear_fit_of_a_history_keeps_its_moments() -> None:
-    """Reference: analytic, integral and first moment of a sine, and of a jump at a quarter of a
-    step.
-    """
+    """Reference: analytic, integral and moment of a sine, and of a jump at a quarter step."""
     times, w = np.linspace(0.3, 1.1, 5), 2.0 * np.pi * 0.6
     (before, after), h, middle = (times[:-1], times[1:]), 0.2, 0.5 * (times[1:] + times[:-1])
     mean, change = line_within(Sine(0.6), times)
@@ -116,9 +114,7 @@ def forced(time: Array, spring: float, dashpot: float, frequency: float, phase: 
 
 @pytest.mark.parametrize("dashpot", [0.0, 0.5, 20.0])
 def test_a_sine_against_its_closed_form(one_mass: OneMass, dashpot: float) -> None:
-    """Reference: analytic. Steps replace the sine by lines with its moments, so that the order is
-    4.
-    """
+    """Reference: analytic. Steps replace the sine by lines with its moments: order 4."""
     system = driven(one_mass(1.0, spring=30.0, dashpot=dashpot), 1.0, Sine(0.6, 0.4))
     errors = []
     for step in (0.08, 0.04, 0.02):

@@ -191,9 +191,7 @@ def test_sticking_places_do_not_creep() -> None:
 
 
 def test_dependent_friction_rows_share_the_force() -> None:
-    """Reference: other code path. Doubled rows with half the limit are equivalent to single rows;
-    only sums of forces are unique.
-    """
+    """Reference: other code path, single rows: doubled rows of half the limit, sums of forces."""
     row = COUPLED.friction_rows
     once = modes(np.sqrt(COUPLED.omega2), COUPLED.load, row, LIMITS)
     twice = modes(
@@ -222,9 +220,7 @@ def sled(speed: float, fall: float, friction: DryFriction, stiffness: float = 1.
 
 
 def test_sled_stops_by_friction_under_its_weight() -> None:
-    """Reference: analytic. The distance is v²/(2 μ g) under the weight, and v²/(2 μ (g + N/m)) with
-    an additional normal force.
-    """
+    """Reference: analytic, v²/(2 μ g) under the weight, v²/(2 μ (g + N/m)) under N more."""
     rest = np.array([0.0, -20.0 / 1.0e6 * np.sqrt(2.0)])
     for extra in (0.0, 8.0):
         system = sled(3.0, 0.0, DryFriction(0.5, 0, extra, (0,)))
@@ -239,9 +235,7 @@ def test_sled_stops_by_friction_under_its_weight() -> None:
 
 
 def test_a_bounce_takes_its_impulse_times_friction() -> None:
-    """Reference: analytic. The impulse of the floor is 2 m u, and that of friction μ times as
-    large.
-    """
+    """Reference: analytic. The floor's impulse is 2 m u, and that of friction μ times this."""
     system = replace(sled(3.0, 1.0, DryFriction(0.3, 0, 0.0, (0,))), load=np.zeros(2))
     start, velocity = np.array([0.0, 0.1]), np.array([3.0, -1.0]) * np.sqrt(2.0)
     errors = []

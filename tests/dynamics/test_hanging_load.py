@@ -48,9 +48,7 @@ def hoisted(
 
 
 def test_factor_of_a_rigid_boom() -> None:
-    """Reference: analytic, φ₂ = 1 + (v/g) √(k/m) of a load that leaves the ground at the speed
-    v.
-    """
+    """Reference: analytic, φ₂ = 1 + (v/g) √(k/m) of a load lifted at the speed v."""
     stiff = replace(mass_on_spring(), omega2=np.array([1.0e16]), load=np.zeros(1))
     load = HangingLoad(MASS, ROPE, GRAVITY, Stroke(3.0, SPEED), slack=0.0)
     motion = hoisted(load, stiff, 1.0, 1.0e-4)
@@ -260,9 +258,7 @@ def position(frame: FrameMotion, time: Array, x: float, extension: MotionLaw) ->
 
 
 def test_accelerations() -> None:
-    """Reference: second differences of the position in fixed axes, with both angles and
-    extension.
-    """
+    """Reference: second differences of the position in fixed axes, with both angles."""
     frame = FrameMotion(LAWS[0], LAWS[1], 35.0, foot=0.5, radius=-1.2)
     extension, x, h = SCurve(2.0, 2.5), 9.0, 1.0e-4
     time = TIME[np.abs(np.subtract.outer(TIME, np.array(LAWS[1].kinks))).min(axis=1) > h]

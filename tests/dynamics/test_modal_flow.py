@@ -32,9 +32,7 @@ def modes() -> GapSystem:
 
 @pytest.mark.parametrize("step", [1.0e-2, 1.0])
 def test_flow_is_the_matrix_exponential(step: float) -> None:
-    """Reference: other code, scipy.linalg.expm of (a, v, load, ramp, mean), relative to the
-    undamped size.
-    """
+    """Reference: other code, scipy.linalg.expm of (a, v, load, ramp, mean)."""
     flow = modal_flow(modes(), np.array([2.0 * step, step]))
     for k, (name, (omega2, damping, _)) in enumerate(MODES.items()):
         generator = np.zeros((5, 5))

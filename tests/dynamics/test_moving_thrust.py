@@ -78,9 +78,7 @@ def test_thrust_without_travel_changes_no_stiffness(knots: list[float]) -> None:
 
 
 def test_only_passed_pieces_are_integrated() -> None:
-    """Reference: analytic, a polynomial in many pieces. The matrices of all pieces would need 0.6
-    GB.
-    """
+    """Reference: analytic, a polynomial in many pieces, whose matrices would need 0.6 GB."""
     modes, knots = 200, np.linspace(-1.0, 1.0, 2001)
     table = RowTable(
         knots, np.tile(np.diff(knots)[0] * np.eye(4)[1][:, None, None], (2000, 1, 1, modes))

@@ -95,9 +95,7 @@ def lossy(history: History, **changes: Any) -> GapSystem:
 
 
 def test_a_moving_force_on_a_beam() -> None:
-    """Reference: analytic, the series of a constant force on a simply supported beam (Frýba
-    1972).
-    """
+    """Reference: analytic, a constant force on a simply supported beam (Frýba 1972)."""
     force, speed, count, stiffness, mass = 1.0e3, 20.0, 30, 1.0e7, 0.01
     law = PowerContact(stiffness, 1.0).lower()
     assert law is not None

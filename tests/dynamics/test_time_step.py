@@ -325,9 +325,7 @@ def test_first_contact_late_at_once_or_never(
 
 
 def test_units_do_not_matter() -> None:
-    """Reference: analytic, the same system in mm, t and s until chaos; 1 √t·mm is √1000/1000
-    √kg·m.
-    """
+    """Reference: analytic, the same system in mm, t, s until chaos; 1 √t·mm = √1000/1000 √kg·m."""
     si, scale = two_modes(), np.sqrt(1000.0)
     law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0).with_clearance(
         1e3 * si.laws[0].above
@@ -367,9 +365,7 @@ def test_a_closed_contact_is_a_spring() -> None:
 
 
 def test_output_intervals_change_nothing() -> None:
-    """Reference: other code path, output intervals ten times as long. Means are averages of ten,
-    peaks their maximum.
-    """
+    """Reference: other code path, output intervals ten times as long: means and maxima."""
     motion = Motion(rubbing(*PRESSED, excitations=[SHAKEN]), 0.1, 1e-3, velocity=THROWN)
     fine, coarse = (FixedStep(1e-3)(replace(motion, output_step=s)) for s in (1e-3, 1e-2))
     np.testing.assert_allclose(fine.states[::10], coarse.states, atol=1e-11)

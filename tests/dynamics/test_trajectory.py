@@ -75,9 +75,7 @@ def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> Non
 
 
 def test_stations_have_directions_and_friction_forces() -> None:
-    """Reference: other code path. Two friction rows of a station are equivalent to one with the sum
-    of limits.
-    """
+    """Reference: other code path. Two friction rows of a station equal one with both limits."""
     system = modal_system(
         [10.0],
         [2.0],
@@ -162,9 +160,7 @@ def test_rates_are_those_of_the_motion(one_mass: Callable[..., GapSystem]) -> No
 def test_blows_from_both_sides_within_an_output_interval_do_not_cancel(
     one_mass: Callable[..., GapSystem],
 ) -> None:
-    """Reference: analytic, v √(k m) of a free mass between two stops, with two rows and with
-    one.
-    """
+    """Reference: analytic, v √(k m) of a mass between two stops, with two rows and one."""
     both = one_mass(2.0, STOP)
     apart = replace(
         both,

@@ -62,9 +62,7 @@ def test_changed_case_equals_the_case_of_a_changed_file(
 
 @of("boom_in_python")
 def test_the_fly_falls_freely_through_its_play(example: ModuleType) -> None:
-    """Reference: analytic. A uniform load q moves a free uniform beam by q t²/2m without
-    bending.
-    """
+    """Reference: analytic. A uniform load q moves a free beam by q t²/2m without bending."""
     mass = example.boom().segments[1].mass_per_length
     expected = np.sqrt(example.PLAY * mass / -example.LOAD)
     motion = pt.BeamElements(example.boom(), element_length=1.0).simulate(1.0)
@@ -74,9 +72,7 @@ def test_the_fly_falls_freely_through_its_play(example: ModuleType) -> None:
 
 @of("what_play_adds")
 def test_play_turns_the_fly(example: ModuleType) -> None:
-    """Reference: analytic. The fly moves up by Δ at 6 m and down by Δ at 8 m, hence by 7 Δ at 14
-    m.
-    """
+    """Reference: analytic. The fly moves by Δ up at 6 m, down at 8 m: by 7 Δ at 14 m."""
     added = example.deflection(bonded=False) - example.deflection(bonded=True)
     assert added == pytest.approx(-7.0 * 5.0e-3, rel=2e-3)
 

@@ -41,9 +41,7 @@ def at(segment: Segment, *places: float) -> list[float]:
 
 
 def test_weights_compress_below_and_pull_behind_the_support() -> None:
-    """Reference: analytic. The fly transfers its weight at its tail; the arm has its support at 1
-    m.
-    """
+    """Reference: analytic. The fly transfers its weight at its tail; the arm's foot is at 1 m."""
     arm, fly = with_compression(segments(), [JOINT], [], gravity=5.0)
     assert at(fly, 6.5, 10.0, 13.9) == pytest.approx(
         [5.0 * LIGHT * length for length in (7.5, 4.0, 0.1)], rel=1e-12
@@ -55,9 +53,7 @@ def test_weights_compress_below_and_pull_behind_the_support() -> None:
 
 
 def test_a_thrust_goes_by_the_lock_into_the_next_segment() -> None:
-    """Reference: analytic. The force transfers at the tail by default, at a lock, or at the
-    foot.
-    """
+    """Reference: analytic. Force transfers at the tail by default, at a lock, or at the foot."""
     rope = [Thrust(1, 14.0, 1000.0)]
     for locked, of_fly, of_arm in (
         (None, [1000.0, 1000.0, 1000.0], [1000.0, 0.0, 0.0]),

@@ -99,9 +99,7 @@ def test_stations_are_those_of_the_boom(spatial_boom: Boom) -> None:
 
 
 def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
-    """Reference: analytic. The pads of a side have the whole contact law, all pads have the whole
-    N.
-    """
+    """Reference: analytic. The pads of a side have the whole law, all pads the whole N."""
     (joint,) = spatial_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     found = pads(replace(spatial_boom, joints=(joint,)))

@@ -107,9 +107,7 @@ def test_walls_lie_on_the_mid_lines(mesh: SegmentMesh) -> None:
 
 
 def test_diaphragm_fills_the_outline_and_shares_its_nodes(closed_mesh: SegmentMesh) -> None:
-    """Reference: analytic, the enclosed area. Edges of its outline have three triangles, at an end
-    two.
-    """
+    """Reference: analytic, the area. Edges have three triangles, at an end two."""
     for number, x in enumerate((9.0, 10.0), start=len(WALLS)):
         plate = closed_mesh.walls == number
         assert areas(closed_mesh)[plate].sum() == pytest.approx(BOX.height * BOX.width, rel=1e-12)
@@ -134,9 +132,7 @@ def test_a_diaphragm_leaves_the_walls_as_they_are(closed_mesh: SegmentMesh) -> N
 
 
 def test_plates_have_their_thicknesses() -> None:
-    """Reference: analytic, the volume of walls, of a collar around all walls, and of two
-    diaphragms.
-    """
+    """Reference: analytic, the volume of walls, a collar around them and two diaphragms."""
     box = BoxSection(height=0.5, width=0.3, flange=0.008, web=0.006)
     segment = replace(
         box_segment("box", 0.0, 10.0, box),
@@ -338,9 +334,7 @@ def _signals(name: str) -> int:
 
 
 def test_meshing_keeps_signal_handlers() -> None:
-    """Reference: the handlers before meshing. gmsh starts PETSc, which resets SIGTERM and
-    SIGPIPE.
-    """
+    """Reference: the handlers before. gmsh starts PETSc, which resets SIGTERM, SIGPIPE."""
     terminate, pipe = (1 << (number - 1) for number in (signal.SIGTERM, signal.SIGPIPE))
     before = signal.signal(signal.SIGTERM, lambda *_: None)
     try:
@@ -467,9 +461,7 @@ def test_lines_of_a_graded_mesh_are_complete(graded: SegmentMesh) -> None:
 
 
 def test_refinement_zones_are_at_loads_supports_and_stiffeners(paper_boom: Boom) -> None:
-    """Reference: by hand, with a collar, a diaphragm and pads. Four times the tolerance gives twice
-    the edge length.
-    """
+    """Reference: by hand, with all parts. Four times the tolerance doubles the edge length."""
     outer, inner = paper_boom.segments
     b, h = 0.5 * outer.section.width, 0.5 * outer.section.height
     stiff = replace(outer, collars=(Collar((8.0, 8.5), 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))

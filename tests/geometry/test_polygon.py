@@ -61,9 +61,7 @@ def test_a_rectangle_has_the_numbers_of_a_box(walls: tuple[float, float, float, 
 
 
 def test_taper_does_not_depend_on_the_first_corner() -> None:
-    """Reference: by hand. A taper between equal sections is constant, for any first corner and
-    order.
-    """
+    """Reference: by hand. A taper between equal sections is constant for any corner order."""
     corners = ((-0.1, -0.25), (0.1, -0.25), (0.2, 0.0), (0.1, 0.25), (-0.1, 0.25), (-0.2, 0.0))
     thick = (0.008, 0.006, 0.006, 0.009, 0.006, 0.006)
     tail = closed_polygon(corners, thick)

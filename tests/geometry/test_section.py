@@ -113,9 +113,7 @@ def torsion_by_stress_function(height: float, width: float, wall: float, cells: 
 
 
 def test_torsion_constant_in_the_limit_of_thin_walls() -> None:
-    """Reference: other code, finite differences for Prandtl's stress function. Bredt's error halves
-    with the wall.
-    """
+    """Reference: other code, Prandtl's stress function. Bredt's error halves with the wall."""
     errors = []
     for wall in (0.1, 0.05, 0.025):
         exact = torsion_by_stress_function(1.0, 0.6, wall, cells=6)
@@ -135,9 +133,7 @@ def test_torsion_constant_in_the_limit_of_thin_walls() -> None:
 def test_boxes_of_the_paper(
     ratio: float, outer_mm: tuple[float, ...], inner_mm: tuple[float, ...]
 ) -> None:
-    """Reference: other code, to its four digits. A, J and the clearance 2Δ are exact to
-    round-off.
-    """
+    """Reference: other code, to its four digits. A, J and 2Δ are exact to round-off."""
     outer = infer_outer_section(PAPER_AREAS[0], PAPER_SECOND_MOMENTS[0], ratio)
     inner = infer_inner_section(PAPER_AREAS[1], PAPER_SECOND_MOMENTS[1], outer, 7.0e-3)
     for box, printed in ((outer, outer_mm), (inner, inner_mm)):
@@ -152,9 +148,7 @@ def test_boxes_of_the_paper(
 
 
 def test_clear_room_by_hand() -> None:
-    """Reference: analytic, a hole of 0.56 m x 0.39 m around a box with outer sizes 0.51 m x 0.33
-    m.
-    """
+    """Reference: analytic, a hole of 0.56 m x 0.39 m around a box of 0.51 m x 0.33 m."""
     inner = BoxSection(height=0.49, width=0.30, flange=0.02, web=0.03)
     assert free_room(BOX, inner)[0] == pytest.approx(0.05, rel=1e-12, abs=0.0)
     assert free_room(BOX, inner)[1] == pytest.approx(0.06, rel=1e-12, abs=0.0)
@@ -262,9 +256,7 @@ def test_bad_boxes_are_refused(dimension: str, value: float, message: str) -> No
 
 
 def test_shear_flow_of_a_box_by_hand() -> None:
-    """Reference: analytic, t b h/4 J at the end of half a flange, plus (t/2J)(h²/4 − z²) along the
-    web.
-    """
+    """Reference: analytic, t b h/4 J at the end of half a flange, (t/2J)(h²/4 − z²) on webs."""
     b, h, t = 0.4, 0.6, 0.01
     bending = t * h**3 / 6.0 + b * t * h**2 / 2.0
     corner, hump = t * b * h / (4.0 * bending), t * h**2 / (8.0 * bending)
@@ -290,9 +282,7 @@ def test_it_is_the_force_and_does_not_twist(name: str, direction: Direction) -> 
 @pytest.mark.parametrize("name", ALL)
 @pytest.mark.parametrize("direction", ["z", "y"])
 def test_carriers_hold_a_force_through_the_axis(name: str, direction: Direction) -> None:
-    """Reference: analytic. Under rigid motions the forces do work on the translation along the
-    force only.
-    """
+    """Reference: analytic. Of rigid motions, the forces do work on the translation alone."""
     section = ALL[name]
     found = section.shear_plates(direction)
     forces = sum(force * section.plates[n].tangent for n, force in found)
@@ -356,9 +346,7 @@ OUTER, INNER = (0.41, -0.31, 0.32), (0.39, -0.29, 0.28)
 
 
 def test_properties_worked_by_hand() -> None:
-    """Reference: analytic, the outer rectangle less the inner one, with the parallel axis
-    theorem.
-    """
+    """Reference: analytic, outer rectangle less inner one, with the parallel axis theorem."""
     areas = [width * (top - bottom) for width, bottom, top in (OUTER, INNER)]
     midpoints = [0.5 * (bottom + top) for _, bottom, top in (OUTER, INNER)]
     area = areas[0] - areas[1]

@@ -55,9 +55,7 @@ def drawn(
 def test_travel_may_reach_the_least_overlap(
     steel: Material, start: float, end: float, travel: float, least: float
 ) -> None:
-    """An overlap of 1.2 − 0.7 = 0.5 m and 0.3 m of the fly remain; both are smaller by
-    round-off.
-    """
+    """Overlaps of 0.5 m and 0.3 m of the fly remain; both are smaller by round-off."""
     assert drawn(steel, start, end, travel, least).telescopes
 
 

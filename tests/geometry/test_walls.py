@@ -19,9 +19,7 @@ from tests.geometry.test_polygon import ALL, HEXAGON
 
 
 def test_plates_meet_at_the_corners_of_their_surfaces() -> None:
-    """Reference: analytic. The trapezoids of a box have the corners of its outer and inner
-    surface.
-    """
+    """Reference: analytic. Trapezoids of a box have its outer and inner corners."""
     walls = trapezoids(BoxSection(0.6, 0.4, flange=0.04, web=0.01).plates)
     outside = [(-0.205, -0.32), (0.205, -0.32), (0.205, 0.32), (-0.205, 0.32)]
     hole = [(-0.195, -0.28), (0.195, -0.28), (0.195, 0.28), (-0.195, 0.28)]

@@ -13,9 +13,7 @@ from tests.runs.sweeping import COARSE, FAST, Planned
 
 @pytest.fixture
 def planned(here: Path) -> Planned:
-    """Return a function that plans a sweep of the coarse case until shortly after its first
-    contact.
-    """
+    """Return a function that plans a sweep of the coarse case until after its first contact."""
     text = COARSE.read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.2")
     Path("case.toml").write_text(text, encoding="utf-8")
 

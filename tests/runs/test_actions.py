@@ -73,9 +73,7 @@ def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
 
 
 def test_a_payload_hangs_from_the_tip_with_its_mass(tmp_path: Path) -> None:
-    """Reference: analytic. A large mass vibrates at √(3 E J / m L³) about the deflection by its
-    weight.
-    """
+    """Reference: analytic, √(3 E J / m L³) of a large mass, about its static deflection."""
     moved = tip(tmp_path, "[payload]\nmass = 2e4\n")
     static = -2.0e4 * 9.80665 * 10.0**3 / (3.0 * BENDING)
     # A beam's mass adds 33/140 of itself to the tip (Rayleigh).

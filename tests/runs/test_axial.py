@@ -39,9 +39,7 @@ def pressed(folder: Path, text: str) -> list[list[float]]:
 
 
 def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
-    """Reference: analytic, the outboard masses times g sin θ. If the boom hangs, they cause
-    tension.
-    """
+    """Reference: analytic, outboard masses times g sin θ; tension if the boom hangs."""
     mast, fly = 7850.0 * MAST.area, 7850.0 * FLY.area
     text = "[gravity]\nangle = {}\n[payload]\nmass = 300.0\n"
     for angle, part in ((30.0, 0.5), (90.0, 1.0), (-30.0, -0.5)):

@@ -58,9 +58,7 @@ def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: fl
 
 
 def test_luffing_beam_column() -> None:
-    """Reference: other code, scipy's LSODA with three modes. The axial weight increases to
-    P_crit/6.
-    """
+    """Reference: other code, scipy's LSODA, three modes; the weight rises to P_crit/6."""
     frame = FrameMotion(luff=SCurve(80.0, 1.0), gravity=10.0)
     system, moving = turning_beam(frame, tip=2.0e4)
     motion = FixedStep(5.0e-4)(build_motion(moving, 2.0, 0.01, at_rest=False))

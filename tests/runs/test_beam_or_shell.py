@@ -20,9 +20,7 @@ CASE = CASES / "beam-or-shell.toml"
 
 
 def test_better_beams_are_nearer_to_the_shell(here: Path) -> None:
-    """Reference: other code, the shell. Each beam includes an effect that the previous one
-    neglects.
-    """
+    """Reference: other code, the shell. Each beam includes an effect the previous one lacks."""
     text = CASE.read_text(encoding="utf-8").replace("duration = 5.0", "duration = 1.0")
     assert text.count("acceleration = 1.0") == 1
     text = text.replace("acceleration = 1.0", "acceleration = 10.0")

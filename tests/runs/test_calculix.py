@@ -62,9 +62,7 @@ def readings(deck: Path) -> dict[str, float]:
 def test_a_boom_rests_in_calculix_as_here(
     tmp_path: Path, name: str, size: float | None, tolerance: float
 ) -> None:
-    """Reference: other code, CalculiX with its own elements on the same mesh, in the same contact
-    state.
-    """
+    """Reference: other code, CalculiX's own elements, same mesh and contact state."""
     case = reading.select(shipped(name), "", ["shell"], size)
     deck, cache = tmp_path / "boom.inp", Cache(tmp_path / "cache")
     write(case, "", MPI.COMM_SELF, deck, cache)

@@ -85,9 +85,7 @@ def test_a_calibrated_beam_gives_way_as_the_shell(built: dict[str, BuiltModel]) 
 
 
 def test_it_moves_as_the_shell(built: dict[str, BuiltModel]) -> None:
-    """Reference: other code, the tip of the shell, relative to its range. Textbook beams have much
-    larger errors.
-    """
+    """Reference: other code, the shell's tip, by its range. Textbook beams err much more."""
     shell = tip(built["shell"].system)
 
     def error(name: str) -> float:

@@ -80,9 +80,7 @@ def test_inferred_sections_have_the_beam_s_numbers_and_the_joint_s_play() -> Non
 
 
 def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(tmp_path: Path) -> None:
-    """Reference: analytic, a thin box: A = 2(h + b)t, and J = A h²/12 (1 + 3/r)/(1 + 1/r)
-    approximately.
-    """
+    """Reference: analytic, a thin box: A = 2(h + b)t, J ≈ A h²/12 (1 + 3/r)/(1 + 1/r)."""
     given = "section = { height = 0.6, width = 0.4, flange = 0.001, web = 0.001 }"
     text = COARSE.replace("mass_per_length = 83.16\n", given + "\n")
     for line in ("second_moment_of_area = 3.7986e-4\n", "rotary_inertia = 3.48\n"):

@@ -32,9 +32,7 @@ def test_numbers_come_as_they_are() -> None:
 
 
 def test_panels_share_their_abscissa_and_fill_the_height() -> None:
-    """Reference: analytic, two panels, each with its own ordinate, and the band before its
-    curve.
-    """
+    """Reference: analytic, two panels with ordinates of their own, the band before its curve."""
     time, values = np.linspace(0.0, 1.0, 3), np.array([1.0, 2.0, 3.0])
     limits = values - 1.0, values + 1.0
     curves = [Curve("a", values, "#000000", band=limits), Curve("a", values, "#000000", panel=1)]

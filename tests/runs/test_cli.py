@@ -238,9 +238,7 @@ def test_a_temporary_folder_without_room_is_one_line(
 def test_foreign_environment_variables_have_no_effect(
     tmp_path: Path, variable: str, value: str
 ) -> None:
-    """The variables name a notebook's backend that is not installed, and a rank without a
-    launcher.
-    """
+    """They name a notebook's backend that is not installed, and a rank without a launcher."""
     # It imports matplotlib, and then, as whoever shares a shell, asks for the rank.
     drawn = "check", "case.toml", "--picture", "boom.png"
     export = "export", "case.toml", "--to", "opensees", "--model", "beam-fe"

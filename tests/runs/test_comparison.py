@@ -26,9 +26,7 @@ CUTOFF = 1.7
 
 
 def ensemble(delay: float = 0.0, height: float = 1.0, growth: float = 0.0) -> xr.Dataset:
-    """Return vibrations with the period 1 s; phases of members differ by ±1e-4 exp(growth t) in
-    s.
-    """
+    """Return vibrations of period 1 s; phases of members differ by ±1e-4 exp(growth t) in s."""
     parting = np.linspace(-1e-4, 1e-4, 9)[:, None] * np.exp(growth * TIME)
     parting = np.clip(np.vstack([np.zeros(TIME.size), parting]), -0.2, 0.2)
     tip = height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay - parting)))

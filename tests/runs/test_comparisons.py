@@ -110,9 +110,7 @@ def test_without_a_slow_motion_ensembles_are_not_compared() -> None:
 
 
 def test_with_friction_every_model_is_compared_to_the_end() -> None:
-    """Reference: analytic, a tip that is too high by 0.1 up to 5 s and by 0.3 later, for a range of
-    1.
-    """
+    """Reference: analytic, a tip too high by 0.1 up to 5 s, then by 0.3, for a range of 1."""
     above = swing() + np.where(TIME <= 5.0, 0.1, 0.3)
     data = trajectories(kantorovich_4=above, kantorovich_5=swing(), beam_fe_bonded=0.1 * swing())
     case = case_of(*SERIES, "beam-fe-bonded", friction=0.2)
@@ -131,9 +129,7 @@ def test_with_friction_every_model_is_compared_to_the_end() -> None:
 def test_friction_under_given_forces_is_regular(
     friction: float, pressed: tuple[float, ...]
 ) -> None:
-    """Reference: physics. Friction under contact forces, or without normal force, leaves motion
-    chaotic.
-    """
+    """Reference: physics. Friction by contact forces or without any leaves motion chaotic."""
     case = case_of(*SERIES, friction=friction, pressed=pressed)
     data = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
     assert compare_models(case, data, None, None) is None
@@ -166,9 +162,7 @@ MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-bonded")
 
 
 def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
-    """Return ten seconds of two models with play and one without; ``changes`` apply to the
-    first.
-    """
+    """Return 10 s of two models with play and one without; ``changes`` apply to the first."""
     case = case_file.select(shipped("coarse"), "", MODELS, None)
     rubbing = {"friction": friction, "normal_forces": (4500.0, 5000.0)}
     joints = tuple(replace(joint, **rubbing) for joint in case.joints)

@@ -65,9 +65,7 @@ def test_cylinder_of_the_boom_follows_the_case(case: Case, tmp_path: Path) -> No
 
 
 def test_every_model_stands_on_its_cylinder(case: Case) -> None:
-    """Reference: analytic, moments about the hinge. At rest nothing moves, and energy is
-    conserved.
-    """
+    """Reference: analytic, moments about the hinge. Nothing moves; energy is conserved."""
     results, boom = run_case(case), build_boom(case)
     force = results.trajectories["cylinder_force"]
     assert force.attrs == {

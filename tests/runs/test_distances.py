@@ -46,9 +46,7 @@ def features(height: float, period: float) -> Features:
 
 
 def test_distances_are_parts_of_the_reference() -> None:
-    """Reference: analytic. At 1 s, vibrations with the periods 0.5 and 0.4 s have a minimum and a
-    maximum.
-    """
+    """Reference: analytic. Periods of 0.5 and 0.4 s have a minimum and a maximum at 1 s."""
     off = features(0.11, 0.4).distances_from(features(0.10, 0.4))
     heights = "first_peak_off", "pad_force_off", "stress_off", "tip_off"
     assert [off[name] for name in heights] == pytest.approx(4 * [0.1])
@@ -158,9 +156,7 @@ def test_tips_are_compared_up_to_the_horizon(against: Plan) -> None:
 
 
 def invented(factor: float, until: float = 0.9) -> Outcome:
-    """Return two models with distances of tips by a factor and a tenth of it, and equal first
-    peaks.
-    """
+    """Return two models with distances of tips by a factor and a tenth of it; equal peaks."""
     parts: Quantities = {one.name: None for one in DISTANCES} | {"first_peak_off": 0.002}
     tips = {"kantorovich-4": factor, "beam-fe-bonded": 0.1 * factor}
     return Outcome({}, {}, {name: {**parts, "tip_off": tip} for name, tip in tips.items()}, until)
@@ -168,9 +164,7 @@ def invented(factor: float, until: float = 0.9) -> Outcome:
 
 @pytest.mark.usefixtures("unprinted")
 def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
-    """Reference: invented numbers on both sides of the levels. Quantities without values have no
-    map.
-    """
+    """Reference: numbers on both sides of the levels. Without values there is no map."""
     keys = ["joint.play=0.008,0.014", "segment.load=20,40"]
     sweeping = plan("case.toml", keys, MODELS, None, "kantorovich-5")
     Path("out").mkdir()

@@ -196,9 +196,7 @@ def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
 
 
 def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) -> None:
-    """Reference: by hand. The drive starts at the maximum of the sine load, between sampled
-    times.
-    """
+    """Reference: by hand. The drive starts at the sine's maximum, between sampled times."""
     late = ("time = 5.0", "start = 0.2083333333333, time = 0.02"), SHORT
     text = edited(*late) + table(
         "[[load]]", segment="inner", x="head", magnitude=500, frequency=1.2
@@ -333,9 +331,7 @@ def test_a_crane_telescopes_out_of_all_its_segments(time: float, extension: floa
 
 
 def test_a_sweep_varies_how_fast_it_is_drawn() -> None:
-    """Reference: analytic. The largest speed of an S-curve is twice its travel over its
-    duration.
-    """
+    """Reference: analytic, the largest speed of an S-curve is twice travel over duration."""
     found = plan(str(CASES / "drawn-out.toml"), ["joint.drive.time=2:8:4"], ["beam-fe"], None)
     speeds = []
     for point in found.points:
@@ -346,9 +342,7 @@ def test_a_sweep_varies_how_fast_it_is_drawn() -> None:
 
 
 def test_check_prints_drives() -> None:
-    """Reference: the case, and analytic: the largest speed of an S-curve is twice its mean
-    speed.
-    """
+    """Reference: the case; analytic, an S-curve's largest speed is twice its mean."""
     case = shipped("drawn-out")
     assert (
         "A drive extends 'inner' by 4 m from 0 to 5 s, at 1.6 m/s at most; the smallest overlap "

@@ -99,9 +99,7 @@ def memory(*arguments: str) -> int:
 def test_memory_is_not_above_the_estimate_and_not_far_below(
     edits: tuple[tuple[str, str], ...], options: tuple[str, ...], members: int | None
 ) -> None:
-    """Reference: external, the operating system. The first run, with compilation, needs three times
-    as much.
-    """
+    """Reference: external, the operating system. Compilation needs three times as much."""
     write(*edits)
     case = case_file.load("case.toml")
     case = case_file.select(case, "case.toml", [options[1]], members=members)
@@ -172,9 +170,7 @@ def test_excessive_memory_or_time_is_refused(edits: tuple[tuple[str, str], ...],
 
 @pytest.mark.parametrize("name", ["lift", "coarse"])
 def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
-    """Reference: other code path, elements of 0.5 m, within 1 %. Elements of 4 mm would need
-    minutes.
-    """
+    """Reference: other code path, elements of 0.5 m, within 1 %; 4 mm would take minutes."""
     text = (CASES / f"{name}.toml").read_text(encoding="utf-8")
     told = []
     for length in ("0.5", "0.004"):

@@ -123,9 +123,7 @@ def test_lift_rests_on_its_cylinder_in_opensees_as_here(tmp_path: Path) -> None:
 @INSTALLED
 @pytest.mark.slow
 def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Path) -> None:
-    """Reference: other code, OpenSees. The coupling of springs contributes less than a
-    thousandth.
-    """
+    """Reference: other code, OpenSees. Coupling of springs is less than a thousandth."""
     pytest.importorskip("dolfinx", reason="a shell calibrates it")
     from mpi4py import MPI
 

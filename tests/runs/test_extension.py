@@ -163,9 +163,7 @@ def test_a_contradiction_is_one_line(relative: str, wrong: str, line: str) -> No
 
 
 def test_frequencies_over_the_extension_are_one_command() -> None:
-    """Reference: analytic, exact frequencies of the bonded boom. Play does not increase
-    frequencies.
-    """
+    """Reference: analytic, frequencies of the bonded boom, which play does not increase."""
     case_of(PAPER)
     command = ["frequencies", "crane.toml", "--vary", "joint.extension=5:9:3", "--out", "out"]
     with pytest.raises(SystemExit) as ended:

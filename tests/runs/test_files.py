@@ -154,9 +154,7 @@ def test_folder_is_restored_after_a_killed_exchange(tmp_path: Path) -> None:
 
 
 def test_folder_changes_exclude_each_other(tmp_path: Path) -> None:
-    """Reference: by construction. The other process replaces the folder after the lock is
-    released.
-    """
+    """Reference: by construction. The folder is replaced after the lock is released."""
     folder = tmp_path / "out"
 
     def replace() -> None:

@@ -69,9 +69,7 @@ def test_boom_vibrates_about_its_static_deflection(tmp_path: Path) -> None:
 
 
 def test_a_payload_weighs_by_itself_alone_without_gravity(tmp_path: Path) -> None:
-    """Reference: analytic, F L³/3 E J of the payload with standard gravity or its own
-    acceleration.
-    """
+    """Reference: analytic, F L³/3 E J with standard gravity or the payload's own."""
     rest = '[payload]\nmass = 500.0\n{}\n[start]\nstate = "equilibrium"\n'
     for line, acceleration in (("", 9.80665), ("gravity = 4.0", 4.0)):
         moved = tip(read(tmp_path, rest.format(line)))

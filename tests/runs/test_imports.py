@@ -226,9 +226,7 @@ def test_evidence_of_each_statement(case: str, changed: dict[str, list[str]]) ->
 
 @pytest.mark.parametrize(("case", "numbers"), [("paper", (6, 7)), ("paper-friction", (8, 9))])
 def test_figures_name_their_counterparts(case: str, numbers: tuple[int, int]) -> None:
-    """Reference: external, Figs. 6 and 7 of the paper without friction, Figs. 8 and 9 with
-    friction.
-    """
+    """Reference: external, Figs. 6 and 7 of the paper; with friction, Figs. 8 and 9."""
     found = shipped(case)
     remarks = addition(found, []).remarks
     for place, number in zip(("tip", "head"), numbers, strict=True):

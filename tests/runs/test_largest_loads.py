@@ -208,9 +208,7 @@ def answers(model: str, folder: Path, case: str = CASE) -> ModelDesignResults:
 
 
 def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
-    """Reference: analytic. A boom with one coordinate reaches twice the static result after half a
-    period.
-    """
+    """Reference: analytic. One coordinate: twice the static result after half a period."""
     series = table("[[model]]", name="one", kind="kantorovich", terms=[1], base="complete")
     found = answers(series, tmp_path)
     assert {peak.what for peak in found.motion.peaks} == {"deflection", "bending moment"}

@@ -46,9 +46,7 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
     motions: int,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """Reference: the case. Motions include those without play and at the constant extremes of a
-    drive.
-    """
+    """Reference: the case. Motions include those without play and at a drive's extremes."""
     run = short(name, model, **values, **{"time.step": 4.0e-5})
     steps: list[float] = []
     move = FixedStep.__call__

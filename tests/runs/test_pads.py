@@ -133,9 +133,7 @@ def test_summary_names_the_governing_pad(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("shim", [0.0, 2e-5, 1.0e-3])
 def test_governing_pad_at_rest_is_named(tmp_path: Path, shim: float) -> None:
-    """Reference: other code path, the rows of each pair of pads, which carry 3/5 and 2/5 of a
-    force.
-    """
+    """Reference: other code path, the rows of pad pairs, with 3/5 and 2/5 of a force."""
     below = [pad_on("below", 0.03, 0.02), pad_on("below", 0.02, 0.02, offset=0.04, shim=shim)]
     above = pad_on("above", 0.05, 0.02)
     case = case_with(tmp_path, several(above, *below))
@@ -168,9 +166,7 @@ def several(*pads: str) -> str:
 
 
 def test_two_halves_of_a_pad_are_the_pad(tmp_path: Path) -> None:
-    """Reference: other code path, one pad of the total size, with the same forces at each
-    station.
-    """
+    """Reference: other code path, one pad of the total size has the same station forces."""
     halves = [
         pad_on(side, 0.025, 0.02, offset=offset)
         for side in ("above", "below")
@@ -200,9 +196,7 @@ def test_pads_share_as_they_are_stiff(tmp_path: Path) -> None:
 
 
 def test_pressure_of_each_pad_is_reported(tmp_path: Path) -> None:
-    """Reference: by hand, the largest force at the head over both areas; it exceeds that at the
-    tail.
-    """
+    """Reference: by hand, the largest force over both areas, at the head."""
     pads = [
         pad_on("above", 0.05, 0.02),
         pad_on("below", 0.03, 0.02, allowable_pressure=2e7),

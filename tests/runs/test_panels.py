@@ -51,9 +51,7 @@ def test_a_stress_alone_has_its_own_factor(ratio: float) -> None:
 
 
 def test_shear_interacts() -> None:
-    """Reference: analytic, 1/α = 1/(2 α_x) + √(1/(4 α_x²) + 1/α_τ²), for bending a circle, and 5.34
-    for shear.
-    """
+    """Reference: analytic, 1/α = 1/(2 α_x) + √(1/(4 α_x²) + 1/α_τ²), a circle, 5.34."""
     pressed, sheared = 0.5, 0.4
     factor = panel_factor(STEEL, SLENDERNESS, (-4.0 * pressed * UNIT,) * 2, 5.34 * sheared * UNIT)
     expected = 0.5 * pressed + np.hypot(0.5 * pressed, sheared)
@@ -67,9 +65,7 @@ def test_shear_interacts() -> None:
 
 
 def test_the_weakest_wall_of_a_segment() -> None:
-    """Reference: analytic. A moment compresses the bottom flange; a torque shears all walls
-    equally.
-    """
+    """Reference: analytic. Moments compress the bottom flange; torque shears all walls."""
     box = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
     segment = Segment.of_section("outer", 0.0, 2.0, STEEL, box)
 
@@ -119,9 +115,7 @@ section = { height = 0.4, width = 0.3, flange = 0.003, web = 0.008 }
 
 
 def test_bulging_walls_give_a_caution() -> None:
-    """Reference: by hand, right walls that move by a part of the lateral play. Beams have no
-    bulging.
-    """
+    """Reference: by hand, right walls moved by a part of the play. Beams do not bulge."""
     case = shipped("spatial")
     boom, model = build_boom(case), next(m for m in case.models if m.name == "timoshenko")
     system = build(case, boom, model).system.gather_loads()

@@ -233,9 +233,7 @@ def test_large_stress_is_dark(pictures: list[Path]) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
-    """Both segments are visible in their colours, without two outer walls that hide the inner
-    segment.
-    """
+    """Both segments are visible in their colours, without two hiding outer walls."""
     (overlap,) = shell.overlaps
     with rc_context(theme.PAGE_RC):
         mesh = draw_mesh(shell, overlap)
@@ -249,9 +247,7 @@ def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 def test_symbols_of_loads_masses_and_cylinders_follow_the_boom(shell: Scene) -> None:
-    """Reference: analytic. Symbols of 30 pt: a red arrow and a black ball at the tip, a bar along
-    the cylinder.
-    """
+    """Reference: analytic. 30 pt: a red arrow, a black ball at the tip, a cylinder bar."""
     payload = PayloadTable(mass=100.0)
     down = LoadTable(segment="inner", x="head", magnitude=-1.0e3)
     marked = moving_scene(CASE.model_copy(update={"payload": payload, "loads": (down,)}))

@@ -44,9 +44,7 @@ def numbers(found: DesignResults, model: str) -> dict[tuple[str, str], PlayDiffe
 
 
 def test_play_adds_its_lever_at_rest(answers: DesignResults) -> None:
-    """Reference: by hand. 14 mrad of play and 5 µrad of contacts are 133 mm and 47 µm in any
-    model.
-    """
+    """Reference: by hand. 14 mrad of play and 5 µrad of contacts are 133 mm and 47 µm."""
     assert [play.model for play in answers.play] == ["kantorovich-5", "beam-fe"]
     at_rest = numbers(answers, "beam-fe")["deflection at rest", "tip"]
     assert at_rest.increase == pytest.approx(0.133 + 10.0 * 4.956e-6 - 2.2e-6, abs=1e-7)
@@ -151,9 +149,7 @@ def test_the_bonded_boom_lacks_the_play_alone(pair: GapSystem) -> None:
 
 
 def test_bonded_system_keeps_the_softening_by_axial_forces(pair: GapSystem) -> None:
-    """Reference: analytic. Axial forces reduce 100 N/m by 30 N/m, so that both have √(70/2)
-    rad/s.
-    """
+    """Reference: analytic. Axial forces take 30 of 100 N/m: both have √(70/2) rad/s."""
     pressed = replace(pair, geometric_stiffness=np.diag([30.0, 0.0]))
     bonded, _ = bonded_system(pressed, [equilibrium(pressed, pressed.load)])
     np.testing.assert_allclose(bonded.omega2, [35.0], rtol=1e-12)

@@ -183,9 +183,7 @@ def damage_by_hand(x: float, category: float) -> float:
     ("name", "x", "category"), [("collar", 2.0, 50.0), ("diaphragm", 4.0, 71.0)]
 )
 def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float) -> None:
-    """Reference: by hand. The limits of the standard are rounded to three digits, twice with slope
-    5.
-    """
+    """Reference: by hand. The standard's limits have three digits, twice with slope 5."""
     found, _ = proofs_of(tmp_path, ARM)
     one = found["fatigue", f"{name}, arm"]
     assert one.demand == pytest.approx(damage_by_hand(x, category), rel=5e-3)
@@ -194,9 +192,7 @@ def test_damage_of_details(tmp_path: Path, name: str, x: float, category: float)
 
 
 def test_cycles_of_a_motion(tmp_path: Path) -> None:
-    """Reference: other code path, the fatigue life of a run, which has half a cycle more out of
-    fifty.
-    """
+    """Reference: other code path, a run's fatigue life with half a cycle more of fifty."""
     text = ARM.replace("{ partial", "{ detail_category = 80.0, partial").replace(
         "= 1.0 }", "= 4.0 }", 1
     )
@@ -304,9 +300,7 @@ def test_the_first_screen_of_the_report(tmp_path: Path) -> None:
 
 
 def test_shipped_cases_are_proved() -> None:
-    """Reference: non-regression. The slender webs of the crane fail in buckling; other proofs
-    hold.
-    """
+    """Reference: non-regression. The crane's slender webs fail in buckling alone."""
     failed, kinds = {}, {}
     for name in ("lift", "inspection-arm", "crane-proof"):
         case = shipped(name)

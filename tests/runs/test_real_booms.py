@@ -22,9 +22,7 @@ GRAVITY = 9.80665
 
 @dataclass
 class Pushed:
-    """A segment with upward forces in N at x and in N/m, and moments in N·m towards a larger
-    slope.
-    """
+    """A segment with forces up in N at x and in N/m, and moments in N·m towards a slope."""
 
     segment: Segment
     along: float
@@ -110,9 +108,7 @@ def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
 
 
 def level(name: str) -> Case:
-    """Return the level case under its weights, without axial forces other than those of
-    cylinders.
-    """
+    """Return the level case under its weights; only cylinders give axial forces."""
     case = shipped(name)
     gravity = case.gravity.model_copy(update={"angle": 0.0})
     return case.model_copy(update={"gravity": gravity, "axial": (), "loads": ()})
@@ -131,9 +127,7 @@ LUFFED = [path.stem for path in sorted(CASES.glob("*.toml")) if "depth =" in pat
 
 
 def second_order(boom: Boom, rest: StaticState) -> float:
-    """Return ∫ P w′ dx of all segments in N·m, the moment of axial forces about the foot by
-    bending.
-    """
+    """Return ∫ P w′ dx of all segments in N·m, the moment of axial forces about the foot."""
     modes = BoomModes(boom, Elements(boom).segments)
     found = 0.0
     for number, segment in enumerate(boom.segments):
@@ -183,9 +177,7 @@ def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None
 
 @pytest.mark.parametrize("name", ["crane", "inspection-arm", "lift"])
 def test_booms_have_the_deflections_of_statics_by_hand(name: str) -> None:
-    """Reference: analytic, lever rule and unit-load method with the rotations by play, within 0.1
-    %.
-    """
+    """Reference: analytic, lever rule and unit loads, with play's rotations, within 0.1 %."""
     case = level(name)
     boom = build_boom(case)
     rest, stiffness = rest_of(case, boom)

@@ -68,9 +68,7 @@ def lifted(travel: float, time: float) -> GapSystem:
 
 
 def test_fixed_boom_vibrates_with_its_initial_amplitude() -> None:
-    """Reference: analytic. Under 1 N on springs of 1 + 3 N/m, the mass vibrates by 1/4 m about 1/4
-    m.
-    """
+    """Reference: analytic. 1 N on springs of 1 + 3 N/m: 1/4 m about 1/4 m."""
     system = replace(lifted(0.0, 1.0), travels=())
     swing, _ = farthest_from_rest(system, simulate(system, 4.0))
     assert swing == pytest.approx(0.25, rel=1e-4)
@@ -158,9 +156,7 @@ def test_admissible_speed_is_at_the_crossing_of_lines(level: float, fastest: flo
 
 
 def swept() -> xr.Dataset:
-    """Return invented numbers of three points; the second failed, and the last has the lowest
-    speed.
-    """
+    """Return invented numbers of three points; the second failed, the last is slowest."""
     known = {
         "residual_vibration": [0.05, np.nan, 0.02],
         "drive_speed": [2.0, np.nan, 1.0],

@@ -42,9 +42,7 @@ def results() -> Results:
 
 
 def answering(results: Results, **changes: Any) -> Results:
-    """Return results with changed design results of the run, or with ``own`` of the model with
-    play.
-    """
+    """Return results with changed design results of the run, or of the model with play."""
     answers = results.summary.design
     if own := changes.pop("own", None):
         changed = replace(answers.models[PLAYED], **own)
@@ -125,9 +123,7 @@ def test_tables_of_rest_name_their_loads(results: Results) -> None:
 
 
 def with_stress(results: Results, stress: float) -> Results:
-    """Return results with a stress in Pa in the outer fibre, 10 % more in plates, and f_y = 355
-    MPa.
-    """
+    """Return results with a stress in Pa, 10 % more in plates, and f_y = 355 MPa."""
     moved = results.summary.design.models[PLAYED].motion
     fibre = replace(moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
     patch = 1.1 * stress

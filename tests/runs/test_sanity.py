@@ -353,9 +353,7 @@ def test_each_error_gives_a_caution(tmp_path: Path, old: str, new: str, slip: st
 
 
 def test_folds_and_heads_are_walls_too(tmp_path: Path) -> None:
-    """Reference: by hand. A chamfer of 50 mm is √2 · 50 mm wide, also at the head of a taper
-    only.
-    """
+    """Reference: by hand. A chamfer of 50 mm is √2 · 50 mm wide, also at a head alone."""
     box = "section = { height = 0.36, width = 0.26, flange = 0.006, web = 0.005 }"
     assert CASE.count(box) == 1
     fold = (

@@ -162,9 +162,7 @@ def test_the_only_joint_is_not_named(shell: Scene) -> None:
 
 
 def test_from_above_y_points_up(shell: Scene) -> None:
-    """Reference: analytic, a boom in space rotated about x. Upward displacements point to the
-    viewer.
-    """
+    """Reference: analytic, a boom rotated about x. Upward displacements face the viewer."""
     motion = moving_trajectories().sel(model="shell").isel(station=[0, 1, 0, 1])
     motion = motion.assign(tip_lateral=-2.0 * motion["tip"])
     side, above = Scene.views(moving_fields(), motion, shipped("spatial"))
@@ -273,9 +271,7 @@ def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
 
 
 def test_play_stays_visible_between_beams(paper_boom: Boom) -> None:
-    """Reference: the displayed inner section is less high than the outer one by more than both
-    plays.
-    """
+    """Reference: the displayed inner section is less high by more than both plays."""
     scene, _ = still(paper_boom, bent(paper_boom))
     drawn = scene.magnify(np.zeros_like(scene.points), 10.0)
     outer, inner = (drawn[scene.owner == number, 2].max() for number in (0, 1))
@@ -304,9 +300,7 @@ def legend(sheet: Figure) -> list[str]:
 
 
 def test_a_lift_stands_at_its_angle() -> None:
-    """Reference: analytic. A tip at 15.7 m and 45 degrees is 11.10 m away from and above the
-    foot.
-    """
+    """Reference: analytic. A tip at 15.7 m and 45 degrees: 11.10 m away and above the foot."""
     whole = drawn("lift").axes[0]
     places = np.concatenate([line.get_xydata() for line in whole.lines])
     for reference in ((11.1016, 11.1016), (1.2728, -0.2828)):

@@ -43,9 +43,7 @@ def told(case: Case) -> list[str]:
 
 
 def test_masses_forces_and_tips_are_those_of_hand() -> None:
-    """Reference: by hand, the lever rule; other code, 9.916 mm by elements. Play adds 7 + 14 · 9
-    mm.
-    """
+    """Reference: by hand, lever rule, 7 + 14 · 9 mm of play; other code, 9.916 mm."""
     lines = told(shipped("coarse"))
     assert "outer 831.6 0 5" in lines
     assert "all 1382 0 8.586" in lines
@@ -259,9 +257,7 @@ def ball(*histories: History) -> GapSystem:
 
 
 def test_instants_are_at_extremes_of_loads() -> None:
-    """Reference: by hand. A ramp has its maximum at its end, a sine of 1 Hz extremes at 0.25 and
-    0.75 s.
-    """
+    """Reference: by hand. A ramp peaks at its end, a sine of 1 Hz at 0.25 and 0.75 s."""
     assert instants(ball(), 2.0) == [0.0]
     assert instants(ball(Ramp(0.3)), 2.0) == [0.0, 0.3]
     assert instants(ball(Sine(1.0)), 1.0) == pytest.approx([0.0, 0.25, 0.75], abs=1e-3)
@@ -274,9 +270,7 @@ def test_no_swing_of_a_load_is_missed() -> None:
 
 
 def test_extended_boom_is_under_the_largest_loads_meanwhile() -> None:
-    """Reference: by hand. The boom is extended from 1 s on, during the second of two peaks, and
-    retracted at 3 s.
-    """
+    """Reference: by hand. Extended from 1 s, the second of two peaks, retracted at 3 s."""
     ways = PiecewiseLinear([0.0, 1.0, 2.0, 3.0], [0.0, 4.0, 4.0, -1.0])
     still = RowTable.interpolate(lambda s: np.ones((1, 1)), [-1.0, 4.0])
     drawn = [Travel(ways, still, (("rows", 0),), "")]
@@ -313,9 +307,7 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
 
 
 def test_an_instant_without_rest_is_left_out() -> None:
-    """Reference: by hand. The ball rests at 9.81 µm, has no equilibrium under 20 N upwards, and
-    rests under 29.81 N.
-    """
+    """Reference: by hand. 9.81 µm at rest; none under 20 N upwards; under 29.81 N again."""
     found = positions(ball(Sine(1.0)), instants(ball(Sine(1.0)), 1.0))
     assert list(found) == pytest.approx([0.0, 0.75], abs=1e-3)
     np.testing.assert_allclose(np.ravel(list(found.values())), [-9.81e-6, -29.81e-6], rtol=1e-5)

@@ -228,9 +228,7 @@ def _check_motion(data: xr.Dataset) -> None:
 
 
 def _checked_slips(data: xr.Dataset) -> int:
-    """Return the number of outputs with slip, and check that drive force less friction accelerates
-    550.7 kg.
-    """
+    """Return the outputs with slip; drive force less friction accelerates 550.7 kg."""
     time, speed = data["time"].values, data["extension_speed"].values
     friction = 0.2 * np.abs(data["contact_force"].values).sum(axis=1)
     slips = np.minimum(speed[1:], speed[:-1]) > 0.0
@@ -268,9 +266,7 @@ def test_lag_is_in_the_units_of_the_case(tmp_path: Path) -> None:
 
 
 def test_large_lag_gives_a_caution_in_the_report(tmp_path: Path) -> None:
-    """Reference: by hand. 9.72 kN stretch a rope of 1e5 N/m by 97 mm, at most by half as much
-    again.
-    """
+    """Reference: by hand. 9.72 kN stretch 1e5 N/m by 97 mm, at most half as much again."""
     slow = {"time = 5.0": "time = 8.0", "duration = 7.0": "duration = 8.0"}
     case = drawn_by(tmp_path, ROPE.replace("2e5", "1e5"), **slow)
     results = run_case(change(case, **{"time.output_step": 0.01}), models=["kantorovich-5"])

@@ -169,9 +169,7 @@ def test_a_folder_of_something_else_is_refused(planned: Planned) -> None:
 
 
 def test_decay_has_the_settling_time_of_the_formula() -> None:
-    """Reference: analytic, τ ln 20 for exp(−t/τ). The mean of the last fifth has an error of
-    e⁻¹⁶.
-    """
+    """Reference: analytic, τ ln 20 for exp(−t/τ), whose late mean has an error of e⁻¹⁶."""
     time = np.linspace(0.0, 20.0, 20001)
     settled = settling_time(time, 0.3 - 0.1 * np.exp(-time))
     assert settled == pytest.approx(math.log(20.0), abs=2e-3)
@@ -431,9 +429,7 @@ def test_keys_are_shown_in_units_of_their_size() -> None:
 
 
 def test_lines_are_in_shown_units_with_gaps(planned: Planned, sheets: list[Sheet]) -> None:
-    """Reference: the invented numbers 1.0, 1.1, ... in m and N; the third is missing in one
-    model.
-    """
+    """Reference: the invented numbers 1.0, 1.1, ... in m and N; one model lacks the third."""
     charts(planned("joint.play=0:0.009:4"))
     (sheet,) = sheets
     panels = {axes.get_title(loc="left"): axes for axes in sheet.axes}

@@ -125,9 +125,7 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
 def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, most: float) -> None:
-    """Reference: the vibration without the shaper. A thousandth remains without play, a quarter
-    with a play of 4 mm.
-    """
+    """Reference: without the shaper. A thousandth remains, a quarter with 4 mm of play."""
     slew = "[damping]\nmodal = 0.02\n[slew]\ntravel = 12.0\ntime = 1.5\n"
     plain = slewing_arm(tmp_path, slew)
     model = plain.models[0].model_copy(update={"bonded_joints": bonded})

@@ -139,9 +139,7 @@ def agree(si: Trajectory, mm: Trajectory) -> None:
 def test_beams_do_not_know_the_units(
     model: Callable[[Boom, PowerContact], GapSystem], law: PowerContact
 ) -> None:
-    """Reference: the same model in SI units within 1e-9 of the range, with friction and
-    contacts.
-    """
+    """Reference: the model in SI units within 1e-9, with friction and contacts."""
     boom = flat_boom(friction=0.2)
     runs = [
         FixedStep(1.0e-4)(Motion(model(*data), 1.0))
@@ -163,9 +161,7 @@ def test_steps_by_tolerance_do_not_know_the_units() -> None:
 
 @pytest.mark.parametrize("line", ["near webs", "pads", "surface"])
 def test_shells_do_not_know_the_units(line: str) -> None:
-    """Reference: the same model in SI units within 1e-9 of the range, on a coarse mesh with
-    friction.
-    """
+    """Reference: the model in SI units within 1e-9, a coarse mesh with friction."""
     boom = flat_boom(friction=0.2)
     if line == "pads":
         boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))

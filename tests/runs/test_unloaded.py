@@ -47,9 +47,7 @@ pytestmark = pytest.mark.usefixtures("here")
 def test_a_boom_without_loads_is_run_and_reported(
     kind: str, request: pytest.FixtureRequest
 ) -> None:
-    """Reference: analytic. Without loads the boom is straight, and moves only with an initial
-    velocity.
-    """
+    """Reference: analytic. Without loads the boom is straight, and at rest unless thrown."""
     added, moves = ADDED[kind]
     if kind not in {"nothing", "thrown"}:
         request.getfixturevalue("unprinted")

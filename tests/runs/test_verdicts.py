@@ -137,9 +137,7 @@ def test_s3_needs_peaks(still: slice, when: str) -> None:
 
 
 def test_few_members_decide_nothing() -> None:
-    """Reference: analytic. If half of the runs have a property, all of three members may have
-    it.
-    """
+    """Reference: analytic. If half of the runs have a property, three members may all."""
     assert verdict("S3", tips=stratifying(0.5, count=3))[:2] == ("undecided", 1.0)
 
 
@@ -228,9 +226,7 @@ def rubbing() -> Case:
 
 
 def conforming(late: float) -> dict[str, dict[str, np.ndarray]]:
-    """Return models with differences by their heights, and ``late`` times as much more after six
-    seconds.
-    """
+    """Return models with differences by height, ``late`` times as much more after 6 s."""
     motion = curves()
     for name, both in motion.items():
         if name != "beam-fe-bonded":

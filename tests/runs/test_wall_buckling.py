@@ -46,9 +46,7 @@ def run(folder: Path, name: str, **changes: str) -> Results:
 
 @pytest.mark.slow
 def test_a_run_has_factors_of_shell_and_panels(tmp_path: Path) -> None:
-    """Reference: other code, panel formulas. Restraint at folds increases the factors of the
-    shell.
-    """
+    """Reference: other code, panel formulas, below the shell with its restrained folds."""
     results = run(tmp_path, "coarse.toml", statements="[]", duration="0.01")
     summary = Summary.model_validate_json(str(results.summary))
     shell, beam = (summary.design.models[name] for name in ("shell", "timoshenko"))

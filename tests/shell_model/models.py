@@ -49,9 +49,7 @@ def reduced(
 
 
 def pressed_rest(system: GapSystem, at: Sequence[bool] | slice = slice(None)) -> Array:
-    """Return the equilibrium with springs of 1e12 N/m in place of contact, at some rows or at
-    all.
-    """
+    """Return the equilibrium with springs of 1e12 N/m as contact at some or all rows."""
     rows = system.rows[at]
     return np.asarray(np.linalg.solve(np.diag(system.omega2) + 1.0e12 * rows.T @ rows, system.load))
 
@@ -85,9 +83,7 @@ def reduce_segment(
 
 
 def frequencies_off(shell: SegmentShell, direction: Direction = "z", count: int = 1) -> Array:
-    """Return the relative errors (count,) of the first elastic frequencies against Timoshenko
-    elements.
-    """
+    """Return relative errors (count,) of elastic frequencies against Timoshenko elements."""
     tip = shell.row(shell.outline(10.0).wall_deflection(direction))
     inputs = np.column_stack([shell.unit_loads[direction], tip])
     found = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())

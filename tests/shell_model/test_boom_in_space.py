@@ -75,9 +75,7 @@ def octagonal_boom() -> Boom:
     ids=["boxes", "octagons"],
 )
 def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off: float) -> None:
-    """Reference: symmetry. Frequencies, compliances and loads with exchanged directions agree to
-    round-off.
-    """
+    """Reference: symmetry, exchanged directions: frequencies, compliances, loads, round-off."""
     joint = upright.joints[0]
     lying = Boom(
         tuple(segment.turned() for segment in upright.segments),
@@ -122,9 +120,7 @@ def test_segments_rolling_together_keep_their_gaps() -> None:
 
 @pytest.mark.slow
 def test_friction_of_each_pad_follows_its_contact() -> None:
-    """Reference: external source, (11). The contact row of each pad gives its normal force; it
-    slides across its normal.
-    """
+    """Reference: external source, (11). Each pad's contact row gives N; it slides across."""
     system = reduced(boom_in_space(friction=0.2), 0.5).system
     assert len(system.frictions) == len(system.laws) == 16
     for row, (friction, station) in enumerate(
@@ -181,9 +177,7 @@ def test_lateral_motion_follows_beams() -> None:
 
 @pytest.mark.slow
 def test_the_bonded_boom_vibrates_as_beams_in_both_planes() -> None:
-    """Reference: other code, bonded Timoshenko elements: three frequencies per plane within 0.7
-    %.
-    """
+    """Reference: other code, bonded Timoshenko elements, 3 frequencies a plane, 0.7 %."""
     boom = boom_in_space()
     boom = replace(boom, joints=(replace(boom.joints[0], bonded=True),))
     expected = bonded_beams(boom, 0.5).frequencies[:6]

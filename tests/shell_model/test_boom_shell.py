@@ -22,9 +22,7 @@ from tests.touching import touching
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine) -> None:
-    """Reference: analytic. Under a rigid translation every station has the force F(y) of (4)
-    once.
-    """
+    """Reference: analytic. Under a rigid translation each station has F(y) of (4) once."""
     system = reduced(flat_boom(), 0.25, line, moments=2).system
     rigid = np.flatnonzero(system.omega2 == 0.0)
     tip, tail = (system.observers[name].row for name in ("tip", "tail"))
@@ -61,9 +59,7 @@ def test_first_contact_follows_the_beam() -> None:
 
 @pytest.mark.slow
 def test_fields_agree_with_observers() -> None:
-    """The mean u_z of the vertices at the tip equals the output of the tip except for
-    distortion.
-    """
+    """The mean u_z of vertices at the tip equals its output except for distortion."""
     shell = reduced(flat_boom(), 0.25, moments=2)
     state = AdaptiveStep()(Motion(shell.system, 0.1)).states[-1]
     displacement = np.tensordot(state, shell.fields["modes"].values, axes=1)

@@ -39,9 +39,7 @@ def extrapolated(coarse: float, fine: float) -> float:
 
 @pytest.mark.parametrize("plate", PLATES, ids=lambda plate: plate.name)
 def test_plates_buckle_at_known_factors(plate: LoadedPlate) -> None:
-    """Reference: analytic. Factors converge from above with order 2; the limit of two meshes is
-    within 0.6 %.
-    """
+    """Reference: analytic, from above with order 2; the limit of two meshes within 0.6 %."""
     first, coarse, fine = (float(plate.shell(n)[0]) for n in (4, 8, 16))
     assert first > coarse > fine > plate.factor
     assert fine < 1.035 * plate.factor
@@ -65,9 +63,7 @@ def test_tension_has_no_factor() -> None:
 
 
 def test_finite_strips_know_walls_and_columns() -> None:
-    """Reference: analytic, k = 4 for a square tube, 5.33 in bending, and Euler's column for a long
-    tube.
-    """
+    """Reference: analytic, k = 4 of a square tube, 5.33 in bending, and Euler's column."""
     strips, width = Strips.of(TUBE, STEEL), 0.4
     stress = UNIT * (0.004 / width) ** 2
     found = strips.lowest(3.0 * width, range(1, 7), lambda y, z: np.full_like(z, -stress))
@@ -95,9 +91,7 @@ def test_boxes_buckle_as_finite_strips(box: LoadedBox) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("pressed", PRESSED, ids=lambda pressed: f"{pressed.length:g} m")
 def test_webs_buckle_under_patch_loads(pressed: PressedBox) -> None:
-    """Reference: external, the fitted formula k_F = 6 + 2 (h/a)² of EN 1993-1-5, 6.4, within 15
-    %.
-    """
+    """Reference: external, k_F = 6 + 2 (h/a)² of EN 1993-1-5, 6.4, within 15 %."""
     found = extrapolated(pressed.shell(8), pressed.shell(16))
     assert found == pytest.approx(pressed.fitted, rel=0.15)
 
@@ -154,9 +148,7 @@ BOOMS = touching(flat_boom(), LAW), touching(boom_in_space(sideways=0.3), LAW, L
 @pytest.mark.slow
 @pytest.mark.parametrize("boom", BOOMS, ids=["flat", "in space"])
 def test_segments_of_a_boom_buckle_between_their_contacts(boom: Boom) -> None:
-    """Reference: analytic. Twice the forces have half the factor; the outer segment buckles
-    first.
-    """
+    """Reference: analytic. Twice the forces halve the factor; the outer segment is first."""
     options = ShellOptions(0.4)
     shell, state = at_rest(boom, options)
     twice = replace(state, forces=[2.0 * one for one in state.forces])

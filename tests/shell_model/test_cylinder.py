@@ -76,9 +76,7 @@ def test_walls_carry_the_axial_force_of_the_cylinder() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("stiffness", [2.0e7, 1.0e11], ids=["elastic", "stiff"])
 def test_a_luffed_shell_rests_as_its_beam(stiffness: float) -> None:
-    """Reference: other code, Timoshenko elements. The force agrees to round-off; the tip is lower
-    by 0.2 and 0.4 %.
-    """
+    """Reference: other code, Timoshenko elements: force to round-off, tip 0.2 and 0.4 %."""
     boom = luffed(replace(CYLINDER, stiffness=stiffness))
     found, expected = at_rest(shell(boom)), at_rest(beam(boom))
     assert found["cylinder_force"] == pytest.approx(expected["cylinder_force"], rel=1e-6)
@@ -90,9 +88,7 @@ def test_a_luffed_shell_rests_as_its_beam(stiffness: float) -> None:
 def test_axial_forces_turn_a_shell_about_its_lowered_pin(
     luffed: Callable[[], tuple[Boom, float]],
 ) -> None:
-    """Reference: analytic, moments about the pin. Without axial forces, the force would be 4 to 21
-    % larger.
-    """
+    """Reference: analytic, moments about the pin; without axial forces 4 to 21 % larger."""
     boom, expected = luffed()
     assert at_rest(shell(boom))["cylinder_force"] == pytest.approx(expected, rel=1e-3)
 

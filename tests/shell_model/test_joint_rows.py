@@ -87,9 +87,7 @@ def test_friction_takes_energy_and_gives_none_back() -> None:
 
 @pytest.mark.slow
 def test_loads_act_at_their_positions_and_times() -> None:
-    """Reference: analytic, force over mass of a free segment. A uniform load equals the constant
-    load.
-    """
+    """Reference: analytic, force over mass of a free segment; uniform is constant load."""
     boom = flat_boom()
     ramp = Ramp(0.1)
     loads = (Load(1, "z", 55.07, None, Step()), Load(1, "z", 100.0, 14.0, ramp))

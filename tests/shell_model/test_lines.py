@@ -41,9 +41,7 @@ def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
 @pytest.mark.slow
 @pytest.mark.parametrize("tolerance", [None, 0.02])
 def test_section_forces_of_a_shell_follow_statics(tolerance: float | None) -> None:
-    """Reference: by hand, V = 55.07 s and M = −55.07 s²/2 with s = 19 − x, on uniform and graded
-    meshes.
-    """
+    """Reference: by hand, V = 55.07 s, M = −55.07 s²/2, s = 19 − x, on two meshes."""
     options = ShellOptions(mesh_size=0.2, contact_tolerance=tolerance)
     line, position = at_rest(flat_boom(), options)[1]
     found = line.read(position)
@@ -75,9 +73,7 @@ def test_a_pressed_shell_bears_its_loads_across() -> None:
 
 @pytest.mark.slow
 def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
-    """Reference: another model, shear-flexible elements: section forces within 1 %, deflections
-    within 2 %.
-    """
+    """Reference: another model, shear-flexible elements: forces 1 %, deflections 2 %."""
     boom = boom_in_space(sideways=0.4)
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     system = gap_system(touching(boom, LAW, LATERAL_LAW), models)
@@ -98,17 +94,13 @@ def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
 
 
 def test_cuts_pass_no_triangle() -> None:
-    """Reference: by hand. Triangles from 0 to 2 m and from 1 to 3 m permit lines at 0, 3 and 4
-    m.
-    """
+    """Reference: by hand. Triangles at 0 to 2 m and 1 to 3 m permit lines at 0, 3, 4 m."""
     spans = np.array([[0.0, 2.0], [1.0, 3.0], [3.0, 4.0]])
     assert band_boundaries(spans, []).tolist() == [0.0, 3.0, 4.0]
 
 
 def test_band_boundaries_are_at_loads() -> None:
-    """Reference: by hand. Loaded positions remain boundaries; near lines that cause short bands do
-    not.
-    """
+    """Reference: by hand. Loads stay boundaries; near lines that leave short bands do not."""
     edges = np.linspace(0.0, 10.0, 1001)
     spans = np.column_stack([edges[:-1], edges[1:]])
     cuts = band_boundaries(spans, [2.01])

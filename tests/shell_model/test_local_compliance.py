@@ -214,9 +214,7 @@ def test_estimated_compliance_follows_the_shell(
 
 @pytest.mark.slow
 def test_a_pad_on_the_corners_bends_no_wall() -> None:
-    """Reference: other code path, stations at the centres of the pads. Narrow pads have slightly
-    more compliance.
-    """
+    """Reference: other code path, stations at pad centres; narrow pads are a bit softer."""
 
     def local(boom: Boom) -> float:
         return float(reduced(boom, 0.2, contact_tolerance=0.05).local_compliance.max())

@@ -67,9 +67,7 @@ def spatial(comm: MPI.Comm) -> dict[str, Any]:
 
 
 def rubbing(comm: MPI.Comm) -> dict[str, Any]:
-    """Return all numbers that determine the motion of the paper's friction case on a coarse
-    mesh.
-    """
+    """Return all numbers that determine the motion of the paper's friction case, coarse."""
     law = replace(LAW.law, stiffness=1.0e8, exponent=1.0).with_clearance(LAW.above)
     options = ShellOptions(0.5, krylov=KrylovOptions(shifts=(5.0, 300.0), moments=1))
     system = reduce_boom(touching(flat_boom(friction=0.2), law), options, comm).system

@@ -82,9 +82,7 @@ def test_an_open_section_twists_after_saint_venant() -> None:
 
 @pytest.mark.slow
 def test_a_closed_section_twists_after_bredt() -> None:
-    """Reference: analytic, 4 A² t/Σ b + Σ b t³/3. The large drilling penalty of curved shells has
-    an error of 1 %.
-    """
+    """Reference: analytic, 4 A² t/Σ b + Σ b t³/3; curved shells' penalty errs by 1 %."""
     exact = CLOSED.thin_walled_constant
     assert CLOSED.torsion_constant(4, 80) == pytest.approx(exact, rel=5.0e-4)
     assert exact > 1.0e3 * sum(CLOSED.widths) * CLOSED.thickness**3 / 3.0
@@ -189,9 +187,7 @@ def test_a_loose_shell_is_refused() -> None:
 
 @pytest.mark.parametrize("turn", [[0.7, -1.1, 0.4], [2.0, 0.3, -1.0]])
 def test_a_turned_box_vibrates_alike(turn: list[float]) -> None:
-    """Reference: analytic, equal frequencies for any orientation of the box, with round-off of
-    1e-11.
-    """
+    """Reference: analytic, equal frequencies for any orientation; round-off is 1e-11."""
     box = PlainBox(BOX, 10.0)
     straight = box.free_frequencies(0.5, 10)
     rotation = np.asarray(Rotation.from_rotvec(turn).as_matrix())
@@ -215,18 +211,14 @@ def test_the_shell_gives_way_as_the_plate() -> None:
 
 @pytest.mark.parametrize(("edges", "allowed"), [(2, 5.0e-3), (4, 5.0e-4)])
 def test_a_twisted_beam_gives_way_as_published(edges: int, allowed: float) -> None:
-    """Reference: external, 5.4245e-3 and 1.7532e-3 (MacNeal and Harder 1985). Twice the number of
-    edges has a tenth of the error.
-    """
+    """Reference: external, 5.4245e-3, 1.7532e-3 (MacNeal and Harder 1985); a tenth at 2n."""
     assert np.array(twisted_beam(edges)) == pytest.approx(
         np.array(PUBLISHED.twisted_beam), rel=allowed
     )
 
 
 def test_a_curved_shell_needs_a_stiff_drilling_tie() -> None:
-    """Reference: external, 5.4245e-3 and 1.7532e-3; up to 10⁴ of the default within 0.1 %, the soft
-    tie 5 % off.
-    """
+    """Reference: external, 5.4245e-3, 1.7532e-3; to 10⁴ within 0.1 %, the soft tie 5 %."""
     stiff = np.array([twisted_beam(4, drilling) for drilling in (2.0, 20.0, 200.0, 2.0e3, 2.0e4)])
     assert (np.ptp(stiff, axis=0) < 1.0e-3 * stiff[0]).all()
     soft = np.array(twisted_beam(4, 1.0e-2)) / PUBLISHED.twisted_beam

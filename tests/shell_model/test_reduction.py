@@ -209,9 +209,7 @@ def test_the_order_of_rows_does_not_show() -> None:
 
 
 def test_cancelling_terms_are_zero() -> None:
-    """Reference: analytic, a force and its opposite mirror image, except for the last bit of one
-    term.
-    """
+    """Reference: analytic, a force and its negative mirror image but for a last bit."""
     left, right = _terms()
     mirrored = np.concatenate([right, -right])
     mirrored[0] *= 1.0 + 2.3e-16

@@ -54,9 +54,7 @@ def sparse(matrix: PETSc.Mat) -> csr_array:
 
 
 def test_geometric_stiffness_of_a_rigid_rotation() -> None:
-    """Reference: analytic. K_G of a unit rotation is ∫P dx, with a collar and self-weight, and 0
-    for a translation.
-    """
+    """Reference: analytic, ∫P dx of a unit rotation with collar and self-weight; shift 0."""
     fly = replace(telescope(0.0).segments[1], collars=(Collar((7.0, 8.0), 0.004),))
     (pressed,) = with_compression([fly], [], [Thrust(0, 9.0, 4e4)], gravity=9.0)
     mesh = segment_mesh(Boom((replace(pressed, supports=HELD),), ()), 0, OPTIONS)
@@ -84,9 +82,7 @@ def column(part: float) -> Boom:
 
 
 def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
-    """Reference: other code path, (K − K_G) u = f of all dofs within 1e-5 at 40 % of the critical
-    force.
-    """
+    """Reference: other code path, (K − K_G) u = f of all dofs, 1e-5 at 40 % of buckling."""
     boom = column(0.4)
     full = assemble_segment(MPI.COMM_SELF, boom.segments[0], segment_mesh(boom, 0, OPTIONS))
     assert full.geometric is not None
@@ -108,9 +104,7 @@ def test_basis_for_axial_forces_keeps_its_accuracy() -> None:
 
 
 def test_shell_held_by_contacts_tips_over_as_a_beam() -> None:
-    """Reference: analytic, ∫P dx over the inertia about the centre. Bending of walls contributes 1
-    %.
-    """
+    """Reference: analytic, ∫P dx over the inertia about the centre; walls bend 1 %."""
     boom = telescope(THRUST)
     fly = boom.segments[1]
     x = np.linspace(4.5, 10.5, 2001)

@@ -178,9 +178,7 @@ def test_every_support_holds_the_twist(box_shell: Shells) -> None:
 
 
 def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
-    """Reference: analytic, translation along x except with a clamp, and both rotations about a
-    single pin.
-    """
+    """Reference: analytic, sliding along x but for a clamp, both rotations of one pin."""
     left = {
         (): 6, (Support(0.0),): 3, (Support(0.0, stiffness=10.0),): 3, HELD: 1,
         (Support(0.0, stiffness=10.0), Support(2.0)): 1, (Support(2.0, "clamped"),): 0,
@@ -190,9 +188,7 @@ def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
 
 
 def test_point_masses_have_mass_and_no_rotary_inertia(box_shell: Shells) -> None:
-    """Reference: analytic: 100 kg to translations, 70·3² + 30·5² kg·m² to pitch and yaw, none to
-    roll.
-    """
+    """Reference: analytic: 100 kg translated, 70·3² + 30·5² kg·m² pitch, yaw; no roll."""
     masses = (PointMass(2.0, 70.0), PointMass(10.0, 30.0))
     bare, loaded = (
         np.array([motion @ times(shell.mass, motion[:, None])[:, 0] for motion in motions.T])

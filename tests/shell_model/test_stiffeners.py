@@ -134,9 +134,7 @@ def test_outline_at_a_diaphragm_has_only_nodes_of_walls() -> None:
 
 
 def test_a_stiffened_shell_mirrors_itself() -> None:
-    """Reference: analytic. There is no lateral motion or twist. The box on its side has equal
-    frequencies.
-    """
+    """Reference: analytic. No lateral motion or twist; the box on its side is equal."""
     shell = shell_of(COLLARS, PLATES, HELD)
     outline = shell.outline(8.0)
     force = shell.row(outline.wall_deflection("z"))
@@ -223,9 +221,7 @@ def test_strips_on_the_flanges_bend_as_by_hand() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("x", [0.0, 5.0])
 def test_a_diaphragm_stops_the_breathing_of_the_section(x: float) -> None:
-    """Reference: analytic. A plate between flanges under tension is a hundred times as stiff as
-    walls.
-    """
+    """Reference: analytic. A tensioned plate is a hundred times as stiff as walls."""
     rows = []
     for plates in ((), (Diaphragm(x, 0.008),)):
         shell = shell_of(diaphragms=plates)

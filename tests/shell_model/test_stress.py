@@ -76,9 +76,7 @@ def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
 
 @pytest.mark.slow
 def test_shear_has_the_sign_of_the_way_around() -> None:
-    """Reference: analytic, τ = G γ for u_y = γ x, positive along s on the top, negative on the
-    bottom.
-    """
+    """Reference: analytic, τ = G γ for u_y = γ x: along s on the top, against on the bottom."""
     shear = 1.0e-4
     found, mesh = stresses(
         lambda p: shear * np.stack([0.0 * p[:, 0], p[:, 0], 0.0 * p[:, 0]], axis=1), still
@@ -150,9 +148,7 @@ def clamped(section: Section, size: float) -> ShellStress:
 
 
 def carried_at(shell: ShellStress, x: float) -> dict[str, WallForces]:
-    """Return the wall forces at a row of the cantilever, and check their moment and shear by
-    statics.
-    """
+    """Return wall forces at a row of the cantilever, checked by statics."""
     forces, row = wall_forces(shell, 0.0, 0, x), shell.row(0, x)
     arm = 10.0 - 0.5 * (shell.spans[row].min() + shell.spans[row].max())
     assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
@@ -259,9 +255,7 @@ def axial_force(shell: ShellStress, x: float) -> float:
 
 
 def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
-    """Reference: by hand, −P/A in every wall with the weight m̄ g (L − x); a collar carries its
-    part.
-    """
+    """Reference: by hand, −P/A in walls with the weight m̄ g (L − x); a collar bears its part."""
     force, gravity = 0.1 * CRITICAL, 9.80665
     boom = column((CLAMP,), force)
     shell = stressed(boom)
@@ -319,9 +313,7 @@ def shell() -> ShellStress:
 
 
 def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
-    """Reference: analytic, 1 MPa at the flanges. The spot increases the mean of a patch by a
-    thirtieth.
-    """
+    """Reference: analytic, 1 MPa at flanges. The spot adds a thirtieth to a patch's mean."""
     history = stress_near_places(shell, [1.0, 3.0, 9.0], ["box"])
     near = history["von_mises"].sel(segment="box")
     assert near.sel(place=1.0).max() == pytest.approx(1.0e6, rel=1e-5)
@@ -355,9 +347,7 @@ def test_triangles_without_the_largest_stress_alone_are_left_out(
 
 @pytest.mark.parametrize("places", [[1.0, 3.0], []])
 def test_the_largest_is_found(shell: ShellStress, places: list[float]) -> None:
-    """With a band, the result is the spot; otherwise the largest stress at the evaluated
-    instants.
-    """
+    """With a band, the result is the spot; otherwise the largest at the evaluated instants."""
     found = summarise(shell, stress_near_places(shell, places, ["box"]))
     if not places:
         assert found.von_mises == pytest.approx(1.0e6, rel=1e-3)

@@ -127,9 +127,7 @@ def test_a_tilted_approach_presses_as_its_integral() -> None:
 
 @pytest.mark.slow
 def test_every_point_has_its_share_of_the_penalty() -> None:
-    """Reference: analytic. Weights are positive and add up; points belong to the nearest
-    station.
-    """
+    """Reference: analytic. Weights are positive and add up, by the nearest station."""
     law = replace(LAW.law, stiffness_below=0.5e13).with_clearance(LAW.above)
     system = _system(flat_boom(), law=law)
     sides, stiffnesses = np.array([one.terms[0][:2] for one in system.laws]).T
@@ -182,9 +180,7 @@ def test_in_space_each_point_presses_one_corner() -> None:
 
 @pytest.mark.slow
 def test_contact_over_a_surface_keeps_energy() -> None:
-    """Reference: analytic, the energy balance. The first contact is at the tail, as with
-    stations.
-    """
+    """Reference: analytic, the energy balance. As with stations, the tail touches first."""
     surface, lines = (
         AdaptiveStep()(Motion(_system(flat_boom(), line=line), 0.25))
         for line in ("surface", "near webs")
@@ -248,9 +244,7 @@ def test_pads_are_for_stations_near_webs(line: ContactLine) -> None:
 
 @pytest.mark.parametrize("sides", [("above", "below"), ("above", "below", "left", "right")])
 def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
-    """Reference: by hand, the mean (b³ − a³)/3(b − a) of a parabola for each pad; weights as
-    stiffnesses.
-    """
+    """Reference: by hand, the mean (b³ − a³)/3(b − a) per pad; weights as stiffnesses."""
     boom = flat_boom() if len(sides) == 2 else boom_in_space()
     pads = tuple(
         SlidePad(0.1, width, offset, side=side, thickness=POLYAMIDE * 0.1 * width / stiffness)

@@ -79,9 +79,7 @@ def test_it_bends_as_its_beam(shape: str) -> None:
 
 @pytest.mark.parametrize("shape", ENDS)
 def test_walls_of_a_taper_are_on_the_local_section(shape: str) -> None:
-    """Reference: by hand. Nodes are on the section at their x. The mass is that of the beam, and
-    each half has 1 N/m.
-    """
+    """Reference: by hand. Nodes on the local section; the beam's mass; halves have 1 N/m."""
     boom = cantilever(shape)
     (shell,) = assemble_segments(boom, ShellOptions(mesh_size=0.2), MPI.COMM_SELF)
     segment, mesh = boom.segments[0], shell.mesh
@@ -162,9 +160,7 @@ def test_its_section_forces_are_those_of_statics() -> None:
 @pytest.mark.parametrize("lateral", [None, 5e-3])
 @pytest.mark.parametrize("pad", [None, PadSize(0.12, 0.05)])
 def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -> None:
-    """Reference: by hand. A translation of 1 m gives 1 m; a rotation of 1 rad gives the x of the
-    pad.
-    """
+    """Reference: by hand. A translation of 1 m gives 1 m, a rotation of 1 rad the pad's x."""
     boom = tapered_boom(pad, lateral)
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.3), MPI.COMM_SELF)
     rows = ShellContacts.from_shells(

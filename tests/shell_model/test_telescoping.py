@@ -112,9 +112,7 @@ def test_shell_at_an_extension_equals_a_shell_built_there() -> None:
 
 @pytest.mark.slow
 def test_pads_of_a_boom_in_space_on_the_way() -> None:
-    """Reference: other code path, the shell in space reduced at this extension: statics and
-    compliances.
-    """
+    """Reference: other code path, the shell reduced there: statics and compliances."""
 
     def built(way: float, drive: Drive | None) -> GapSystem:
         boom = boom_in_space(friction=0.2, sideways=0.3)
@@ -139,9 +137,7 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
 
 @pytest.mark.slow
 def test_no_ring_of_the_mesh_is_felt() -> None:
-    """Reference: analytic, the lever rule. Between mesh lines, compliances of pads are linear
-    within 0.1 %.
-    """
+    """Reference: analytic, the lever rule. Between lines compliances are linear to 0.1 %."""
     ways = np.linspace(0.5, 2.0, 49)
     (travel,) = shell(0.0, DRIVE).system.travels
     compliances, forces, pulls = [], [], []
@@ -171,9 +167,7 @@ def moved(system: GapSystem, duration: float) -> Trajectory:
 
 @pytest.mark.slow
 def test_motion_without_speed_equals_the_fixed_shell() -> None:
-    """Reference: other code path, the shell reduced at this extension, during its first
-    contacts.
-    """
+    """Reference: other code path, the shell reduced there, during its first contacts."""
     still = replace(shell(0.0, DRIVE).system, travels=())
     runs = [moved(system, 0.5) for system in (still, shell(0.0).system)]
     assert runs[1].data.attrs["contact_changes"] > 10
@@ -183,9 +177,7 @@ def test_motion_without_speed_equals_the_fixed_shell() -> None:
 
 @pytest.mark.slow
 def test_beams_are_as_near_as_at_constant_extension() -> None:
-    """Reference: other code, beam elements, as near as at constant extension; and the energy
-    balance.
-    """
+    """Reference: other code, beams, as near as at constant extension; the energy balance."""
     apart = []
     for drive in (None, DRIVE):
         boom = touching(telescope(0.0, drive, dashpot=3.0e3), LAW)
@@ -201,9 +193,7 @@ def test_beams_are_as_near_as_at_constant_extension() -> None:
 
 
 def told(system: GapSystem) -> Array:
-    """Return static tip and head, and the three lowest frequencies with springs as contacts
-    (5,).
-    """
+    """Return static tip and head, and three frequencies with springs as contacts (5,)."""
     rest = equilibrium(system, system.load)
     stiffness = system.stiffness + 1.0e8 * system.rows.T @ system.rows
     squares = eigh(stiffness, eigvals_only=True, subset_by_index=[0, 2])
@@ -213,9 +203,7 @@ def told(system: GapSystem) -> Array:
 
 @pytest.mark.slow
 def test_shell_with_axial_forces_equals_a_shell_built_there() -> None:
-    """Reference: other code path, the shell reduced at this extension; analytic, the energy
-    balance.
-    """
+    """Reference: other code path, the shell reduced there; analytic, the energy balance."""
 
     def reduced(way: float, drive: Drive | None = None) -> GapSystem:
         free = telescope(way, drive, 0.3)

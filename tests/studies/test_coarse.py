@@ -101,9 +101,7 @@ STIFFENERS = stiffeners.Sizes(
 
 @pytest.mark.slow
 def test_stiffeners_act_at_their_ends_only() -> None:
-    """Reference: analytic, a plate in shear, a ring, masses. Each stiffener has an effect at its
-    end only.
-    """
+    """Reference: analytic, a sheared plate, a ring, masses; each acts at its end only."""
     found = stiffeners.study(silent, STIFFENERS)
     for verification in found.verifications:
         assert verification.holds, (verification.what, verification.error)
@@ -145,9 +143,7 @@ def test_contact_forces_hold_the_segment() -> None:
 
 @pytest.mark.slow
 def test_the_contact_has_no_stress_of_its_own_and_a_patch_has() -> None:
-    """Reference: analytic away from contacts. Near contacts refinement doubles the stress at a
-    point.
-    """
+    """Reference: analytic away from contacts, where refinement doubles a point's stress."""
     found = stress.study(silent, STRESS)
     assert all(verification.holds for verification in found.verifications)
     beam = next(

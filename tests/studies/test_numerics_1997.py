@@ -79,9 +79,7 @@ def test_the_series_solved_well_take_the_place_of_those_of_then() -> None:
 
 
 def test_models_are_as_far_apart_as_their_tips() -> None:
-    """Reference: by hand, ±1 m and a tenth more after six seconds, which is 0.1 of a range of
-    2.2.
-    """
+    """Reference: by hand, ±1 m and a tenth more after 6 s, which is 0.1 of 2.2."""
     larger = np.where(TIME > 6.0, 1.1, 1.0) * swing()
     early, late = sample(swing(), swing(), larger).tip_distances()
     assert early == 0.0
@@ -90,9 +88,7 @@ def test_models_are_as_far_apart_as_their_tips() -> None:
 
 @pytest.mark.parametrize(("head", "stratifies"), [(0.1, False), (1.0, True)])
 def test_s7_takes_all_of_its_parts(head: float, stratifies: bool) -> None:
-    """Reference: by hand. Tips differ late by 0.05 of their range, heads by 0 or by their whole
-    range.
-    """
+    """Reference: by hand. Tips differ late by 0.05 of their range, heads by 0 or all of it."""
     tips = swing(), swing(), np.where(TIME > 6.0, 1.1, 1.0) * swing()
     runs = [moved(tip, 0.1) for tip in tips[:2]] + [moved(tips[2], head)]
     assert Sample(runs, moved(0.05 * tips[0])).stratifies() == stratifies

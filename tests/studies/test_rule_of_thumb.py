@@ -96,9 +96,7 @@ def test_the_rule_lowers_the_tip_by_walls_as_statics_do() -> None:
 
 @pytest.mark.slow
 def test_error_of_a_short_boom_follows_the_rule() -> None:
-    """Reference: other code, the shell. Beams with springs are five times as near as any other
-    beam.
-    """
+    """Reference: other code, the shell. Beams with springs are five times nearer than others."""
     name = "a third as long"
     sizes = Sizes(booms={name: BOOMS[name]}, mesh_size=0.3, plays=(0.0, 4e-3), periods=2.0)
     found = measure(BOOMS[name], sizes)

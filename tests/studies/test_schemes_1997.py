@@ -59,9 +59,7 @@ def test_an_oscillator_turns_as_the_textbook_says(scheme: Scheme, phase: float) 
 
 
 def test_known_errors_in_ten_steps_a_period() -> None:
-    """Reference: by hand. Periods are longer by (ω h)²/12 less a twentieth, or shorter by (ω
-    h)²/24. Wilson's scheme damps.
-    """
+    """Reference: by hand, periods longer by (ω h)²/12, shorter by (ω h)²/24; Wilson damps."""
     phase = 2.0 * np.pi / 10.0
     newmark, wilson, central = (textbook_root(scheme, phase) for scheme in ALL)
     assert period_elongation(newmark, phase) == pytest.approx(phase**2 / 12.0, rel=0.05)
@@ -71,9 +69,7 @@ def test_known_errors_in_ten_steps_a_period() -> None:
 
 
 def test_wilson_overshoots_and_newmark_does_not() -> None:
-    """Reference: analytic, ω h = 50: Newmark stays within 1 m, Wilson overshoots (Goudreau and
-    Taylor 1973).
-    """
+    """Reference: analytic, ω h = 50: Wilson overshoots 1 m (Goudreau and Taylor 1973)."""
     far = {
         scheme: np.abs(integrate(let_go, scheme, False).trajectory.states).max()
         for scheme in (NEWMARK, WILSON)
@@ -105,9 +101,7 @@ def test_an_iterated_contact_is_a_spring_of_the_mode(scheme: Scheme) -> None:
 
 
 def test_a_lagged_contact_gains_energy() -> None:
-    """Reference: analytic. A lag is equivalent to a dashpot of −k h, so that amplitudes grow as
-    exp(h t/4).
-    """
+    """Reference: analytic. A lag is a dashpot of −k h: amplitudes grow as exp(h t/4)."""
     step, duration = 0.05, 20.0
     swings = []
     for iterated in (True, False):

@@ -89,9 +89,7 @@ def energy(solid: SolidFamily, field: Array) -> float:
     ],
 )
 def test_patch_of_constant_strain(family: SymmetryClass, strain: Array) -> None:
-    """Reference: analytic, V (2 μ ε:ε + λ tr² ε) in a distorted mesh, without forces on inner
-    nodes.
-    """
+    """Reference: analytic, V (2 μ ε:ε + λ tr² ε) in a distorted mesh, inner nodes free."""
     solid = assemble_solid(segment(), distorted(coarse()), family)
     field = solid.nodes @ strain
     mu, nu = STEEL.shear_modulus, STEEL.poissons_ratio
@@ -165,9 +163,7 @@ def test_means_read_rigid_motions_and_thickening() -> None:
 
 @pytest.mark.slow
 def test_a_long_cantilever_vibrates_as_a_timoshenko_beam() -> None:
-    """Reference: analytic, Timoshenko's cantilever, within 0.2 %; shear and rotary inertia are 1.5
-    %.
-    """
+    """Reference: analytic, Timoshenko's cantilever, within 0.2 %; shear is 1.5 %."""
     length = 5.0
     held = (Support(0.0, "clamped"),)
     mesh = mesh_quarter(BOX, (0.0, length), (0.1, 0.5), 0.1)
@@ -202,9 +198,7 @@ def _cantilever(length: float, shear: bool) -> float:
 
 @pytest.mark.slow
 def test_the_shell_of_a_thin_box_is_the_solid_s() -> None:
-    """Reference: other code, elasticity in space: deflection of the overhang, lowest
-    frequencies.
-    """
+    """Reference: other code, elasticity in space: the overhang's tip, lowest frequencies."""
     thin = BoxSection(0.40, 0.30, 0.01, 0.01)
     box = box_segment("box", 0.0, 2.0, thin, supports=(Support(0.0), Support(0.5)))
     mesh = mesh_segment(thin, {"a": 0.0, "held": 0.5, "b": 2.0}, 0.05)

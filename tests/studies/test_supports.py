@@ -17,9 +17,7 @@ def test_every_value_meets_its_reference() -> None:
 
 
 def test_the_closed_forms_have_their_limits() -> None:
-    """Reference: analytic, a rigid boom on a soft spring, a cantilever on a stiff one (Blevins
-    1979).
-    """
+    """Reference: analytic, a rigid boom on a spring, a cantilever on one (Blevins 1979)."""
     segment = supports._segment()
     mass = segment.mass_per_length * segment.length**3 / 3.0
     soft = np.sqrt(1.0e3 / mass) / (2.0 * np.pi)

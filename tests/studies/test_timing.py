@@ -146,18 +146,14 @@ def test_the_levels_of_the_command() -> None:
 
 
 def test_less_accurate_solver_is_named() -> None:
-    """Reference: by hand, an error of ten times the tolerance, and an error that is always too
-    large.
-    """
+    """Reference: by hand, an error of ten times the tolerance, and one always too large."""
     assert match_tolerance(lambda tolerance: 10.0 * tolerance, 1e-5) == pytest.approx((1e-6, 1e-5))
     assert match_tolerance(lambda tolerance: 1.0, 0.5) == (None, 1.0)
 
 
 @pytest.mark.slow
 def test_every_table_is_complete(folder: Path, data: Any) -> None:
-    """Half the step has a smaller error, and with friction the energy balance closes for each
-    step.
-    """
+    """Half the step has a smaller error; with friction the energy balance closes for all."""
     coarse, fine, chosen = data["errors"]
     assert [one["steps"] for one in (coarse, fine)] == [700, 1400]
     assert 0.0 < fine["tip off (% of range)"] < coarse["tip off (% of range)"] < 1.0

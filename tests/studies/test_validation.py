@@ -27,9 +27,7 @@ def test_friction_follows_code_aster(rows: object) -> None:
 
 
 def test_the_roller_stiffens_the_beam_as_measured() -> None:
-    """Reference: measured, DROPBEAR. Without roller 1.8751² and Rayleigh's 0.2427 apply, within 1
-    %.
-    """
+    """Reference: measured, DROPBEAR. Without roller 1.8751² and 0.2427, within 1 %."""
     verifications = list(validation.moving_roller())
     assert len(verifications) == 6
     assert max(verification.error for verification in verifications) < 0.012

@@ -145,9 +145,7 @@ def test_shell_and_shear_flexible_beam_touch_at_equal_times(whole: Path) -> None
 
 
 def test_the_fields_move_as_the_trajectory_does(whole: Path) -> None:
-    """Reference: the trajectory. The section at the tip is stiff, so that its points deflect
-    alike.
-    """
+    """Reference: the trajectory. Points of the stiff section at the tip deflect alike."""
     with xr.open_dataset(whole / "fields.nc", engine="scipy") as fields:
         at_tip = np.flatnonzero(np.abs(fields["points"].values[:, 0] - 19.0) < 1e-6)
         shapes = fields["modes"].values[:, at_tip, 2]

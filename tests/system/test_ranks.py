@@ -61,9 +61,7 @@ def complaints(answer: subprocess.CompletedProcess[str]) -> list[str]:
 def test_two_ranks_run_a_shell_as_one_does(
     two_ranks: Ranks, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Reference: one rank, until the first contact. The highest modes contribute less than 1e-4 at
-    the head.
-    """
+    """Reference: one rank until first contact; the highest modes are below 1e-4 at the head."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     case = tmp_path / "case.toml"
     text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.12")

@@ -40,9 +40,7 @@ def run(change: float) -> Results:
 
 
 def test_verdicts_are_the_same_for_any_round_off() -> None:
-    """Reference: the case. A relative change of E of 1e-12 gives another sample of the chaotic
-    motion.
-    """
+    """Reference: the case. Of E, 1e-12 gives another sample of the chaotic motion."""
     one, other = (run(change) for change in (0.0, 1.0e-12))
     assert {v.id: v.verdict for v in judge(one) if v.id in DECIDED} == DECIDED
     tip = one.trajectories["tip"].sel(model="kantorovich-5").values
