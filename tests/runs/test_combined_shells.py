@@ -12,6 +12,7 @@ from mpi4py import MPI
 from runs import cli
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
+from runs.folder.cache import Cache
 from runs.pipeline.combinations import CombinationState
 from runs.pipeline.combined_shells import shell_states
 from runs.pipeline.largest_loads import BeamStates
@@ -50,7 +51,8 @@ pytestmark = pytest.mark.slow
 def states(tmp_path_factory: pytest.TempPathFactory) -> list[CombinationState]:
     case = read_case(tmp_path_factory.mktemp("shell"), TEXT)
     shell = case.models[1]
-    return shell_states(case, shell, BuildContext(MPI.COMM_WORLD))
+    # The command takes these shells from the cache.
+    return shell_states(case, shell, BuildContext(MPI.COMM_WORLD, cache=Cache.of_user()))
 
 
 def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationState]) -> None:

@@ -79,13 +79,15 @@ def memory(*arguments: str) -> int:
 @pytest.mark.parametrize(
     ("edits", "options", "members"),
     [
-        ((("output_step = 1e-3", "output_step = 1e-5"),), SERIES, 20),
-        ((("mesh_size = 0.25", "mesh_size = 0.1"), ("duration = 0.6", "duration = 0.1")),
+        ((("duration = 0.6", "duration = 0.3"), ("output_step = 1e-3", "output_step = 1e-5")),
+         SERIES,
+         20),
+        ((("mesh_size = 0.25", "mesh_size = 0.1"), ("duration = 0.6", "duration = 0.01")),
          ("--models", "shell"),
          None),
         ((
-             ("duration = 0.6", "duration = 0.3"),
-             ("output_step = 1e-3", "output_step = 0.3\nstep = 1e-7"),
+             ("duration = 0.6", "duration = 0.1"),
+             ("output_step = 1e-3", "output_step = 0.1\nstep = 1e-7"),
              (
                  "[[model]]",
                  "[[load]]\nsegment = 'inner'\nmagnitude = 9.0\nramp = 0.2\n[[model]]",

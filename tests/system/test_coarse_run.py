@@ -54,6 +54,15 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.fixture
+def short(tmp_path: Path) -> Path:
+    """Return the file of the case for 0.02 s."""
+    text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.02")
+    path = tmp_path / "case.toml"
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
 def again(whole: Path, tmp_path: Path) -> Path:
     """Return a copy of this folder."""
     return shutil.copytree(whole, tmp_path / "out")
@@ -191,13 +200,13 @@ def test_fields_of_another_version_are_one_line(
 
 @pytest.mark.usefixtures("few_figures", "_short_film")
 def test_a_run_without_opengl_says_so_and_goes_on(
-    again: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    again: Path, short: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     def refuse(*arguments: object) -> list[Path]:
         raise RenderingUnavailable("no OpenGL")
 
     monkeypatch.setattr("runs.report.snapshots.RENDERED", (refuse,))
-    assert protractile("run", COARSE, "--models", "shell", "--out", again) == 0
+    assert protractile("run", short, "--models", "shell", "--out", again) == 0
     assert "\nno snapshots: no OpenGL\n" in capsys.readouterr().out
     summary = summary_of(again)
     assert summary["snapshots"] == {"written": [], "skipped": "no OpenGL"}
@@ -210,7 +219,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
 
 @pytest.mark.usefixtures("few_figures", "_short_film")
 def test_pictures_can_be_left_to_later(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    short: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Reference: a renderer that must not be called."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
@@ -219,8 +228,8 @@ def test_pictures_can_be_left_to_later(
         raise AssertionError("nobody asked for pictures")
 
     monkeypatch.setattr("runs.report.snapshots.RENDERED", (refuse,))
-    out = tmp_path / "out"
-    assert protractile("run", COARSE, "--models", "shell", "--no-pictures", "--out", out) == 0
+    out = short.parent / "out"
+    assert protractile("run", short, "--models", "shell", "--no-pictures", "--out", out) == 0
     later = "not requested; protractile snapshot draws them"
     assert f"\nno snapshots: {later}\n" in capsys.readouterr().out
     summary = summary_of(out)
@@ -229,7 +238,7 @@ def test_pictures_can_be_left_to_later(
 
 @pytest.mark.usefixtures("few_figures", "_short_film")
 def test_two_shells_of_a_case_keep_their_files_apart(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    short: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
@@ -239,15 +248,13 @@ def test_two_shells_of_a_case_keep_their_files_apart(
         return [path]
 
     monkeypatch.setattr("runs.report.snapshots.RENDERED", (draw,))
-    text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.01")
+    text = short.read_text(encoding="utf-8").replace("mesh_size = 0.25", "mesh_size = 0.5")
     shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
     text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")
     text = text.replace('"outer"', '"b-c"').replace('"inner"', '"c"')
-    (tmp_path / "case.toml").write_text(text, encoding="utf-8")
-    folder = tmp_path / "out"
-    assert protractile(
-        "run", tmp_path / "case.toml", "--models", "a,a-b", "--out", folder
-    ) == 0  # fmt: skip
+    short.write_text(text, encoding="utf-8")
+    folder = short.parent / "out"
+    assert protractile("run", short, "--models", "a,a-b", "--out", folder) == 0
     found = files(folder)
     for model in ("a", "a-b"):
         assert {f"{model}-fields.nc", f"snapshots/{model}-boom-end.png"} <= found
