@@ -80,7 +80,7 @@ class Canvas(FigureCanvasAgg):
     def print_figure(self, filename: Any, *_: Any, **__: Any) -> None:
         """Write a PNG file, whatever the suffix of its name."""
         canvas: Any = self
-        canvas.print_png(filename)
+        canvas.print_png(filename, pil_kwargs={"compress_level": 1})
 
 
 def segment_color(number: int) -> str:
