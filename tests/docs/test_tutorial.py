@@ -79,7 +79,7 @@ def test_values_of_the_first_check(tmp_path: Path) -> None:
     assert shown(mass, 0, "mass of the boom")
     state = checked(case)
     assert shown(1e-3 * cylinder_force(state, 1), 2, "force of the cylinder")
-    assert shown(1e3 * state.tip, 1, "tip at rest")
+    assert shown(1e3 * state.tip, 1, "static tip deflection (t = 0)")
     (tilt,) = tilts(state.boom, state.system, state.position)
     assert shown(-1e3 * tilt.tip, 1, "part due to play")
     walls = static_state(state.boom, walls=0.0).tip - state.tip
@@ -96,7 +96,7 @@ def test_beam_results_equal_the_page(run: Runner, lift: str, tmp_path: Path) -> 
     path = tmp_path / "my-lift.toml"
     path.write_text(lift, "utf-8")
     state = checked(pt.load_case(path))
-    assert shown(1e3 * state.tip, 1, "tip at rest with the empty cage")
+    assert shown(1e3 * state.tip, 1, "static tip deflection (t = 0), empty cage")
     assert shown(1e-3 * cylinder_force(state, 1), 1, "force of the cylinder", 1)
     assert shown(first_frequency(state), 2, "first natural frequency, joints in contact", 1)
     part = 100.0 / summary.models["beam"].critical_factor
