@@ -27,7 +27,7 @@ from runs.report.formatting import without_round_off
 from runs.report.tables import Column, Table
 
 # Mark of governing values in a table.
-_GOVERNS = "\N{NO-BREAK SPACE}*"
+_GOVERNS = "*"
 
 # Column heading of each kind of result. A key is the start of the names of these results.
 _KINDS = {
@@ -122,7 +122,7 @@ def combination_tables(
         if most:
             cells = [_marked(one, most, system) if one else None for one in values]
             columns.append(Column(heading, cells))
-    notes = [f"{_GOVERNS.strip()} is the largest of its column."]
+    notes = [f"{_GOVERNS} is the largest of its column."]
     moving = [one.name for one in case.combinations if one.motion]
     if moving:
         notes.append(f"In prove and reports {', '.join(moving)}: extremes of the motion.")
@@ -155,7 +155,6 @@ def _without_round_off(results: Sequence[CombinationResult]) -> list[Combination
 
 def _marked(one: StaticExtreme, most: float, system: System) -> str:
     text = in_units(one.largest, one.unit, system)
-    # A no-break space keeps the mark in the line of its number.
     return text + (_GOVERNS if abs(one.largest) == most else " " * len(_GOVERNS))
 
 

@@ -37,6 +37,7 @@ from runs.pipeline.static_results import bulge_cautions
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.summary import Comparisons, Summary, WholeRun
 from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
+from runs.report.formatting import number
 
 # Members whose tips differ by more than this fraction of the range have diverged.
 _DIVERGED = 0.2
@@ -158,7 +159,7 @@ def quality_notes(
             yield QualityNote(
                 "reduction",
                 f"{name}: the reduced shell of {model.modes} generalised coordinates reproduces "
-                f"the local contact compliance within {error:.1g}.",
+                f"the local contact compliance within {number(error, 1)}.",
             )
     for name, model in models.items():
         if model.mesh_error is not None:
@@ -170,7 +171,7 @@ def quality_notes(
     name, worst = max(models.items(), key=lambda item: item[1].energy_residual)
     yield QualityNote(
         "energy",
-        f"The energy balance holds within {worst.energy_residual:.1g} of the work in every "
+        f"The energy balance holds within {number(worst.energy_residual, 1)} of the work in every "
         f"model; {name} has the largest error.",
     )
 

@@ -374,7 +374,7 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
         names = ", ".join(steels)
         yield f"No proof of static strength and plate buckling of {names}, without yield strength."
     if "yield" in requested_proofs and not any(state.walls for state in states):
-        yield "No proof of local plate stress, without a shell."
+        yield "No proof of local plate stress: prove it by a shell (prove --shell)."
     pressures = any(one.utilisation is not None for one in beam.rests[0].stations)
     if "pad" in requested_proofs and boom.joints and not pressures:
         yield "No proof of pad pressure, without allowable_pressure."
@@ -409,7 +409,7 @@ def proof_table(result: Proofs, case: Case) -> Table:
         Column("design\neffect", shown([one.demand for one in proofs])),
         Column("limit\nvalue", shown([one.resistance for one in proofs])),
         Column("utilis-\nation", used),
-        Column("combi-\nnation", [one.combination.replace(", ", ",\n") for one in proofs]),
+        Column("combination,\nspectrum", [one.combination.replace(", ", ",\n") for one in proofs]),
     ]
     kinds = dict.fromkeys(one.kind for one in proofs)
     formulas = [f"Proof of {KINDS[kind].proof}: {KINDS[kind].formula}." for kind in kinds]

@@ -375,6 +375,6 @@ def _walls(section: Section) -> str:
         for one in (True, False)
     )
     if not flange or web == flange:
-        return web
+        return f"walls {web}" if web else ""
     both = "flanges\n" if "," in flange else "flange "
     return f"web {web}\n{both}{flange}"

@@ -274,8 +274,8 @@ def stress_history(run: FigureContext) -> list[Figure]:
             for row in (row for row in rows if row.x == x):
                 color = theme.segment_color(segments.index(row.segment))
                 for largest, label, width in (
-                    (row.von_mises_patch, "over a patch", 1.8),
-                    (row.von_mises, "any triangle", 0.8),
+                    (row.von_mises_patch, "patch mean", 1.8),
+                    (row.von_mises, "one triangle", 0.8),
                 ):
                     axes.plot(
                         time,
@@ -289,14 +289,15 @@ def stress_history(run: FigureContext) -> list[Figure]:
         fullest = max(panels, key=lambda axes: len(axes.lines))
         patch = max(max(row.von_mises_patch) for row in rows) * TO_MEGA
         title = (
-            f"{name}: von Mises stress over a patch up to {number(patch)} MPa, in a triangle up to "
+            f"{name}: local plate stress up to {number(patch)} MPa, in one triangle up to "
             f"{number(stress.von_mises * TO_MEGA)} MPa"
         )
         caption = (
-            f"Largest von Mises stress of {name} at either face within {stress.band:g} m of "
+            f"Largest von Mises stress of {name!r} at either face within {stress.band:g} m of "
             f"each station and support, in each interval of {run.time[-1] / time.size:.2g} s. "
-            "Beside a contact line the stress of a triangle grows with mesh refinement: use it "
-            "only for place and time. The mean over a patch of half a wall converges."
+            "The local plate stress, a mean over a patch of half a wall, converges. "
+            "Beside a contact line the stress of one triangle grows with mesh refinement: use it "
+            "only for place and time."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))
     return figures

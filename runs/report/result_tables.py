@@ -115,7 +115,7 @@ def _reaction_table(results: Results) -> Table:
         Column("transverse force", [one.force for one in reactions], ".4g", "kN"),
         *_force_column("axial force", [one.along for one in reactions], ".4g", "kN"),
         *_force_column("moment", [one.moment for one in reactions], ".3g", "kN m"),
-        Column("transverse force,\nbonded joints", beside, ".4g", "kN"),
+        Column("transverse force,\nwithout play", beside, ".4g", "kN"),
     )
     notes = (
         "Beam elements under the loads at t = 0. Transverse forces are positive towards the upper "
@@ -180,6 +180,14 @@ def times(peak: Peak) -> str:
     return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 
+# Names of support reactions.
+_REACTIONS = {
+    "reaction": "transverse reaction",
+    "reaction along the boom": "axial reaction",
+    "reaction, across and along": "foot pin reaction",
+}
+
+
 def _station(place: str) -> str:
     """Return the position of a station, from its name in the results: ``x = 3.8 m, lateral``."""
     x, *more = re.split("(?=[y#])", place)
@@ -192,7 +200,10 @@ def _named(what: str, where: str) -> str:
     if what == "deflection":
         return f"maximum dynamic {where} deflection"
     if what == "deflection at rest":
-        return "static tip deflection, maximum load"
+        return "static tip deflection (maximum load)"
+    what = _REACTIONS.get(what, what)
+    if what == "stress":
+        return f"bending stress, {where}"
     if what == "cylinder force":
         return where.replace("_", " ").replace("-", " ")
     return f"{what}, {where}" if where else what

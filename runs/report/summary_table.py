@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from textwrap import fill
 
 import numpy as np
 
@@ -332,7 +333,7 @@ def limit_table(results: Results) -> Table | None:
     if not checks:
         return None
     columns = [
-        Column("limit", [str(check.limit) for check in checks]),
+        Column("limit", [fill(str(check.limit), 28) for check in checks]),
         Column("satisfied", ["✓" if check.holds else "✗" for check in checks]),
     ]
     columns += [

@@ -68,6 +68,16 @@ class Column:
         return f"{self.title}{between}{self.unit}"
 
     @property
+    def words(self) -> str:
+        """The title in one line."""
+        return self.title.replace("-\n", "").replace("\n", " ")
+
+    @property
+    def words_and_unit(self) -> str:
+        """The title and the unit in one line."""
+        return ", ".join(filter(None, (self.words, self.unit)))
+
+    @property
     def factor(self) -> float:
         """The conversion factor from SI units to the unit of the heading."""
         return _FACTORS.get(self.unit.partition(" ")[0], 1.0)

@@ -109,7 +109,7 @@ def test_chaos_note_names_chaotic_models_only() -> None:
     assert "after these times: wild 3.20 s." in chaotic.line
     assert regular.line == "The motion of calm can be predicted over the whole 10 s."
     assert energy.line == (
-        "The energy balance holds within 0.0002 of the work in every model; calm has the largest "
+        "The energy balance holds within 2 × 10⁻⁴ of the work in every model; calm has the largest "
         "error."
     )
     none = summary_of({"plain": model_summary()})

@@ -186,7 +186,7 @@ def test_stress_figure_states_maximum_and_limits(tmp_path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
         (figure,) = stress_history(FigureContext(results(STRESS), tmp_path))
     assert figure.title == (
-        "shell: von Mises stress over a patch up to 31 MPa, in a triangle up to 91.6 MPa"
+        "shell: local plate stress up to 31 MPa, in one triangle up to 91.6 MPa"
     )
     assert "grows with mesh refinement" in figure.caption
     with Image.open(figure.path) as image:
