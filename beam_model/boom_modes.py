@@ -132,8 +132,6 @@ def critical_factor(
     it also covers the time of the largest compression of the foot.
 
     Args:
-        boom: boom with its axial forces.
-        models: models of its segments.
         walls: compliance of walls in m/N at stations, by joint, direction and index of the station;
             0 where it is missing.
     """

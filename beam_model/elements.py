@@ -2,8 +2,8 @@
 """Two-node beam elements, which are exact at their nodes if no load acts between them.
 
 The nodal unknowns are the deflection w and the rotation β of the cross-section. The shape functions
-of a prismatic element of length ℓ_e solve the homogeneous Timoshenko equations with the shear
-parameter Φ_s = 12 E J / (G A_s ℓ_e²) (Friedman and Kosmatka 1993); for Φ_s = 0 they are the Hermite
+of a prismatic element of length ℓ_e solve the homogeneous Timoshenko equations (Friedman and
+Kosmatka 1993). The shear parameter is Φ_s = 12 E J / (G A_s ℓ_e²); for Φ_s = 0 they are the Hermite
 cubics with β = w′. In a tapered element, the moment is also linear, and the curvature follows from
 the local flexibility (Eisenberger and Reich 1989).
 """

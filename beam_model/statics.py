@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Static states and reactions: forces of supports, joints, cylinders and stops on beams.
 
-With the stiffness K and the load f of a segment without its supports, the residual K w − f of the
-static deflection w at a node is the reaction at this node.
+The reaction at a node is the residual K w − f. Here K is the stiffness of a segment without
+supports, f the load, and w the static deflection.
 """
 
 from __future__ import annotations
@@ -154,7 +154,6 @@ def net_reactions(boom: Boom, reactions: Sequence[NodeReaction]) -> list[NodeRea
     """Return the forces between segments at joints, and the ground's reactions elsewhere.
 
     Args:
-        boom: boom at rest.
         reactions: reactions of all segments, from :class:`StaticState`. At a joint, the reaction on
             the outer segment also includes the force of the inner segment.
     """

@@ -89,7 +89,6 @@ def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> Gap
 
     Args:
         system: gap system with a contact row for each side, ``beam_model.segment_model.EACH_SIDE``.
-        boom: the boom.
         factor: factor of the compliance, 0 for rigid walls.
     """
     walls = factor * contact_compliance(boom) if factor else np.zeros(0)

@@ -44,7 +44,6 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     round-off counts as open. A station between segments whose contacts are all open is bonded.
 
     Args:
-        system: gap system of a boom.
         rest: equilibrium (num_modes,) in √kg·m; equilibrium under constant loads unless given.
     """
     try:

@@ -17,7 +17,7 @@ from dynamics.arrays import Array
 
 @runtime_checkable
 class History(Protocol):
-    """Dimensionless factor over time, continuous from t = 0 on."""
+    """Function of time, continuous from t = 0 on, such as the factor of a load."""
 
     @property
     def kinks(self) -> Sequence[float]:
@@ -212,7 +212,7 @@ class Spline:
         return self.rate(time, 0)
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the value or its first or second derivative."""
+        """Return the time derivative of the order 1 or 2, for 0 the value."""
         from scipy.interpolate import CubicSpline
 
         curve = CubicSpline(self.times, self.values, bc_type="clamped")
@@ -264,7 +264,7 @@ class SCurve:
         return np.asarray(self.travel * (part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)))
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the first or second derivative."""
+        """Return the time derivative of the order 1 or 2."""
         phase = 2.0 * np.pi * np.clip((np.asarray(time) - self.start) / self.duration, 0.0, 1.0)
         shape = 1.0 - np.cos(phase) if order == 1 else self.fastest * np.sin(phase)
         return np.asarray(self.travel / self.duration * shape)
@@ -428,7 +428,7 @@ class Shaped:
         return self.rate(time, 0)
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the value or its first or second derivative."""
+        """Return the time derivative of the order 1 or 2, for 0 the value."""
         # The vibration of the first part has decayed for half a period when the second part begins.
         decay = np.exp(-2.0 * np.pi * self.frequency * self.damping * self.delay)
         time = np.asarray(time)

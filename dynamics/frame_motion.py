@@ -2,8 +2,8 @@
 """Slewing and luffing: inertia forces in the frame that rotates with the boom.
 
 The frame rotates by the slewing angle ψ about the vertical, and by the luffing angle α about the
-foot of the boom. A point of the boom has the distance ξ = x − x_foot + s from the foot, with the
-extension s, and the distance r = r_0 + ξ cos α from the slewing axis. Its accelerations
+foot of the boom. With the extension s, a point of the boom is ξ = x − x_foot + s from the foot, and
+r = r_0 + ξ cos α from the slewing axis. The accelerations of the point
 
     a_x = s̈ − ξ α̇² − ψ̇² r cos α,    a_y = r ψ̈ + 2 ψ̇ ṙ,    a_z = ξ α̈ + 2 ṡ α̇ + ψ̇² r sin α
 
@@ -68,10 +68,10 @@ class FrameMotion:
         return mass * np.array([slewing, along * (across + self.gravity * luffed)])
 
     def accelerations(self, time: Array, x: float, extension: MotionLaw) -> Array:
-        """Return a_x, a_y and a_z (3, ...) in m/s² of a point of the boom at times (...) in s.
+        """Return a_x, a_y and a_z (3, ...) in m/s² of a point of the boom.
 
         Args:
-            time: times.
+            time: times (...) in s.
             x: initial position of the point in m.
             extension: travel in m of its segment.
         """

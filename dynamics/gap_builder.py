@@ -62,7 +62,6 @@ class GapBuilder(Generic[R]):
     """Contact rows, friction rows and dashpots, in the order in which they are added.
 
     Args:
-        contacts, frictions: contact rows, and friction rows.
         dashpots: dashpots by index of their station.
         grounded: indices of stations with stops on the ground.
     """

@@ -11,9 +11,9 @@ that the winch has hoisted since t = 0, and the slack Δ_r. Until lift-off the g
 load. Rope and ground are contact rows. The winch is a travel of the row of the rope, so that the
 energy balance includes the work of the winch.
 
-A load that swings as a pendulum of length ℓ_p has two further coordinates X and Y, its horizontal
-displacements relative to the tip of the straight boom in fixed axes. For small angles, springs of
-stiffness m g/ℓ_p connect it with the tip. The acceleration of the tip of the straight boom is an
+A load that swings as a pendulum of length ℓ_p has two further coordinates X and Y. They are its
+horizontal displacements from the tip of the straight boom in fixed axes. For small angles, springs
+of stiffness m g/ℓ_p connect it with the tip. The acceleration of the tip of the straight boom is an
 inertia load. Slewing and luffing rotate the rows of the tip. Since the axes are fixed, the
 equations have no Coriolis terms.
 """

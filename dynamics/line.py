@@ -65,7 +65,6 @@ class Line:
         """Return the row (num_modes,) of a quantity at x from one side; 0 outside the segment.
 
         Args:
-            name: name of the quantity.
             x: position of a jump in m.
             side: −1 for the limit from smaller x, 1 for the limit from larger x.
         """

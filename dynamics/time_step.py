@@ -2,10 +2,10 @@
 """Time integration of a gap system, the same for all models, contact laws and losses.
 
 Within a step of length h, contact and friction forces are constant and the solution of each mode is
-exact. A contact force is the discrete gradient of the contact energy (Gonzalez 1996), friction
-obeys the set-valued law for the displacement in the step (Moreau 1988), a dashpot resists the mean
-rate. The energy balance holds to round-off for every h. The scheme has second order (first order
-with stick-slip), and is reversible without losses. The time loop is
+exact. A contact force is the discrete gradient of the contact energy (Gonzalez 1996). Friction
+obeys the set-valued law for the displacement in the step (Moreau 1988). A dashpot resists the mean
+rate of its row. The energy balance holds to round-off for every h. The scheme has second order
+(first order with stick-slip), and is reversible without losses. The time loop is
 :func:`dynamics.kernels.march.march`.
 """
 
@@ -249,10 +249,7 @@ def line_within(history: History, times: Array) -> tuple[Array, Array]:
 def axial_friction(system: GapSystem, travel: Travel, forces: Array) -> Array:
     """Return the friction μ Σ|N_l| (num_times,) in N of the pads that a travel moves.
 
-    Args:
-        system: gap system with the travel.
-        travel: travel of the system.
-        forces: contact forces (num_times, num_rows) in N.
+    ``forces`` are contact forces (num_times, num_rows) in N.
     """
     coefficients = {friction.station: friction.coefficient for friction in system.frictions}
     total = np.zeros(len(forces))

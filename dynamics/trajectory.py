@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Trajectories: deflections, contact forces and energies over time.
 
-A trajectory is an xarray dataset. It includes the energy residual, the error of the balance
-"kinetic, strain and contact energy, plus the losses of damping, friction and contact, less the work
-of loads and drives, equal the initial energy".
+A trajectory is an xarray dataset with the energy residual, the error of the energy balance:
+kinetic, strain and contact energy and all losses equal the initial energy and the work of loads and
+drives.
 """
 
 from __future__ import annotations

@@ -135,11 +135,6 @@ def pin_moments(
 
     The pin, at the depth d, does not move. So a slope w′ at the pin moves the segment along x by
     −d w′ against its compression P. The work P d w′ equals that of a moment P d at the pin.
-
-    Args:
-        segments: segments with their axial forces.
-        joints: joints between the segments.
-        bodies: bodies of the segments.
     """
     for number, segment in enumerate(segments):
         foot = segment.foot
@@ -185,8 +180,8 @@ def moving_force_places(
 class AxialChange:
     """Change over time of the stiffness of deflections by axial and centrifugal forces.
 
-    At the value g_e of the history, the strain energy decreases by ½ g_e (∫ P w′² dx + Σ m w²) with
-    the axial forces P, the point masses m and the deflections w.
+    The strain energy decreases by ½ g_e (∫ P w′² dx + Σ m w²). Here g_e is the value of the
+    history, P the axial force, m a point mass and w its deflection.
     """
 
     history: Any  #: factor g_e over time, see :mod:`dynamics.excitation`
@@ -305,7 +300,7 @@ def _distributed_weights(segment: Segment, gravity: float) -> list[tuple[float, 
 
 
 def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, float, float]]:
-    """Yield the weight without stiffeners; a tapered segment is divided into uniform steps."""
+    """Yield (start in m, end in m, weight in N/m) without stiffeners, in steps for a taper."""
     if segment.head_section is None:
         yield segment.start, segment.end, segment.mass_per_length * gravity
         return
@@ -337,7 +332,7 @@ def _compression(
             places.append(x)
 
     def sum_beyond(x: float) -> float:
-        """Return the sum of the forces at and beyond x."""
+        """Return the sum of the forces in N at and beyond x in m."""
         at_places = sum(force for place, force in points if place >= x - near)
         return at_places + sum(q * max(0.0, end - max(start, x)) for start, end, q in spread)
 

@@ -234,7 +234,7 @@ class Boom:
 
 
 def resolve_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
-    """Replace the names of segments in a part by indices, and its distances from ends by x in m.
+    """Return a part with indices of segments instead of names, and x in m instead of distances.
 
     Args:
         part: joint, load, stop, observation or cylinder.

@@ -118,10 +118,10 @@ class Cylinder:
     def load_vectors(self, body: Body, foot: Support | None) -> Iterator[Array]:
         """Yield load vectors (num_dofs,) of a cylinder force of 1 N, also rows of the elongation.
 
-        For two cylinders, the second vector has ½ N in one and −½ N in the other. With the
-        deflections w along z and v along y and the twist θ, a point (y, z) of a section moves along
-        x by −w′ z − v′ y, and along z by w + θ y. In addition, the whole segment moves along x so
-        that the pin of the foot does not move.
+        For two cylinders, the second vector has ½ N in one and −½ N in the other. A point (y, z)
+        of a section moves along x by −w′ z − v′ y, and along z by w + θ y, with the deflections w
+        along z and v along y and the twist θ. In addition, the whole segment moves along x so that
+        the pin of the foot does not move.
 
         Args:
             body: segment with the lug.
@@ -170,12 +170,7 @@ def forces(boom: Boom) -> dict[str, str]:
 
 
 def ground_lines(boom: Boom, bodies: Sequence[Body]) -> Iterator[GroundLine]:
-    """Yield springs and dashpots of cylinders, then dashpots of supports.
-
-    Args:
-        boom: boom with supports and cylinders.
-        bodies: segments of the boom.
-    """
+    """Yield springs and dashpots of cylinders, then dashpots of supports."""
     names = iter(forces(boom))
     for one in boom.cylinders:
         for push in one.load_vectors(bodies[one.segment], boom.segments[one.segment].foot):

@@ -169,7 +169,7 @@ def at(place: float | Distance, tail: float, head: float) -> float:
 
 
 def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
-    """Replace distances from the ends ``tail`` and ``head`` in a part by x in m."""
+    """Return a part with x in m instead of distances from the ends ``tail`` and ``head`` in m."""
     # Hints cannot restrict a type variable to dataclasses, which all parts are.
     resolved: dict[str, Any] = {}
     for field in fields(part):  # type: ignore[arg-type] # see above

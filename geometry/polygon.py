@@ -66,7 +66,7 @@ class PolygonSection(Section):
 
     @cached_property
     def plates(self) -> tuple[Plate, ...]:
-        """The plates, anticlockwise from the lowest corner, or from the left one of several."""
+        """The plates, anticlockwise from the lowest corner, of two lowest from the left one."""
         corners = self._upwards[0] - np.array(self.centroid)
         for axis in self.mirrors:
             # Meshes require that mirror images are exactly equal.
@@ -107,7 +107,7 @@ class PolygonSection(Section):
 
     @cached_property
     def centroid(self) -> Offset:
-        """The centroid (y, z) in m in the axes of the corners."""
+        """The centroid (y, z) in m in the coordinates of ``corners``."""
         parts = _moments(trapezoids(_plates(*self._upwards)))
         return float(parts[0]), float(parts[1])
 

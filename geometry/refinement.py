@@ -80,11 +80,9 @@ def refinement_zones(
     """Return the refinement zones of a segment with a section.
 
     Args:
-        boom: boom with the segment.
         number: index of the segment in ``Boom.segments``.
         tolerance: relative error of the local compliance.
         line: contact line on the walls.
-        stop_patches, pads: stop patches and pads of the boom.
     """
     finer = float(np.sqrt(tolerance / CALIBRATION_TOLERANCE))
     # Zones with the same data, such as mirror images, are merged.

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shear flow q_s along the mid-line of a closed thin wall.
 
-The shear flow follows dq_s/dℓ = −t_w c·r (Jourawski 1856) with the coordinate ℓ along the mid-line,
-the wall thickness t_w and the position r from the centroid. The constant vector c follows from the
-shear force V = ∮ r rᵀ t_w dℓ c. The constant of integration follows from zero twist,
-∮ q_s/t_w dℓ = 0 (Bredt 1896). The solution is exact for flat plates, along which q_s is quadratic.
+The shear flow follows dq_s/dℓ = −t_w c·r (Jourawski 1856). Here ℓ is the coordinate along the
+mid-line, t_w the wall thickness and r the position from the centroid. The constant vector c follows
+from the shear force V = ∮ r rᵀ t_w dℓ c. The constant of integration follows from zero twist, ∮
+q_s/t_w dℓ = 0 (Bredt 1896). The solution is exact for flat plates, along which q_s is quadratic.
 """
 
 from __future__ import annotations
@@ -47,7 +47,6 @@ class ShearFlow:
 
         Args:
             plates: plates of a closed section in order, each from the end of the previous one.
-            direction: direction of the force.
         """
         start = np.array([plate.start for plate in plates])
         side = np.array([plate.end for plate in plates]) - start

@@ -71,7 +71,7 @@ class Collar:
         return sum(2.0 * (strip.high - strip.low) for strip in self.strips(section))
 
     def is_symmetric(self, section: Section, axis: Direction) -> bool:
-        """Return whether the collar is its own mirror image along an axis."""
+        """Return whether the plane normal to ``axis`` mirrors the collar onto itself."""
         midpoints = np.array(
             [section.plates[strip.wall].midpoint for strip in self.strips(section)]
         )

@@ -37,9 +37,6 @@ _FLAT, _SPATIAL = 2, 5
 def check_supported(boom: Boom) -> None:
     """Check that supports, cylinders, joints and stops prevent all rigid motions.
 
-    Args:
-        boom: boom whose supports, cylinders, joints and stops lie within their segments.
-
     Raises:
         BoomError: a segment can move as a rigid body.
     """
@@ -65,9 +62,6 @@ def check_supported(boom: Boom) -> None:
 
 def check_contacts_at_rest(boom: Boom) -> None:
     """Check that the loads at t = 0 press segments against the one-sided stops that the boom needs.
-
-    Args:
-        boom: supported boom with loads.
 
     Raises:
         BoomError: the loads lift a segment off its stops.

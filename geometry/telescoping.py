@@ -121,11 +121,9 @@ def sample_extensions(boom: Boom) -> list[dict[int, float]]:
 
 
 def station_positions(joint: Joint, extension: float) -> list[tuple[float, float]]:
-    """Return each station's material coordinates (x of outer, x of inner segment) in m.
+    """Return the material coordinates (x on outer, x on inner segment) in m of each station.
 
-    Args:
-        joint: joint, with or without a drive.
-        extension: extension in m since t = 0.
+    ``extension`` is the extension in m since t = 0.
     """
     carriers = () if joint.drive is None else joint.drive.carriers
     return [

@@ -54,8 +54,6 @@ def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float,
     Both sections must be convex. If a clearance is negative, the inner section does not fit.
 
     Args:
-        outer: outer section.
-        inner: inner section.
         play: play along z in m; the clearance along y is the smallest one within this play.
     """
     reach = trapezoids(inner.plates)[:, :2].reshape(-1, 2)
@@ -106,7 +104,7 @@ class WallsAlong:
         self._starts = np.array([[plate.start for plate in one.plates] for one in sections])
 
     def starts(self, plate: int) -> Array:
-        """Return the starts (num_places, 2) of a plate in m."""
+        """Return the points (y, z) (num_places, 2) in m at which a plate starts."""
         return np.asarray(self._starts[self._at, plate])
 
     def distance(self, plate: int, places: Array) -> Array:

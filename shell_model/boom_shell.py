@@ -141,7 +141,6 @@ def assemble_boom(
         boom: boom whose segments all have sections.
         options: options of mesh and contact.
         comm: ranks that share the work.
-        stages: progress reporter.
 
     Raises:
         BoomError: a segment has no section, or the contact line does not suit the boom.

@@ -131,7 +131,6 @@ def with_springs(springs: Attachments, rows: Array, stiffness: Array) -> Attachm
     """Return ``springs`` with further springs.
 
     Args:
-        springs: existing springs.
         rows: (num_owned, num_springs) this rank's rows of the further springs.
         stiffness: (num_springs,) stiffness of each row in N/m or N·m.
     """

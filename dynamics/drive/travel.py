@@ -36,10 +36,10 @@ class Travel:
     array([[0.5]])
 
     Args:
-        history: history in m.
+        history: extension in m over time.
         table: rows (num_moving, num_modes) over the extension.
         moved_rows: (kind, index) of each row in the gap system.
-        suffix: suffix of the names of its results; None for no results.
+        suffix: suffix of the names of results; None for no results.
         axial_forces: axial forces that move with the extension, or are proportional to it.
         axial_load: axial load in N of all segments that the drive moves.
         elastic: data of an elastic drive; None for a rigid drive.

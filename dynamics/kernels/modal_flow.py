@@ -10,7 +10,7 @@ response to a unit force. With p = ∫ r_f dt/h and u = ∫∫ r_f dt dt/h², th
     ā  = (1 − ω² p) a₀ + (r_f/h) ȧ₀ + p Q + (u − p/2) ΔQ
 
 with the mean ā over the step. The work of Q is Q (a₁ − a₀), the work of ΔQ is
-ΔQ ((a₀ + a₁)/2 − ā), and the damping loss c ∫ ȧ² dt is a quadratic form of ȧ₀, ä₀ and ΔQ/h.
+ΔQ ((a₀ + a₁)/2 − ā). The damping loss c ∫ ȧ² dt is a quadratic form of ȧ₀, ä₀ and ΔQ/h.
 """
 
 from __future__ import annotations

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows and axial forces that change with travels, in the time loop.
 
-A step from a₀ to a₁ changes the displacement of a row by B₁ a₁ − B₀ a₀ = B̄ (a₁ − a₀) +
-(B₁ − B₀)(a₀ + a₁)/2, with the rows B₀ at the start and B₁ at the end and their mean B̄. Forces act
-on the modes by B̄. The second term times the force is the work of the drive, so that the energy
-balance is exact.
+A row is B₀ at the start and B₁ at the end of a step, with the mean B̄. Its displacement changes by
+B₁ a₁ − B₀ a₀ = B̄ (a₁ − a₀) + (B₁ − B₀)(a₀ + a₁)/2. Forces act on the modes by B̄. The second term
+times the force is the work of the drive, so that the energy balance is exact.
 """
 
 from __future__ import annotations

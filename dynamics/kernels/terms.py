@@ -39,7 +39,6 @@ def discrete_gradient(term: np.void, before: float, after: float) -> tuple[float
     Newton's method uses, is a midpoint value for y₁ near y₀ unless the exponent is 1 or 2.
 
     Args:
-        term: term of a contact law.
         before, after: relative displacements y₀ and y₁ in m.
     """
     side, k, n = term["side"], term["stiffness"], term["exponent"]

@@ -93,7 +93,6 @@ def run_members(
     The result does not depend on the executor.
 
     Args:
-        members: members to run.
         executor: executor of threads or processes; one thread per core unless given.
         progress: callback that receives the completed fraction, 0 to 1.
 

@@ -61,7 +61,7 @@ class Growth:
 
     @classmethod
     def fit(cls, relatives: Array, times: Array) -> Growth:
-        """Return the least-squares line through the finite ones of the horizons (num,) in s."""
+        """Return the least-squares line of the finite horizons (num_relatives,) in s over ln ε."""
         finite = np.isfinite(times)
         if finite.sum() < 2:
             return cls(np.nan, np.nan, np.nan)

@@ -310,9 +310,9 @@ def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSol
 
     Modes above the first inaccurate one are not tested.
 
-    With the residual r = (K − ω² M) φ of a mass-normalised mode φ, some eigenvalue λ satisfies
-    (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r, as r expanded in eigenvectors shows. The error itself is
-    of the order of the square of this bound.
+    A mass-normalised mode φ has the residual r = (K − ω² M) φ. Expanded in eigenvectors, r shows
+    that some eigenvalue λ satisfies (λ − ω²)² / (λ + σ) ≤ rᵀ (K + σ M)⁻¹ r. The error itself is of
+    the order of the square of this bound.
     """
     accurate = np.asarray(omega2 == 0.0)
     for i in np.flatnonzero(~accurate):

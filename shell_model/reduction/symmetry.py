@@ -168,9 +168,6 @@ class Job:
 class SymmetryReduction:
     """Map from the distributed rows of a segment to the rows of its symmetry cell. Collective.
 
-    Args:
-        shell: shell of the whole segment.
-
     Attributes:
         cell: symmetry cell, assembled on each rank that computes a class.
 

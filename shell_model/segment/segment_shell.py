@@ -89,7 +89,7 @@ class SegmentShell(Shell):
         return loads[direction] / self.segment.area
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """Return the inertia load (num_owned,) of a uniform acceleration. Collective.
+        """Return the load vector (num_owned,) of a uniform acceleration. Collective.
 
         ``force`` is the load in N/m without collars and diaphragms.
         """
@@ -99,7 +99,7 @@ class SegmentShell(Shell):
         return whole + acceleration * (self.segment.material.density * of_stiffeners)
 
     def rotation_load(self, direction: Direction) -> Array:
-        """Return the load (num_owned,) of an angular acceleration of 1 rad/s². Collective."""
+        """Return the load vector (num_owned,) of 1 rad/s² about x = 0. Collective."""
         axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
         # The mass couples free degrees of freedom with constrained ones.
         mass = compat.assemble_matrix(self.plates.forms.mass, [], 0.0)

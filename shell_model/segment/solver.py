@@ -82,7 +82,7 @@ class ShiftedSolver:
         self._factors.setUp()
 
     def __call__(self, block: Array) -> Array:
-        """Return the solutions (num_owned, num_columns) for a block of right-hand sides."""
+        """Return (K + σ M)⁻¹ ``block`` (num_owned, num_columns)."""
         if block.shape[1] == 0:
             return block
         right, left = dense(self._matrix, block), dense(self._matrix, np.empty_like(block))

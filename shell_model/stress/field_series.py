@@ -29,8 +29,8 @@ def series_times(fields: xr.Dataset) -> list[float]:
 def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:
     """Write displacements and stresses for ParaView at the output times nearest to ``times``.
 
-    Each ``.vtu`` file has displacements in m at points, and on triangles the number of the segment,
-    the von Mises stresses of both faces and the middle, and six stress components, in Pa.
+    Each ``.vtu`` file has displacements in m at points. On triangles it has the number of the
+    segment, and in Pa the von Mises stresses of faces and middle, and six stress components.
 
     Args:
         fields: fields of ``shell_model.stress.fields``, and the modal coordinates ``state``

@@ -117,7 +117,6 @@ def gather_fields(
     """Return displacements and stresses of all modes on rank 0, None elsewhere. Collective.
 
     Args:
-        boom: boom of the shells.
         shells, reduced: shell and reduced coordinates of each segment.
         coordinates: coordinates of the boom, the first coordinates of the system.
         system: gap system, whose observers include the forces of cylinders.
@@ -195,7 +194,7 @@ def _axial_stress_of(segment: Segment, mesh: PlatedMesh, force: Callable[[Array]
 
 
 def _axial_stress(boom: Boom, meshes: Sequence[PlatedMesh]) -> dict[str, _Variable]:
-    """Return the stresses of axial forces; empty without axial forces."""
+    """Return the variable ``axial_stress`` of the fields; empty without axial forces."""
     if not boom.compressed:
         return {}
     stresses = [

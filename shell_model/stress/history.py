@@ -116,7 +116,6 @@ def stress_near_places(
     """Return the largest stresses of each segment in a band around each place, over time.
 
     Args:
-        shell: stresses of the shell in motion.
         places: x in m.
         names: names of the segments.
 
