@@ -40,10 +40,6 @@ class BoomModes:
 
     Segments connected by bonded joints, or by cylinders, have common modes.
 
-    Args:
-        boom: boom with joints, bonded or with play, planar or three-dimensional.
-        models: model of each segment.
-
     Attributes:
         omega2: ω² (num_modes,) in rad²/s², exactly 0 for rigid modes; negative if an axial force
             makes a segment unstable.

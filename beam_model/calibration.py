@@ -82,7 +82,6 @@ def calibrate(
     """Return the effective stiffness and the local compliance of a shell for beams of its boom.
 
     Args:
-        boom: boom whose segments all have sections.
         shell: gap system of the shell of the boom, with contacts near the webs or at pads.
         probe_responses: probe responses of the segments of the shell.
         segments: function that returns the beams of a boom.
@@ -120,7 +119,6 @@ def with_springs(system: GapSystem, residual: Array) -> GapSystem:
     """Return the system with springs for the positive part of a residual compliance.
 
     Args:
-        system: gap system of the beams.
         residual: residual compliance (num_rows, num_rows) in m/N.
     """
     sizes = np.sqrt(np.abs(np.diag(residual)))

@@ -39,8 +39,7 @@ class Component:
         rotation_load: load vector (num_dofs,) of an angular acceleration of 1 rad/s² about
             x = 0; empty for twist.
         breaks: x in m between which rows are polynomials.
-        geometric: geometric stiffness K_G (num_dofs, num_dofs) of the axial force; None without
-        axial force.
+        geometric: geometric stiffness K_G (num_dofs, num_dofs) of the axial force; None without it.
         inertia_load: inertia load (num_dofs,) of a uniform acceleration that causes a mean load of
             1 N/m; ``unit_load`` unless given.
     """

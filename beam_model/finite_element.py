@@ -191,7 +191,7 @@ def _twist(segment: Segment, nodes: Array) -> Component:
 
 
 def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> Array:
-    """Return the x of nodes in m: required x, of which close ones have one node, and x between."""
+    """Return x (num_nodes,) of nodes in m: required x, close ones merged, and x between these."""
     supports = [support.x for support in segment.supports]
     masses = [*(mass.x for mass in segment.all_masses), *segment.compression.places]
     places: list[float] = []

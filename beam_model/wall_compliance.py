@@ -267,7 +267,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
 
 
 def _graded_nodes(cuts: Array, length: float, fine: tuple[float, float]) -> Array:
-    """Return nodes in m that include ``cuts``; elements become longer outside ``fine``."""
+    """Return nodes (num_nodes,) in m, with ``cuts``; elements become longer outside ``fine``."""
     count = int(np.ceil((fine[1] - fine[0]) / length))
     beyond = length * np.cumsum(_GROWTH ** np.arange(1, 30))
     nodes = np.concatenate([fine[0] - beyond, np.linspace(*fine, count + 1), fine[1] + beyond])

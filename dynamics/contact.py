@@ -73,10 +73,10 @@ class ContactLaw(ABC):
         return min((term.onset for term in self.terms if term.side == side), default=np.inf)
 
     def force(self, y: Array) -> Array:
-        """Return the elastic force F in N on the outer segment; −F acts on the inner one.
+        """Return the elastic force F (…) in N on the outer segment; −F acts on the inner one.
 
         Args:
-            y: relative displacement u − w in m, any shape.
+            y: relative displacement u − w (…) in m.
         """
         return self._sum(force_of, y)
 

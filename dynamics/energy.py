@@ -53,9 +53,8 @@ def check_energy(energies: Array, bound: float = ENERGY_BOUND, energy_floor: flo
     """Check the energies of a motion.
 
     Args:
-        energies: as in :func:`energy_residual`.
+        energies, energy_floor: as in :func:`energy_residual`.
         bound: largest permitted energy residual.
-        energy_floor: as in :func:`energy_residual`.
 
     Raises:
         NumericsError: an energy is not finite, or the residual exceeds the bound.

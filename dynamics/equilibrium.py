@@ -87,7 +87,9 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
 
 
 def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: float) -> Array | None:
-    """Return the minimum of the potential energy by Newton's method; None if it is not found.
+    """Return the scaled unknowns (num_unknowns,) at the minimum of the energy; None if not found.
+
+    The method is Newton's with a line search.
 
     Args:
         stiffness, load, rows: stiffness, load and contact rows in scaled unknowns.

@@ -39,7 +39,7 @@ class MotionLaw(History, Protocol):
     """Length or angle over time, with its time derivatives."""
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the first or second time derivative at each time in s, any shape."""
+        """Return the derivative of the order 1 or 2 at each time in s, in the shape of ``time``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +166,7 @@ class PiecewiseLinear:
         return np.asarray(np.interp(time, self.times, self.values))
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the first or second derivative; the second one is 0, also at kinks."""
+        """Return the derivative of the order 1 or 2; the second one is 0, also at kinks."""
         slopes = np.concatenate([[0.0], np.diff(self.values) / np.diff(self.times), [0.0]])
         return np.asarray((2 - order) * slopes[np.searchsorted(self.times, time)])
 
@@ -212,7 +212,7 @@ class Spline:
         return self.rate(time, 0)
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the time derivative of the order 1 or 2, for 0 the value."""
+        """Return the value for the order 0, or the derivative of the order 1 or 2."""
         from scipy.interpolate import CubicSpline
 
         curve = CubicSpline(self.times, self.values, bc_type="clamped")
@@ -264,7 +264,7 @@ class SCurve:
         return np.asarray(self.travel * (part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)))
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the time derivative of the order 1 or 2."""
+        """Return the derivative of the order 1 or 2."""
         phase = 2.0 * np.pi * np.clip((np.asarray(time) - self.start) / self.duration, 0.0, 1.0)
         shape = 1.0 - np.cos(phase) if order == 1 else self.fastest * np.sin(phase)
         return np.asarray(self.travel / self.duration * shape)
@@ -331,10 +331,7 @@ class Stroke:
         return np.asarray(np.sign(self.travel) * self.speed * (ramps[0] - ramps[1]))
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the first or second derivative; at a jump, the value before it.
-
-        The second derivative needs a ramp.
-        """
+        """Return the derivative of the order 1, with a ramp also 2; at jumps the value before."""
         after = np.asarray(time) - self.start
         since = np.array([after, after - self.duration + self.ramp])
         active, full = since > 0.0, since > self.ramp
@@ -374,7 +371,7 @@ class HistorySum:
         return sum((part(time) for part in self.parts), np.zeros(np.shape(time)))
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the first or second derivative, if the parts have one."""
+        """Return the derivative of the order 1 or 2, if the parts have one."""
         return sum((part.rate(time, order) for part in self.parts), np.zeros(np.shape(time)))
 
 
@@ -428,7 +425,7 @@ class Shaped:
         return self.rate(time, 0)
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the time derivative of the order 1 or 2, for 0 the value."""
+        """Return the value for the order 0, or the derivative of the order 1 or 2."""
         # The vibration of the first part has decayed for half a period when the second part begins.
         decay = np.exp(-2.0 * np.pi * self.frequency * self.damping * self.delay)
         time = np.asarray(time)

@@ -40,11 +40,11 @@ class FrameMotion:
     gravity: float = 0.0  #: acceleration of gravity in m/s²; 0 without weight
 
     def slew_angle(self, time: Array, order: int = 0) -> Array:
-        """Return ψ in rad, or its first or second derivative, at times in s."""
+        """Return ψ (…) in rad, or its derivative of the order 1 or 2, at times (…) in s."""
         return _angle(self.slew, time, order)
 
     def luff_angle(self, time: Array, order: int = 0) -> Array:
-        """Return α in rad, or its first or second derivative, at times in s."""
+        """Return α (…) in rad, or its derivative of the order 1 or 2, at times (…) in s."""
         change = _angle(self.luff, time, order)
         return change if order else np.deg2rad(self.angle) + change
 
@@ -93,7 +93,7 @@ class FrameMotion:
 class FrameAcceleration:
     """Acceleration of a point of the boom by slewing and luffing, as a history of inertia loads.
 
-    It includes the change of gravity in the axes of the boom since t = 0, where α is α₀:
+    It includes the change of gravity in the axes of the boom since t = 0, when α is α₀:
     g (cos α − cos α₀) along z, and g (sin α − sin α₀) along x.
     """
 

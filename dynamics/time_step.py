@@ -228,7 +228,6 @@ def line_within(history: History, times: Array) -> tuple[Array, Array]:
     effect of a kink.
 
     Args:
-        history: history of a load.
         times: ends (num_steps + 1,) of the steps in s, evenly spaced.
     """
     kinks = np.asarray(history.kinks, dtype=np.float64)

@@ -138,7 +138,6 @@ class Trajectory:
         """Return the trajectory of an integrator's output; forces are sums over each station.
 
         Args:
-            system: system of the motion.
             time: (num_times,) in s.
             output: output at these times.
             attributes: attributes of the data, which include ``step``, ``steps``,

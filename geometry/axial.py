@@ -258,7 +258,6 @@ def axial_force(
 
     Args:
         segments: segments with their initial axial forces.
-        joints: joints of the boom.
         number: index of the segment.
         x: positions (num_places,) in m.
         time: times (...) in s.

@@ -239,7 +239,6 @@ def resolve_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _P
     Args:
         part: joint, load, stop, observation or cylinder.
         where: attribute of the boom with this part, for messages.
-        segments: segments of the boom.
 
     Raises:
         BoomError: a segment name is unknown.

@@ -98,8 +98,6 @@ def check_contact_faces(
 
     Args:
         where: attribute of the boom with this segment, for messages.
-        segment: segment to check.
-        directions: directions of contact.
         places: x in m of the contacts.
         around: outer segment, if any.
 
@@ -158,11 +156,11 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
 
 
 def check_pads_in_travel(where: str, joint: Joint, boom: Boom) -> None:
-    """Check that all pads of a joint stay in the overlap while it telescopes.
+    """Check that all pads of a joint stay in the overlap while the joint telescopes.
 
     Raises:
-        BoomError: a pad is longer than the smallest overlap, or leaves it; the message names an
-            attribute of ``where``.
+        BoomError: a pad leaves the overlap, or is longer than the smallest overlap; the message
+            names an attribute of ``where``.
     """
     sizes = {f"{where}.contact_length": joint.contact_length}
     pads = {} if joint.pad is None else {f"{where}.pad": joint.pad}

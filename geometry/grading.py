@@ -53,7 +53,6 @@ def graded_mesh(
     Args:
         section, breaks, closed, across: as in :func:`mesh_segment`.
         size: mesh size in m outside all zones: the square root of the area of a rectangle.
-        zones: refinement zones.
 
     Raises:
         ValueError: as in :func:`mesh_segment`.
@@ -153,7 +152,7 @@ def _bisect(mesh: SegmentMesh, cut: Mask) -> SegmentMesh:
 
 
 def _with_midpoints(line: Indices, new_of: Mapping[tuple[int, int], int]) -> Indices:
-    """Return the edges of a line, with two halves in place of each bisected edge."""
+    """Return the edges (num_edges, 2) of a line, with two halves of each bisected edge."""
     halves: list[tuple[int, int]] = []
     for a, b in line.tolist():
         new = new_of.get((min(a, b), max(a, b)))

@@ -396,7 +396,7 @@ class BoxSection(Section):
 def _hollow_rectangle(
     width: float, height: float, webs: Offset, flanges: Offset
 ) -> tuple[float, float]:
-    """Return the height of the centroid and the second moment of a hollow rectangle.
+    """Return the height of the centroid in m and the second moment in m⁴ of a hollow rectangle.
 
     Args:
         width, height: width and height of the mid-lines in m.
@@ -404,8 +404,8 @@ def _hollow_rectangle(
         flanges: thicknesses of the upper and the lower flange in m.
 
     Returns:
-        The height in m above the middle of the mid-lines, and the second moment in m⁴ about the
-        centroidal axis along the width, by the parallel axis theorem.
+        The height above the middle of the mid-lines, and the second moment about the centroidal
+        axis along the width, by the parallel axis theorem.
     """
     web, flange = 0.5 * sum(webs), 0.5 * sum(flanges)
     # The centres of the outer rectangle and of the hole are at ±middle from the mid-lines' centre.
@@ -420,7 +420,7 @@ def _hollow_rectangle(
 def infer_outer_section(
     area: float, second_moment_of_area: float, height_to_width: float
 ) -> BoxSection:
-    """Return the uniform-wall box with a given area, second moment and height-to-width ratio.
+    """Return the box with uniform walls of an area, second moment and height-to-width ratio.
 
     Args:
         area: area in m².
@@ -452,7 +452,7 @@ def infer_outer_section(
 def infer_inner_section(
     area: float, second_moment_of_area: float, outer: Section, clearance: float
 ) -> BoxSection:
-    """Return the uniform-wall box that fits in ``outer`` with a clearance above and below.
+    """Return the box with uniform walls that fits in ``outer`` with a clearance above and below.
 
     Args:
         area: area in m².

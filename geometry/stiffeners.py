@@ -58,7 +58,7 @@ class Collar:
         return 0.5 * sum(self.span)
 
     def strips(self, section: Section) -> list[Strip]:
-        """Return the covered parts of the walls of a section."""
+        """Return the parts of the walls of a section that the collar covers."""
         low, high = self.across or (0.0, np.inf)
         return [
             Strip(k, low, min(high, 0.5 * plate.length))

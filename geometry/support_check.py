@@ -112,7 +112,7 @@ class _RigidBody(LoadedSegment):
 
     @property
     def load(self) -> Array:
-        """The load vector of the segment at t = 0."""
+        """The load vector (num_dofs,) of the segment at t = 0."""
         whole = self.segment.load * self.uniform("z", None)
         if self.boom.spatial and self.segment.lateral is not None:
             whole += self.segment.lateral.load * self.uniform("y", None)
@@ -183,7 +183,7 @@ def _bodies(boom: Boom) -> list[_RigidBody]:
 
 
 def _one_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
-    """Return the load vectors of one-sided stops."""
+    """Return the load vectors (num_dofs,) of 1 N from each one-sided stop."""
     return [
         -stop.sides[0] * bodies[stop.segment].unit_load_vector(stop.x, "z")
         for stop in boom.stops
@@ -192,7 +192,7 @@ def _one_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
 
 
 def _two_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
-    """Yield the rows of restraints that act in both directions."""
+    """Yield the rows (num_dofs,) of restraints that act in both directions."""
     for body in bodies:
         for support in body.segment.supports:
             for direction in boom.directions:

@@ -225,8 +225,6 @@ def buckle_segments(
     Args:
         boom: boom of the shells.
         meshes: meshes of the segments, on rank 0; None elsewhere.
-        state: static state.
-        options: options of the shells.
         count: number of modes of each segment.
         comm: the ranks that share the work.
 

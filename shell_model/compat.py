@@ -175,7 +175,7 @@ def assemble_matrix(form: Any, bcs: list[Any], diagonal: float) -> PETSc.Mat:
 
 
 def assemble_vector(form: Any) -> Array:
-    """Return this rank's rows of the vector of a form, with contributions of other ranks."""
+    """Return this rank's rows (num_owned,) of the vector of a form, summed over all ranks."""
     vector = fem_petsc.assemble_vector(form)
     vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
     rows = vector.array.copy()

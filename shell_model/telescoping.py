@@ -264,7 +264,7 @@ class TelescopingShell:
         return float((np.abs(error) / scale).max(initial=0.0))
 
     def _residuals(self, k: int) -> tuple[Array, Array]:
-        """Return compliance and inertia of sampled rows, less the contributions of modes."""
+        """Return compliance in m/N and inertia in m s²/N of rows, less those of modes."""
         rows, shifted = self._rows[k], self._segment_coordinates.omega2 + squared(SLOW)
         compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
         return self._compliance(k, "compliance") - compliance, self._compliance(

@@ -220,7 +220,7 @@ class ChangingAxialForce:
 
 
 def _weighted_sum(weights: Array, arrays: Array) -> Array:
-    """Return a weighted sum. It avoids BLAS so that results are bitwise reproducible."""
+    """Return a weighted sum of matrices. It avoids BLAS to be bitwise reproducible."""
     return np.asarray((weights[:, None, None] * arrays).sum(axis=0))
 
 

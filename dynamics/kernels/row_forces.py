@@ -43,7 +43,7 @@ class Laws(NamedTuple):
     """Contact and friction laws of all rows in the order contacts, frictions, dashpots.
 
     Args:
-        terms, limits: terms and open ranges of the contact laws.
+        terms, limits: terms of the contact laws, and ranges of y in which contacts are open.
         first_term: (num_contacts + 1,) index of the first term of each contact.
         friction: (2, num_frictions) μ and prescribed normal force in N.
         pressing: (num_frictions, num_contacts) 1 if the contact adds to the normal force, else 0.

@@ -93,7 +93,6 @@ def reduce_class(
     """Return the coordinates of a reduced shell that is stored on this rank only.
 
     Args:
-        shell: full model.
         inputs: load vectors (num_rows, num_inputs); they may be zero or dependent.
         outputs: rows (num_rows, num_outputs) of outputs.
         probes: load vectors (num_rows, num_probes) of probes.
@@ -261,7 +260,7 @@ class _Basis:
         return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * signs
 
     def _append(self, block: Array) -> Array:
-        """Append a block, orthonormalised, to the basis, and return the new vectors."""
+        """Append a block to the basis, and return the new vectors (num_rows, num_new)."""
         before = self.size
         vectors = np.empty((len(block), before + block.shape[1]), order="F")
         vectors[:, :before] = self._vectors

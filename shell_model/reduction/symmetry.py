@@ -141,7 +141,6 @@ class Job:
     """Data of a symmetry class for the rank that computes it.
 
     Args:
-        symmetry_class: the symmetry class.
         forces, outputs, probes: load vectors, output rows and loads of probes
             (num_rows, num_columns) on the cell, sums over all images.
         springs, masses: springs and masses of the segment on the rows of the cell.

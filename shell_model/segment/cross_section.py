@@ -158,9 +158,9 @@ class SectionNodes:
         return Row.from_weights(self.dofs[nodes, COMPONENT[direction]], lengths / lengths.sum())
 
     def along(self, plate: Plate) -> tuple[Indices, Array]:
-        """Return the nodes of a plate, alternately ends and midpoints, and positions in m along it.
+        """Return the nodes (num_nodes,) of a plate, and their positions along the plate in m.
 
-        Nodes are in ascending order of y, or of z if the plate is steep.
+        Nodes are alternately ends and midpoints of edges, in the order of y, or of z if steep.
         """
         on_plate = np.flatnonzero(plate.distance(self.places[:, 1:]) < self.section.near)
         tangent = plate.tangent
@@ -169,7 +169,7 @@ class SectionNodes:
         return on_plate[order], along[order]
 
     def _simpson(self, plate: Plate) -> tuple[Indices, Array]:
-        """Return the nodes of a plate, and their weights in m by Simpson's rule."""
+        """Return the nodes (num_nodes,) of a plate, and their weights in m by Simpson's rule."""
         nodes, along = self.along(plate)
         lengths = along[2::2] - along[:-2:2]
         weights = np.zeros(nodes.size)

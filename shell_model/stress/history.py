@@ -117,7 +117,6 @@ def stress_near_places(
 
     Args:
         places: x in m.
-        names: names of the segments.
 
     Returns:
         ``von_mises`` (time, segment, place) in Pa, the maximum over triangles and faces, and

@@ -193,14 +193,14 @@ class ShellStress:
         return bool(spans[:, 0].min() - SAME_LINE <= x <= spans[:, 1].max() + SAME_LINE)
 
     def near(self, segment: int, x: float, reach: float) -> Indices:
-        """Return the triangles of a segment whose centroids are within ``reach`` in m of x."""
+        """Return the indices of a segment's triangles with centroids within ``reach`` in m of x."""
         close = np.abs(self.centroids[:, 0] - x) <= reach
         return np.flatnonzero(close & (self.segment == segment))
 
     def row(self, segment: int, x: float) -> Indices:
-        """Return the wall triangles between the two mesh lines around the section that enclose x.
+        """Return the indices of wall triangles between the two mesh lines that enclose x.
 
-        x is in m. If it is on such a line, the triangles are those beyond the line.
+        Mesh lines are around the section; x is in m. If x is on a mesh line, it is the first one.
         """
         mine = (self.segment == segment) & (self.wall < len(self.plates[segment]))
         lines = lines_around(self.spans[mine])
