@@ -262,8 +262,8 @@ def _clearances(joint: Joint) -> Iterator[str]:
             return
         both = [1e3 * clearance for clearance in joint.clearances(direction)]
         parts = [f"{one:g} {name}" for one, name in zip(both, names, strict=True)]
-        alike = f"± {both[0]:g}" + (", lateral" if direction == "y" else "")
-        yield alike if both[0] == both[1] else ", ".join(parts)
+        text = f"± {both[0]:g}" + (", lateral" if direction == "y" else "")
+        yield text if both[0] == both[1] else ", ".join(parts)
 
 
 def _friction(joint: Joint) -> str:

@@ -443,10 +443,10 @@ def export(
         raise BadInput(case, "--to", f"must be {choices([*suffixes])}, got {to!r}")
     program = import_module(f"runs.report.{to}")
     checked = reading.load(case)
-    chosen = reading.select(checked, case, [program.select_model(checked, case, model).name])
+    selected = reading.select(checked, case, [program.select_model(checked, case, model).name])
     path = Path(out or f"{Path(case).stem}.{suffixes[to]}")
-    comm = ranks.enter_mpi(chosen, case, "export another one with --model")
-    program.write(chosen, case, comm, path, Cache.of_user())
+    comm = ranks.enter_mpi(selected, case, "export another one with --model")
+    program.write(selected, case, comm, path, Cache.of_user())
     print(printable(str(path)))
     return 0
 

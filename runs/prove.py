@@ -32,13 +32,13 @@ def print_proofs(
     if not states:
         # Only the first rank has the states of a shell.
         return 0
-    proved = prove(case, states)
+    results = prove(case, states)
     name = "" if shell is None else shell[0].name
     for table in combination_tables([one.result for one in states], case, name):
         table.show(console)
-    proof_table(proved, case).show(console)
-    console.print(proved.governing(case.system), markup=False, highlight=False)
-    failed = [one for one in proved.proofs if not one.holds]
+    proof_table(results, case).show(console)
+    console.print(results.governing(case.system), markup=False, highlight=False)
+    failed = [one for one in results.proofs if not one.holds]
     for one in failed:
         say(message(f"{shorten(file)}: {one.text(case.system)}. Remedy: {one.remedy}"))
     return 1 if failed else 0

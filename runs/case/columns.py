@@ -95,10 +95,10 @@ def read_pairs(
         if len(rows) > MOST_TIMES:
             raise _FileError(f"has {len(rows)} lines", f"give {MOST_TIMES} at most")
         headings = [rows.pop(0) for _ in range(2) if rows and not rows[0].has_number]
-        chosen, scales, has_unit = _choose_columns(headings, names, columns)
+        indices, scales, has_unit = _choose_columns(headings, names, columns)
         for row in rows:
-            row.check_columns(chosen, names)
-        pairs = np.array([[row.number(i) for i in chosen] for row in rows])
+            row.check_columns(indices, names)
+        pairs = np.array([[row.number(i) for i in indices] for row in rows])
         if len(rows) < 2:
             raise _FileError("has fewer than two lines of numbers")
         falls = np.flatnonzero(np.diff(pairs[:, 0]) <= 0.0)
@@ -144,10 +144,10 @@ class _Row:
     def has_number(self) -> bool:
         return any(map(_is_number, self.cells))
 
-    def check_columns(self, chosen: Sequence[int], names: Sequence[str] | None) -> None:
+    def check_columns(self, indices: Sequence[int], names: Sequence[str] | None) -> None:
         """Check that the line has the chosen columns, and no others unless columns are named."""
         count = len(self.cells)
-        if count <= max(chosen) or (names is None and count != len(chosen)):
+        if count <= max(indices) or (names is None and count != len(indices)):
             columns = "1 column" if count == 1 else f"{count} columns"
             raise _FileError(f"has {columns} in line {self.line}")
 
@@ -211,20 +211,20 @@ def _choose_columns(
         if len(column_names) > 2:
             what = f"has {len(column_names)} columns in line {heading.line}"
             raise _FileError(what, "name two of them")
-        chosen = [0, 1]
+        indices = [0, 1]
     else:
-        wanted = [_split_heading(name)[0] for name in names]
-        for name in wanted:
+        bare_names = [_split_heading(name)[0] for name in names]
+        for name in bare_names:
             if (count := column_names.count(name)) != 1:
                 what = f"has {count} columns {shorten(name)!r} in line {heading.line}"
                 raise _FileError(what, "name columns that it has once")
-        chosen = [column_names.index(name) for name in wanted]
+        indices = [column_names.index(name) for name in bare_names]
     for row in headings:
-        row.check_columns(chosen, names)
+        row.check_columns(indices, names)
     of_units = headings[-1]
-    units = [cells[i][1] if of_units is heading else of_units.cells[i] for i in chosen]
+    units = [cells[i][1] if of_units is heading else of_units.cells[i] for i in indices]
     scales = []
-    for i, unit, column in zip(chosen, units, columns, strict=True):
+    for i, unit, column in zip(indices, units, columns, strict=True):
         try:
             scales.append(1.0 if unit is None else column.scale(unit.strip("[]()")))
         except ValueError as error:
@@ -233,7 +233,7 @@ def _choose_columns(
                 f"give {column.unit} or another unit of the kind",
             ) from None
     has_unit = columns[1].factor and any(Unit.of(units[1] or "1").dimension)
-    return chosen, scales, has_unit
+    return indices, scales, has_unit
 
 
 def _split_heading(cell: str) -> tuple[str, str | None]:

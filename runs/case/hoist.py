@@ -78,7 +78,7 @@ class HoistTable(TravelTable):
 
     @property
     def rope_stiffness(self) -> float:
-        """The stiffness in N/m of all falls; the table is checked."""
+        """The stiffness in N/m of all falls together, if the data are complete."""
         if self.stiffness is not None:
             return self.stiffness
         assert self.area

@@ -67,15 +67,15 @@ def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
         exponent: exponent of the contact law if the table has none.
     """
     if isinstance(table, CaseTable):
-        declared = table.declared_units(key)
+        units = table.declared_units(key)
     else:
-        declared = declared_units(fields_of(type(table))[key])
+        units = declared_units(fields_of(type(table))[key])
     n = getattr(table, "exponent", None)
     if hasattr(table, "exponent_of"):
         n = table.exponent_of(key)
     n = n or exponent
     powers = (("^(n+2)", f"^{n + 2.0:g}"), ("^n", f"^{n:g}"))
-    return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in declared)
+    return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in units)
 
 
 def validation_error(

@@ -205,11 +205,11 @@ def _unknown_key(location: Sequence[int | str]) -> str:
     heading = next((step for step in reversed(location[:-1]) if isinstance(step, str)), "")
     if (heading, key) in _ADVICE:
         return f"unknown key; {_ADVICE[heading, key]}"
-    known = _SYNONYMS.get(key.lower(), "")
-    if "." in known:
-        return f"unknown key; use {known}"
-    if known in keys:
-        return f"unknown key; use {known}, {describe(fields_of(table)[names_of(table)[known]])}"
+    synonym = _SYNONYMS.get(key.lower(), "")
+    if "." in synonym:
+        return f"unknown key; use {synonym}"
+    if synonym in keys:
+        return f"unknown key; use {synonym}, {describe(fields_of(table)[names_of(table)[synonym]])}"
     near = [one for one in keys if sorted(one.split("_")) == sorted(key.split("_"))]
     near = near or get_close_matches(shorten(key), keys, n=1)
     if near:

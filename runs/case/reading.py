@@ -124,7 +124,7 @@ def select(
         BadInput: a name is unknown, a mesh size or number of modes is invalid or not used, or an
             ensemble has a single member or no variation.
     """
-    chosen = case.models
+    subset = case.models
     if models is not None:
         model_names = [model.name for model in case.models]
         for name in models:
@@ -134,7 +134,7 @@ def select(
                     "--models",
                     f"{name!r} is not a model of the case; give {choices(model_names)}",
                 )
-        chosen = tuple(model for model in case.models if model.name in models)
+        subset = tuple(model for model in case.models if model.name in models)
     if mesh_size is not None:
         if not (np.isfinite(mesh_size) and mesh_size > 0.0):
             raise BadInput(
@@ -144,15 +144,15 @@ def select(
             check_mesh_size("--mesh-size", mesh_size, build_boom(case))
         except BoomError as error:
             raise BadInput.from_boom(path, error) from None
-        chosen = _with_shells(
-            chosen, path, "--mesh-size", {"mesh_size": mesh_size, "contact_tolerance": "any"}
+        subset = _with_shells(
+            subset, path, "--mesh-size", {"mesh_size": mesh_size, "contact_tolerance": "any"}
         )
     if modes is not None:
         if modes != "auto" and not (_WHOLE.fullmatch(modes) and int(modes) > 0):
             what = f"must be a whole number above 0, or auto, got {modes!r}"
             raise BadInput(path, "--modes", what)
         number = "auto" if modes == "auto" else int(modes)
-        chosen = _with_shells(chosen, path, "--modes", {"modes": number})
+        subset = _with_shells(subset, path, "--modes", {"modes": number})
     ensemble = case.ensemble
     if members is not None:
         if members == 1 or not 0 <= members <= MOST_MEMBERS:
@@ -165,7 +165,7 @@ def select(
         ensemble = (
             EnsembleTable.model_validate({**ensemble_keys, "members": members}) if members else None
         )
-    selected = case.model_copy(update={"models": chosen, "ensemble": ensemble})
+    selected = case.model_copy(update={"models": subset, "ensemble": ensemble})
     if members:
         try:
             check_ensemble_data(selected, build_boom(selected))
@@ -243,8 +243,8 @@ def _law(path: str, key: str, table: ContactTable, system: System) -> dict[str, 
     if table.force_file is None:
         return {}
     key = f"{key}.force_file"
-    wanted = Column("penetration", system.unit("m")), Column("force", system.unit("N"))
-    points = read_pairs(path, key, table.force_file, table.force_columns, wanted).values
+    columns = Column("penetration", system.unit("m")), Column("force", system.unit("N"))
+    points = read_pairs(path, key, table.force_file, table.force_columns, columns).values
     try:
         table_law(points)
     except ValueError as error:
@@ -259,8 +259,8 @@ def _history(path: str, key: str, table: HistoryTable, system: System) -> dict[s
         return {}
     _check_file_alone(path, key, table.table)
     (unit,) = units_of(table, table.amount)
-    wanted = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
-    read = read_pairs(path, f"{key}.file", table.file, table.columns, wanted)
+    columns = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
+    read = read_pairs(path, f"{key}.file", table.file, table.columns, columns)
     if not read.has_unit and table.amount not in table.model_fields_set:
         what = describe(type(table).model_fields[table.amount])
         raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
@@ -276,8 +276,8 @@ def _travel(path: str, key: str, travel: TravelTable, system: System) -> dict[st
         return {}
     _check_file_alone(path, key, travel.table)
     _, unit = units_of(travel, "table")
-    wanted = Column("time", system.unit("s")), Column("length", system.unit(unit))
-    read = read_pairs(path, f"{key}.file", travel.file, travel.columns, wanted).values
+    columns = Column("time", system.unit("s")), Column("length", system.unit(unit))
+    read = read_pairs(path, f"{key}.file", travel.file, travel.columns, columns).values
     return {"file": None, "columns": None, "table": read}
 
 

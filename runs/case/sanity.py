@@ -60,9 +60,9 @@ class UsualRange(NamedTuple):
         displayed = system.of(self.value, self.unit)
         text = f"{self.what} is {displayed:.5g}{label}, usual is {' '.join(limits)}{label}"
         for name in _LIKELY_UNITS.get(self.unit, ()):
-            likely = displayed * Unit.of(name).factor
-            if self.least <= likely <= self.most:
-                return f"{text}; if it is in {name}, give {system.of(likely, self.unit):.5g}{label}"
+            value = displayed * Unit.of(name).factor
+            if self.least <= value <= self.most:
+                return f"{text}; if it is in {name}, give {system.of(value, self.unit):.5g}{label}"
         return f"{text}; check the number and its unit"
 
 

@@ -82,7 +82,7 @@ _RAISED = str.maketrans("234", "²³⁴")
 
 @dataclass(frozen=True, slots=True)
 class System:
-    """A coherent system of units."""
+    """A coherent system of units, such as SI, or millimetre, tonne and second."""
 
     name: SystemName = "SI"
 

@@ -123,7 +123,7 @@ def scratch_folder(path: Path) -> Iterator[Path]:
     path = resolve_path(path)
     part = path.with_name(f"{_hidden(path)}{token_hex(4)}")
     # Other processes cannot find the folder before it is locked.
-    unlocked = path.with_name(f".{part.name}")
+    new_folder = path.with_name(f".{part.name}")
     try:
         if not path.parent.exists():
             path.parent.mkdir(parents=True, exist_ok=True)
@@ -133,21 +133,21 @@ def scratch_folder(path: Path) -> Iterator[Path]:
                 fcntl.flock(manifest, fcntl.LOCK_EX | fcntl.LOCK_NB)
                 shutil.rmtree(old, ignore_errors=True)
         with ExitStack() as stack:
-            for scratch in (unlocked, part):
+            for scratch in (new_folder, part):
                 remove = partial(shutil.rmtree, scratch, ignore_errors=True)
                 stack.enter_context(when_interrupted(remove))
                 stack.callback(remove)
-            unlocked.mkdir()
-            manifest = stack.enter_context((unlocked / MANIFEST).open("a", encoding="utf-8"))
+            new_folder.mkdir()
+            manifest = stack.enter_context((new_folder / MANIFEST).open("a", encoding="utf-8"))
             with suppress(OSError):
                 fcntl.flock(manifest, fcntl.LOCK_EX)
-            unlocked.rename(part)
+            new_folder.rename(part)
             yield part
     except OSError as error:
         # The error names the final path: the error of a full disk names no path, and the user does
         # not know hidden paths.
         place = os.path.abspath(error.filename or path)
-        for scratch in (unlocked, part):
+        for scratch in (new_folder, part):
             place = place.replace(str(scratch), str(path))
         why = error.strerror or str(error)
         raise OSError(error.errno, why, place.removeprefix(f"{Path.cwd()}/")) from error

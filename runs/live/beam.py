@@ -106,7 +106,7 @@ def beam_results(
         "utilisation": utilisation and f"At rest: {utilisation}",
         "cautions": proportion_cautions(case, boom),
         "boom": boom_figure(case, boom, farthest),
-        "forces": _plain(chart_along({"": rest_lines(farthest, "", theme.PALETTE[0])})),
+        "forces": _plotly_figure(chart_along({"": rest_lines(farthest, "", theme.PALETTE[0])})),
     }
     check_current()
     plan = MotionPlan.of(built.system, case, model)
@@ -147,7 +147,7 @@ def _tip_chart(trajectory: Trajectory) -> Any:
         for k, name in enumerate(("tip", "tip_lateral"))
         if name in trajectory.data
     ]
-    return _plain(Chart(trajectory.time, "tip deflection (mm)", curves))
+    return _plotly_figure(Chart(trajectory.time, "tip deflection (mm)", curves))
 
 
 def _results(
@@ -170,7 +170,7 @@ def _fibres(loaded: LoadedModel, equilibria: Sequence[Any]) -> Iterator[FibreStr
         yield largest_stresses(segment, fibres, curves, curves, times)[0]
 
 
-def _plain(chart: Chart) -> Any:
+def _plotly_figure(chart: Chart) -> Any:
     """Return a chart as JSON values for plotly, without a legend if it has only one curve."""
     figure = chart.plain
     names = {trace["name"] for trace in figure["data"]}

@@ -61,7 +61,7 @@ _FIRST = {
 }
 
 # Tables whose numbers the page does not change. The page has its own beam as model.
-_WITHOUT = (
+_EXCLUDED = (
     "ensemble", "model", "title", "units", "shown_units", "load_case", "combination",
     "spectrum",
 )  # fmt: skip
@@ -119,7 +119,7 @@ class Draft:
     @cached_property
     def _numbers(self) -> Mapping[str, tuple[Place, float]]:
         """The place and the value in SI units of each number that the page can edit, by key."""
-        tables = {name: value for name, value in self._tables.items() if name not in _WITHOUT}
+        tables = {name: value for name, value in self._tables.items() if name not in _EXCLUDED}
         return {
             place.name: (
                 replace(place, size=self.case.system.size(self._unit(place) or "1")),

@@ -114,7 +114,7 @@ class LivePage:
 
     @property
     def answers(self) -> dict[str, Callable[[dict[str, Any]], Generator[Any]]]:
-        """The function that answers each kind of request, by the last part of its path."""
+        """The functions that answer requests, by the last part of the path."""
         return {"beam": self.beam, "control": self.control, "case": self.case, "shell": self.shell}
 
     def lines(self, path: str, request: dict[str, Any]) -> Generator[bytes]:
@@ -128,16 +128,16 @@ class LivePage:
         except Superseded:
             return
         except BadInput as error:
-            yield _refusal(error.key, error.what)
+            yield _error_line(error.key, error.what)
         except NUMERICAL_ERRORS as error:
-            yield _refusal("", failure_reason(error))
+            yield _error_line("", failure_reason(error))
         except OSError as error:
-            yield _refusal("", f"a file cannot be used ({error.strerror or error})")
+            yield _error_line("", f"a file cannot be used ({error.strerror or error})")
         except (KeyError, TypeError, ValueError) as error:
-            yield _refusal("", f"the request is not understood ({error})")
+            yield _error_line("", f"the request is not understood ({error})")
 
 
-def _refusal(key: str, what: str) -> bytes:
+def _error_line(key: str, what: str) -> bytes:
     return json.dumps({"stage": "refused", "key": key, "what": what}).encode() + b"\n"
 
 

@@ -143,13 +143,13 @@ def _s3(run: RunQuery) -> Finding:
     cutoff = run.slow_below()
     distances = [peak_distances(member, run.time, cutoff) for member in curves]
     early = [
-        apart[time <= CONFORMITY].max()
-        for time, apart in distances
+        diffs[time <= CONFORMITY].max()
+        for time, diffs in distances
         if time.min(initial=np.inf) <= CONFORMITY
     ]
     late = [
-        apart[time > CONFORMITY].max()
-        for time, apart in distances
+        diffs[time > CONFORMITY].max()
+        for time, diffs in distances
         if time.max(initial=0.0) > CONFORMITY
     ]
     if not early:
@@ -158,7 +158,7 @@ def _s3(run: RunQuery) -> Finding:
         raise MissingData(f"No member has a peak after {CONFORMITY:g} s.")
     conform, conform_margin = _share(np.array(early) <= DIVERGENCE)
     stratify, stratify_margin = _share(np.array(late) > DIVERGENCE)
-    divergence = [float(time[apart > DIVERGENCE].min(initial=np.inf)) for time, apart in distances]
+    divergence = [float(time[diffs > DIVERGENCE].min(initial=np.inf)) for time, diffs in distances]
     median = sorted(divergence)[len(divergence) // 2]
     return Finding(
         _all_of(_above(conform, MOST, conform_margin), _above(stratify, MOST, stratify_margin)),
@@ -265,14 +265,14 @@ def _s7(run: RunQuery) -> Finding:
     run.last_until(INTERVAL)
     models = run.with_play()
     within_interval = run.time <= CONFORMITY
-    apart = {place: _largest_differences(run, models, place) for place in ("tip", "head")}
-    conform = float(apart["tip"][within_interval].max())
-    later = float(apart["tip"][~within_interval].max())
+    differences = {place: _largest_differences(run, models, place) for place in ("tip", "head")}
+    conform = float(differences["tip"][within_interval].max())
+    later = float(differences["tip"][~within_interval].max())
     without = run.bonded()
     bonded = min(
         float(_largest_differences(run, [model, without], "tip").max()) for model in models
     )
-    head = float(apart["head"].max())
+    head = float(differences["head"].max())
     return Finding(
         _all_of(
             _above(DIVERGENCE, conform, 0.0),
@@ -423,7 +423,7 @@ def _share(mask: Mask) -> tuple[float, float]:
 
 
 def _largest_differences(run: RunQuery, models: Sequence[Model], place: str) -> Array:
-    """Return the largest difference of any two models over the largest range (num_times,)."""
+    """Return the largest differences (num_times,) of any two models, over the largest range."""
     curves = np.array([run.curve(model, place) for model in models])
     return np.asarray(np.ptp(curves, axis=0) / max(map(_range, curves)))
 

@@ -76,11 +76,11 @@ def message(text: str) -> str:
 def shorten(text: str, longest: int = LONGEST_PART) -> str:
     """Return a text with control characters escaped, and without its middle if it is too long."""
     # Escaping never shortens a text, so that ``longest`` characters of each end suffice.
-    safe = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])
-    if len(safe) <= longest:
-        return safe
+    escaped = printable(text if len(text) <= 2 * longest else text[:longest] + text[-longest:])
+    if len(escaped) <= longest:
+        return escaped
     half = (longest - len(_GAP)) // 2
-    return safe[:half] + _GAP + safe[-half:]
+    return escaped[:half] + _GAP + escaped[-half:]
 
 
 def printable(text: str) -> str:

@@ -35,7 +35,7 @@ Setting = tuple[Variation, float]
 # Inferred plates of each segment; None if the case gives them or needs none.
 Plates = list[SectionTable | None]
 
-_WHOSE_BOXES = " (the boxes are those that the case infers with its own play)"
+_BOX_REMARK = " (the boxes are those that the case infers with its own play)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,8 +209,8 @@ def _check_point(file: str, label: str, case: Case, inferred: bool = False) -> C
     try:
         case_file.check(case, file)
     except BadInput as fault:
-        whose = _WHOSE_BOXES if fault.key.endswith("play") and inferred else ""
-        raise BadInput(file, f"--vary {label}", f"{fault.key}: {fault.what}{whose}") from None
+        remark = _BOX_REMARK if fault.key.endswith("play") and inferred else ""
+        raise BadInput(file, f"--vary {label}", f"{fault.key}: {fault.what}{remark}") from None
     return case
 
 

@@ -41,7 +41,7 @@ class VibrationCurve(NamedTuple):
 
 
 def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
-    """Return the curves by model; empty unless the sweep varies one key, a telescoping speed.
+    """Return the curves by model; empty if the sweep does not vary the telescoping speed alone.
 
     Args:
         data: dataset of :func:`runs.sweep.output.gather`.

@@ -104,7 +104,7 @@ def write(data: pd.DataFrame, folder: Path) -> None:
 
 
 def print_influences(
-    data: pd.DataFrame, case: Case, refused: Sequence[str], console: Console
+    data: pd.DataFrame, case: Case, invalid_keys: Sequence[str], console: Console
 ) -> None:
     """Print the table of the keys with the largest influence."""
     top = data.head(MOST_ROWS)
@@ -114,7 +114,7 @@ def print_influences(
         for one in QUANTITIES
         if one.name in SHOWN and one.name in top
     ]
-    notes = [f"Refused with 1 % more or less: {join_words(refused)}."] if refused else []
+    notes = [f"Refused with 1 % more or less: {join_words(invalid_keys)}."] if invalid_keys else []
     if len(data) > len(top):
         notes.append(f"{len(data) - len(top)} more numbers are in {CSV}.")
     title = f"Change of results in % by 1 % of each number: {case.models[0].name}"

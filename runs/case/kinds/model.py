@@ -96,7 +96,7 @@ class BuildContext:
 
 @dataclass(frozen=True, slots=True)
 class BuiltModel:
-    """A built model, before time integration."""
+    """The gap system of a model, with data for estimates and results."""
 
     system: GapSystem  #: gap system of all segments
     num_dofs: int  #: number of degrees of freedom before any reduction
@@ -227,7 +227,7 @@ class ModelTable(CaseTable):
 
     @abstractmethod
     def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
-        """Return the built model. All ranks must call it for a meshed model.
+        """Return the gap system of the model with further data. For a shell all ranks must call it.
 
         Args:
             model_boom: the boom with the contact laws of the model.
