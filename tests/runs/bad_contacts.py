@@ -11,7 +11,7 @@ CONTACTS = [
         "friction = 0.2\nnormal_forces = [4500.0]":
             "joint[1].normal_forces: must have one number for each of the 2 stations, got 1",
         "lateral_play = 0.01\nlateral_exponent = 1.5":
-            "joint[1].lateral_stiffness: missing; it is the contact stiffness to the sides in "
+            "joint[1].lateral_stiffness: missing; it is the lateral contact stiffness in "
             "N/m^n; the same unless given",
         "friction = -0.2": "joint[1].friction: must be a number not less than 0, got -0.2",
         "restitution = { coefficient = 1.2, speed = 0.1 }":
