@@ -84,6 +84,16 @@ def test_files_and_studies_exist(page: Path) -> None:
     assert {name for names in studies for name in names.split()} <= {*STUDIES}
 
 
+def test_names_of_the_recipes_exist() -> None:
+    """Reference: the words of the code."""
+    recipes = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
+    names = set(re.findall(r"`(?:\w+\.)*(\w*[A-Z_]\w*)(?:\(\w+\))?`", recipes))
+    packages = "dynamics", "geometry", "beam_model", "shell_model", "runs", "studies"
+    code = [path.read_text("utf-8") for room in packages for path in (ROOT / room).rglob("*.py")]
+    assert len(names) > 40
+    assert names <= {word for text in code for word in re.findall(r"\w+", text)}
+
+
 Modules = Callable[[str], ModuleType]
 
 
