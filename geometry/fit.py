@@ -143,7 +143,7 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
         if SIDES[pad.side][0] not in boom.directions:
             raise BoomError(
                 f"{where}.pads[{number}].side",
-                "the boom is flat, and nothing presses to the sides; leave the pad out, or give "
+                "the boom is flat, and nothing presses laterally; leave the pad out, or give "
                 "the joints lateral_play",
             )
         _check_pad(f"{where}.pads[{number}]", joint, pad, boom)

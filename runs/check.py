@@ -244,7 +244,7 @@ def _joints(case: Case, boom: Boom) -> Table:
             f"{inner.name} in {outer.name}",
             f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
             ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
-            "bonded" if joint.bonded else ", ".join(_clearances(joint)),
+            "bonded" if joint.bonded else "\n".join(_clearances(joint)),
             free,
             _friction(joint),
         )
@@ -262,7 +262,7 @@ def _clearances(joint: Joint) -> Iterator[str]:
             return
         both = [1e3 * clearance for clearance in joint.clearances(direction)]
         parts = [f"{one:g} {name}" for one, name in zip(both, names, strict=True)]
-        text = f"± {both[0]:g}" + (", lateral" if direction == "y" else "")
+        text = ("lateral " if direction == "y" else "") + f"± {both[0]:g}"
         yield text if both[0] == both[1] else ", ".join(parts)
 
 

@@ -19,7 +19,13 @@ from runs.case.build import build_boom
 from runs.case.combinations import CombinedCase, combined_cases
 from runs.case.schema import Case
 from runs.case.units import System
-from runs.pipeline.largest_loads import BeamStates, StaticExtreme, beam_note, in_units
+from runs.pipeline.largest_loads import (
+    BeamStates,
+    StaticExtreme,
+    beam_note,
+    in_units,
+    least_of_units,
+)
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import WallStress
 from runs.pipeline.wall_buckling import WallBuckling
@@ -39,6 +45,8 @@ _KINDS = {
     "cylinder force": "cylinder\nforce",
     "foot": "foot pin\nreaction",
 }
+# Titles of kinds in the envelope, other than their names.
+_TITLES = {"stress": "bending stress", "foot": "foot pin reaction"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,14 +146,12 @@ def combination_tables(
 
 def _without_round_off(results: Sequence[CombinationResult]) -> list[CombinationResult]:
     """Return results with 0 in place of round-off, relative to the largest result of a unit."""
-    most: dict[str, float] = {}
-    for one in (one for result in results for one in result.extremes):
-        most[one.unit] = max(abs(one.largest), most.get(one.unit, 0.0))
+    least = least_of_units(one for result in results for one in result.extremes)
     return [
         replace(
             result,
             extremes=[
-                one._replace(largest=without_round_off([one.largest], most[one.unit])[0])
+                one._replace(largest=without_round_off([one.largest], least[one.unit])[0])
                 for one in result.extremes
             ],
         )
@@ -159,9 +165,9 @@ def _marked(one: StaticExtreme, most: float, system: System) -> str:
 
 
 def _title(name: str) -> str:
-    """Return the name of a result with the heading of its kind: ``pad pressure, fly``."""
+    """Return the name of a result with the title of its kind: ``bending stress, fly``."""
     kind, comma, part = name.partition(", ")
-    return f"{_KINDS.get(kind, kind)}{comma}{part}".replace("\n", " ")
+    return f"{_TITLES.get(kind, kind)}{comma}{part}"
 
 
 def _envelope(results: Sequence[CombinationResult], system: System) -> Table:

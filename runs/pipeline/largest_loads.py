@@ -33,6 +33,8 @@ from runs.report.tables import Column, Table
 
 # Elements of the longest segment. The error of stresses under a uniform load is below 0.1 %.
 _ELEMENTS = 20
+# Fraction of the largest result of a unit that is displayed as 0.
+_NEGLIGIBLE = 1.0e-5
 
 
 class StaticExtreme(NamedTuple):
@@ -156,7 +158,7 @@ class BeamStates(NamedTuple):
             stress = abs(fibre.stress)
             used = Utilisation("outer fibre", segment.name, fibre.x, stress, fibre.utilisation)
             name = f"stress, {segment.name}"
-            what = f"bending {name} at {system.text(fibre.x, 'm', 5)}"
+            what = f"{name} at {system.text(fibre.x, 'm', 5)}"
             initial = fibre.at_rest or 0.0
             extremes.append(StaticExtreme(name, what, "Pa", initial, stress, fibre.time, used))
         extremes += self._at_stations(system)
@@ -214,9 +216,7 @@ class BeamStates(NamedTuple):
                 Utilisation("pad", part, load.x, load.pressure or 0.0, load.utilisation)
                 for load in loads
             ]
-            yield _static_extreme(
-                f"pad, {name}", f"pad pressure at {where}", "Pa", rests, pressures, used
-            )
+            yield _static_extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
 
 
 def _static_extreme(
@@ -241,14 +241,12 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         extremes: the extremes of this boom.
     """
     used = [one.utilisation.value if one.utilisation else None for one in extremes]
-    most: dict[str, float] = {}
-    for one in extremes:
-        most[one.unit] = max(abs(one.largest), most.get(one.unit, 0.0))
+    least = least_of_units(extremes)
 
     def shown(values: Iterable[float]) -> list[str]:
         pairs = zip(values, extremes, strict=True)
         return [
-            in_units(without_round_off([value], most[one.unit])[0], one.unit, case.system)
+            in_units(without_round_off([value], least[one.unit])[0], one.unit, case.system)
             for value, one in pairs
         ]
 
@@ -269,10 +267,18 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         more.append("Local plate stresses are not included; a run with a shell has them.")
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
     kinds = (
-        "Bending stresses are axial stresses in outer fibres. Contact forces act on the outer "
+        "Stresses are bending stresses, axial in outer fibres. Contact forces act on the outer "
         "segment, upwards where positive."
     )
     return Table(title, columns, [beam_note(boom), kinds, *more])
+
+
+def least_of_units(extremes: Iterable[StaticExtreme]) -> dict[str, float]:
+    """Return for each unit the value below which results of this unit are displayed as 0."""
+    least: dict[str, float] = {}
+    for one in extremes:
+        least[one.unit] = max(_NEGLIGIBLE * abs(one.largest), least.get(one.unit, 0.0))
+    return least
 
 
 def beam_note(boom: Boom) -> str:

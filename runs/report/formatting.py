@@ -47,10 +47,10 @@ def amount(value: float, unit: str) -> str:
     return f"{number(round(factor * value, _DECIMALS))} {name}".strip()
 
 
-def without_round_off(values: Sequence[float], most: float | None = None) -> list[float]:
-    """Return values with 0 in place of round-off relative to ``most``, or else to the largest."""
-    most = max(map(abs, values), default=0.0) if most is None else most
-    return [value if abs(value) > ROUND_OFF * most else 0.0 for value in values]
+def without_round_off(values: Sequence[float], least: float | None = None) -> list[float]:
+    """Return values with 0 in place of those below ``least``, 1e-6 of the largest unless given."""
+    least = ROUND_OFF * max(map(abs, values), default=0.0) if least is None else least
+    return [value if abs(value) > least else 0.0 for value in values]
 
 
 def milli(value: float, digits: int = 4) -> str:

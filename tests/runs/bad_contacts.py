@@ -62,7 +62,7 @@ CONTACTS = [
         "pads = [{ side = 'below', length = 0.1, width = 0.06, thickness = 0.02 }]":
             "joint[1].pads: none is above; give each side one at least",
         "pads = [{ side = 'left', length = 0.1, width = 0.06, thickness = 0.02 }]":
-            "joint[1].pads[1].side: the boom is flat, and nothing presses to the sides; leave "
+            "joint[1].pads[1].side: the boom is flat, and nothing presses laterally; leave "
             "the pad out, or give the joints lateral_play",
         "pads = [{ side = 'above', length = 0.1, width = 0.06, thickness = 0.02 }, { side = "
         "'above', length = 0.1, width = 0.06, thickness = 0.02, offset = 0.04 }, { side = "

@@ -61,8 +61,8 @@ def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
     case = read_case(tmp_path, boom_of(RAMP))
     found = extremes_of(tmp_path, boom_of(RAMP))
     assert [*found] == [
-        "tip", "bending stress, arm at 0 m", "bending stress, fly at 7.9 m", "pad pressure at 6 m",
-        "pad pressure at 8 m",
+        "tip", "stress, arm at 0 m", "stress, fly at 7.9 m", "pad at 6 m",
+        "pad at 8 m",
     ]  # fmt: skip
     for segment, sizes, lever in zip(
         build_boom(case).segments, (ARM, FLY), (14.0, 6.1), strict=True
@@ -74,7 +74,7 @@ def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
         assert one.utilisation.value == pytest.approx(stress / 3e8, rel=1e-6)
         assert (one.initial, one.time) == (pytest.approx(0.0, abs=1.0), 0.1)
     for x, lever in ((6, 6.1), (8, 7.9)):
-        one = found[f"pad pressure at {x} m"]
+        one = found[f"pad at {x} m"]
         # Two pads of 0.2 m x 0.05 m share the force of a side.
         pressure = 0.5 * 2000.0 * lever / 1.8 / 0.01
         assert one.largest == pytest.approx(pressure, rel=1e-6)
@@ -88,13 +88,13 @@ def test_a_uniform_load_bends_between_nodes(tmp_path: Path) -> None:
     (segment,) = (one for one in build_boom(read_case(tmp_path, boom_of(loads))).segments[1:])
     stress = 300.0 * 6.1**2 / 2.0 * 0.183 / segment.second_moment_of_area
     # Within the error q h²/12 of elements of 0.4 m.
-    assert found["bending stress, fly at 7.9 m"].largest == pytest.approx(stress, rel=1e-3)
+    assert found["stress, fly at 7.9 m"].largest == pytest.approx(stress, rel=1e-3)
 
 
 def test_largest_values_of_a_sine_and_a_ramp(tmp_path: Path) -> None:
     """Reference: analytic, the sine at a quarter of its period, and the sum at three quarters."""
     found = extremes_of(tmp_path, boom_of(RAMP + SINE))
-    arm = found["bending stress, arm at 0 m"]
+    arm = found["stress, arm at 0 m"]
     inertia = build_boom(read_case(tmp_path, boom_of(RAMP))).segments[0].second_moment_of_area
     assert arm.time == pytest.approx(0.375)
     moment = 2000.0 * 14.0 + 500.0 * 6.0
@@ -164,7 +164,7 @@ def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
     ]
     table = static_table(case, boom, BeamStates.of(case, boom).extremes(case.system))
     rows = {row[0]: row for row in table.rows}
-    assert rows["pad pressure at 6000 mm"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
+    assert rows["pad at 6000 mm"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
     assert rows["tip"][2].endswith(" mm")
 
 
@@ -178,7 +178,7 @@ def test_statics_name_their_model_and_fit_a_terminal(tmp_path: Path) -> None:
     assert (
         "These are estimates by a Timoshenko beam with the compliance of walls under \n"
         "pads.\n"
-        "Bending stresses are axial stresses in outer fibres. Contact forces act on the \n"
+        "Stresses are bending stresses, axial in outer fibres. Contact forces act on the \n"
         "outer segment, upwards where positive.\n"
         "Local plate stresses are not included; a run with a shell has them."
     ) in shown
