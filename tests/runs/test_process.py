@@ -42,9 +42,7 @@ def test_a_full_disk_is_one_line() -> None:
     )
 
 
-@pytest.mark.parametrize(
-    "line", ["check >&-", "check 2>&- >/dev/null", "check | true", "schema | true"]
-)
+@pytest.mark.parametrize("line", ["check >&-", "check 2>&- >/dev/null", "schema | true"])
 def test_closed_output_pipe_ends_without_an_error(line: str) -> None:
     """The reader of the long schema closes the pipe early."""
     answer = in_a_shell(line)

@@ -94,14 +94,11 @@ def test_the_drilling_tie_does_not_matter_to_boxes() -> None:
     outer, inner = (segment.section for segment in flat_boom().segments)
     box = PlainBox(outer, 10.0)
     ties = (1.0e-4, 1.0e-2, 1.0)
-    for size in (0.5, 0.25):
-        frequencies = np.array([box.free_frequencies(size, 8, tie) for tie in ties])
-        assert (np.ptp(frequencies, axis=0) < 1.0e-3 * frequencies[0]).all()
-        compliances = [
-            box.compliance(size, (0.0, 2.0), 9.0, 0.5 * inner.width, tie) for tie in ties
-        ]
-        assert np.ptp(compliances) < 1.0e-3 * min(compliances)
-        assert compliances[0] > compliances[1] > compliances[2]
+    frequencies = np.array([box.free_frequencies(0.5, 8, tie) for tie in ties])
+    assert (np.ptp(frequencies, axis=0) < 1.0e-3 * frequencies[0]).all()
+    compliances = [box.compliance(0.5, (0.0, 2.0), 9.0, 0.5 * inner.width, tie) for tie in ties]
+    assert np.ptp(compliances) < 1.0e-3 * min(compliances)
+    assert compliances[0] > compliances[1] > compliances[2]
 
 
 # A Z of three walls.

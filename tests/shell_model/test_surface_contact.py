@@ -196,7 +196,7 @@ def compliances(comm: MPI.Comm) -> list[float]:
     cases: list[tuple[ContactLine, Boom]]
     cases = [("surface", flat_boom()), ("near webs", _with_pads(flat_boom()))]
     for line, boom in cases:
-        options = ShellOptions(0.5, line, FEW, krylov=KrylovOptions(moments=1))
+        options = ShellOptions(1.0, line, FEW, krylov=KrylovOptions(moments=1))
         system = reduce_boom(touching(boom, LAW), options, comm).system
         slow = (2.0 * np.pi * 10.0) ** 2
         found += (system.rows**2 / (system.omega2 + slow)).sum(axis=1).tolist()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A sample of each campaign."""
+"""A sample of each campaign; tests/system/test_signals.py ends runs of shells by SIGTERM."""
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -14,7 +14,6 @@ from tests.torture.shared_cache import Row
 pytestmark = pytest.mark.slow
 
 BEAM = "--models", "beam-fe-bonded"
-COARSE = "--mesh-size", "0.5", "--no-pictures"
 
 
 @pytest.mark.parametrize(
@@ -23,7 +22,6 @@ COARSE = "--mesh-size", "0.5", "--no-pictures"
         pytest.param(lambda folder: flipped_bits.rows(folder, 3), 2, id="flipped bits"),
         pytest.param(lambda folder: full_disk.rows(folder, 2), 6, id="full disk"),
         pytest.param(lambda folder: kills.killed(folder, 1, kills.COMMANDS[:1]), 1, id="killed"),
-        pytest.param(lambda folder: [kills.terminated(folder, 1, COARSE)], 1, id="terminated"),
         pytest.param(lambda folder: [shared_cache.one_folder(folder, 1, BEAM)], 1, id="one folder"),
     ],
 )
