@@ -190,7 +190,7 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
     """
     from dynamics.equilibrium import equilibrium_at
     from shell_model.boom_shell import assemble_boom
-    from shell_model.buckling import TOUCHING, rigid, sideways
+    from shell_model.buckling import TOUCHING, lateral_springs, rigid_stiffness
     from shell_model.segment.solver import times
 
     model = select_model(case, file)
@@ -221,7 +221,9 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
             what = f"contact that presses with {force:.6g} N"
             back = slope * gap - force
             springs.append(SpringRow(what, parts(contact.operator), slope, back))
-    springs += [SpringRow("tie", parts(tie), rigid(shells[min(tie)])) for tie in full.ties]
+    springs += [
+        SpringRow("tie", parts(tie), rigid_stiffness(shells[min(tie)])) for tie in full.ties
+    ]
     springs += [
         SpringRow(line.force, {line.segment: line.push}, line.stiffness) for line in full.lines
     ]
@@ -233,7 +235,9 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         loads[n] = loads[n] + moment
     lines = model.lines(boom, built)
     for n, shell in enumerate(shells):
-        springs += [SpringRow("held sideways", {n: row}, k) for row, k in sideways(boom, n, shell)]
+        springs += [
+            SpringRow("held sideways", {n: row}, k) for row, k in lateral_springs(boom, n, shell)
+        ]
         if shell.geometric is not None:
             x, rows = dict(lines[n].deflections)["z"]
             axis_deflection = np.zeros(shell.free.size)
