@@ -285,8 +285,8 @@ class _CoupledGroup:
         )
         # Rigid motions that satisfy all constraints and do not strain cylinders are rigid modes.
         rows = [*ties, *(line.push for line in self.springs)]
-        held = np.array(rows).reshape(-1, len(rigid)) @ rigid
-        values = np.linalg.svd(held, compute_uv=False) if held.size else np.zeros(0)
+        restraints = np.array(rows).reshape(-1, len(rigid)) @ rigid
+        values = np.linalg.svd(restraints, compute_uv=False) if restraints.size else np.zeros(0)
         rigid_modes = rigid.shape[1] - int((values > ROUND_OFF * values.max(initial=0.0)).sum())
         stiffness, mass = self.stiffness(), block_diag(*(c.mass for c in self.components))
         free = _kernel(ties, len(mass))

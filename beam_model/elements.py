@@ -82,26 +82,26 @@ class PrismaticElement:
 
     def deflection(self, xi: Array) -> Array:
         h, phi, (one, square, cube) = self.h, self.phi, _powers(xi)
-        sheared = 0.5 * phi * (one - square)
+        shear_part = 0.5 * phi * (one - square)
         w = np.array(
             [
                 1.0 - 3.0 * square + 2.0 * cube + phi * (1.0 - one),
-                h * (one - 2.0 * square + cube + sheared),
+                h * (one - 2.0 * square + cube + shear_part),
                 3.0 * square - 2.0 * cube + phi * one,
-                h * (-square + cube - sheared),
+                h * (-square + cube - shear_part),
             ]
         )
         return w / (1.0 + phi)
 
     def slope(self, xi: Array) -> Array:
         h, phi, (one, square, _) = self.h, self.phi, _powers(xi)
-        sheared = 0.5 * phi * (1.0 - 2.0 * one)
+        shear_part = 0.5 * phi * (1.0 - 2.0 * one)
         slope = np.array(
             [
                 (-6.0 * one + 6.0 * square - phi) / h,
-                1.0 - 4.0 * one + 3.0 * square + sheared,
+                1.0 - 4.0 * one + 3.0 * square + shear_part,
                 (6.0 * one - 6.0 * square + phi) / h,
-                -2.0 * one + 3.0 * square - sheared,
+                -2.0 * one + 3.0 * square - shear_part,
             ]
         )
         return slope / (1.0 + phi)
@@ -164,15 +164,15 @@ class TaperedElement:
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
         moments = np.array([np.ones_like(xi), xi])
-        sheared = np.array([[0.0, 0.0], [0.0, (self.shear(xi) / self.h**2) @ weights]])
-        flexibility = products(moments, self.bending(xi) * weights) + sheared
-        moved = self._moments
-        return np.asarray(moved.T @ flexibility @ moved)
+        shear_flexibility = np.array([[0.0, 0.0], [0.0, (self.shear(xi) / self.h**2) @ weights]])
+        flexibility = products(moments, self.bending(xi) * weights) + shear_flexibility
+        unit_moments = self._moments
+        return np.asarray(unit_moments.T @ flexibility @ unit_moments)
 
     def _shapes(self, rigid: tuple[float | Array, ...], bent: _Pair, xi: Array) -> Array:
         """Return shape functions (4, num_points): rigid motion of the first node, plus bending."""
-        moved = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
-        return np.asarray(moved + self._moments.T @ np.array([one(xi) for one in bent]))
+        rigid_motion = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
+        return np.asarray(rigid_motion + self._moments.T @ np.array([one(xi) for one in bent]))
 
     @cached_property
     def _of_moments(self) -> tuple[_Pair, _Pair, _Pair]:
@@ -186,8 +186,8 @@ class TaperedElement:
         """The factors (2, 4) of the moments 1 and ξ for unit displacements of the nodes."""
         rotations, _, deflections = self._of_moments
         ends = np.array([[p(1.0) for p in pair] for pair in (rotations, deflections)])
-        moved = np.array([[0.0, -1.0, 0.0, 1.0], [-1.0, -self.h, 1.0, 0.0]])
-        return np.asarray(np.linalg.solve(ends, moved))
+        displacements = np.array([[0.0, -1.0, 0.0, 1.0], [-1.0, -self.h, 1.0, 0.0]])
+        return np.asarray(np.linalg.solve(ends, displacements))
 
 
 def _powers(xi: Array) -> tuple[Any, Any, Any]:

@@ -94,27 +94,27 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         dofs = slice(2 * k, 2 * k + 4)
         weight, w, slope, beta, stiff = quadrature(here)
         x = nodes[k] + h * GAUSS[0]
-        heavy, turned = (weight * segment.property_ratio(number, x) for number in (_MASS, _ROTARY))
+        masses, inertias = (weight * segment.property_ratio(of, x) for of in (_MASS, _ROTARY))
         stiffness[dofs, dofs] += stiff
-        mass[dofs, dofs] += segment.mass_per_length * products(w, heavy)
-        rotation_load[dofs] += segment.mass_per_length * w @ (heavy * x)
+        mass[dofs, dofs] += segment.mass_per_length * products(w, masses)
+        rotation_load[dofs] += segment.mass_per_length * w @ (masses * x)
         if rotary_inertia:
-            mass[dofs, dofs] += segment.rotary_inertia * products(beta, turned)
-            rotation_load[dofs] += segment.rotary_inertia * beta @ turned
+            mass[dofs, dofs] += segment.rotary_inertia * products(beta, inertias)
+            rotation_load[dofs] += segment.rotary_inertia * beta @ inertias
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
         geometric[dofs, dofs] += products(slope, weight * segment.compression(x))
         unit_load[dofs] += w @ weight
-        inertia_load[dofs] += w @ heavy
+        inertia_load[dofs] += w @ masses
 
-    held = []
+    fixed = []
     for support in segment.supports:
         dof = 2 * _nearest(nodes, support.x)
         if support.stiffness is not None:
             stiffness[dof, dof] += support.stiffness
         else:
-            held.append(dof)
+            fixed.append(dof)
         if support.kind == "clamped":
-            held.append(dof + 1)
+            fixed.append(dof + 1)
         else:
             stiffness[dof + 1, dof + 1] += support.rotation_stiffness or 0.0
     stiffeners = len(segment.stiffener_masses)
@@ -126,7 +126,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         if number < stiffeners:
             rotation_load[dofs] += point.mass * point.x * w[:, 0]
             inertia_load[dofs] += point.mass / segment.mass_per_length * w[:, 0]
-    free = np.setdiff1d(np.arange(num_dofs), held)
+    free = np.setdiff1d(np.arange(num_dofs), fixed)
 
     def read(shapes: str, x: float) -> Array:
         k, h = _element(nodes, x)
@@ -163,14 +163,14 @@ def _twist(segment: Segment, nodes: Array) -> Component:
         dofs = slice(k, k + 2)
         places = nodes[k] + h * np.array([0.0, 0.5, 1.0])
         # Simpson's rule gives the mean flexibility.
-        stiff = 6.0 / (np.array([1.0, 4.0, 1.0]) @ (1.0 / segment.property_ratio(_TORSION, places)))
-        heavy = segment.property_ratio(_POLAR, places)[1]
-        stretched, moved = [[1.0, -1.0], [-1.0, 1.0]], [[2.0, 1.0], [1.0, 2.0]]
-        stiffness[dofs, dofs] += stiff * (twisting_stiffness / h) * np.array(stretched)
-        mass[dofs, dofs] += heavy * (lateral.polar_inertia * h / 6.0) * np.array(moved)
+        ratio = 6.0 / (np.array([1.0, 4.0, 1.0]) @ (1.0 / segment.property_ratio(_TORSION, places)))
+        inertia_ratio = segment.property_ratio(_POLAR, places)[1]
+        unit_stiffness, unit_mass = [[1.0, -1.0], [-1.0, 1.0]], [[2.0, 1.0], [1.0, 2.0]]
+        stiffness[dofs, dofs] += ratio * (twisting_stiffness / h) * np.array(unit_stiffness)
+        mass[dofs, dofs] += inertia_ratio * (lateral.polar_inertia * h / 6.0) * np.array(unit_mass)
         unit_load[dofs] += 0.5 * h
-    held = [_nearest(nodes, support.x) for support in segment.supports]
-    free = np.setdiff1d(np.arange(nodes.size), held)
+    fixed = [_nearest(nodes, support.x) for support in segment.supports]
+    free = np.setdiff1d(np.arange(nodes.size), fixed)
 
     def twist(x: float) -> Array:
         k, h = _element(nodes, x)

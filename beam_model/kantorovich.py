@@ -110,16 +110,16 @@ def kantorovich_bending(
     basis = _Basis(segment, bending_basis(segment, terms, base))
     # The basis as printed also fixes the slope at the first support.
     printed = int(bool(segment.supports) and base == "as printed")
-    bent, heavy, turned = (
+    stiffness_weights, mass_weights, rotary_weights = (
         basis.weights * segment.property_ratio(attrgetter(number), basis.x)
         for number in ("bending_stiffness", "mass_per_length", "rotary_inertia")
     )
-    stiffness = segment.bending_stiffness * products(basis.curvature, bent)
-    mass = segment.mass_per_length * products(basis.value, heavy)
-    rotation_load = segment.mass_per_length * basis.value @ (basis.x * heavy)
+    stiffness = segment.bending_stiffness * products(basis.curvature, stiffness_weights)
+    mass = segment.mass_per_length * products(basis.value, mass_weights)
+    rotation_load = segment.mass_per_length * basis.value @ (basis.x * mass_weights)
     if rotary_inertia:
-        mass += segment.rotary_inertia * products(basis.slope, turned)
-        rotation_load += segment.rotary_inertia * basis.slope @ turned
+        mass += segment.rotary_inertia * products(basis.slope, rotary_weights)
+        rotation_load += segment.rotary_inertia * basis.slope @ rotary_weights
     for support in segment.supports:
         if support.stiffness is not None:
             row = basis.at(support.x)
@@ -130,7 +130,7 @@ def kantorovich_bending(
     for point in (*segment.masses, *segment.stiffener_masses):
         row = basis.at(point.x)
         mass += point.mass * np.outer(row, row)
-    inertia_load = basis.value @ heavy
+    inertia_load = basis.value @ mass_weights
     for point in segment.stiffener_masses:
         row = basis.at(point.x)
         rotation_load += point.mass * point.x * row
@@ -170,13 +170,13 @@ def kantorovich_twist(segment: Segment, terms: int) -> Component:
     conditions = [(support.x, 0) for support in segment.supports]
     basis = _Basis(segment, complete_basis(segment, conditions, terms))
     twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
-    stiff, heavy = (
+    stiffness_weights, mass_weights = (
         basis.weights * segment.property_ratio(attrgetter(f"lateral.{number}"), basis.x)
         for number in ("torsion_constant", "polar_inertia")
     )
     return Component(
-        stiffness=twisting_stiffness * products(basis.slope, stiff),
-        mass=lateral.polar_inertia * products(basis.value, heavy),
+        stiffness=twisting_stiffness * products(basis.slope, stiffness_weights),
+        mass=lateral.polar_inertia * products(basis.value, mass_weights),
         damping=np.zeros((terms, terms)),
         load=np.zeros(terms),
         unit_load=basis.integral,

@@ -45,13 +45,13 @@ def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
 def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Line:
     segment = boom.segments[number]
     # Ends of the segment, and positions of forces.
-    acting = {*segment.ends, *load_places(boom, number), *segment.compression.places}
-    acting |= {held.x for held in segment.supports} | {mass.x for mass in segment.all_masses}
+    places = {*segment.ends, *load_places(boom, number), *segment.compression.places}
+    places |= {one.x for one in segment.supports} | {one.x for one in segment.all_masses}
     # Ends of elements, or of equal pieces between forces.
     breaks = model.components["z"].breaks
     if not breaks.size:
         even = np.linspace(segment.start, segment.end, _PIECES + 1)
-        breaks = np.unique(np.concatenate([even, sorted(acting)]).round(9))
+        breaks = np.unique(np.concatenate([even, sorted(places)]).round(9))
     starts, lengths = breaks[:-1], np.diff(breaks)
     midpoints = 0.5 * (breaks[1:] + breaks[:-1])
     rows: dict[Quantity, Array] = {}
@@ -75,9 +75,9 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
             )
             ends = [1.5 * early - 0.5 * late, 1.5 * late - 0.5 * early]
             rows[moment] = np.stack(ends, axis=1).reshape(2 * starts.size, -1)
-            pressed = segment.compression(midpoints)[:, None]
-            across = _slope(breaks, rows[moment]) - pressed * _slope(breaks, rows[deflection])
-            rows[shear] = _to_ends(breaks, across, acting)
+            compression = segment.compression(midpoints)[:, None]
+            across = _slope(breaks, rows[moment]) - compression * _slope(breaks, rows[deflection])
+            rows[shear] = _to_ends(breaks, across, places)
     if boom.spatial:
         lateral = segment.lateral
         assert lateral is not None
@@ -85,8 +85,8 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
         if model.components["z"].curvature is not None:
             stiffness = segment.material.shear_modulus * lateral.torsion_constant
             local = segment.property_ratio(attrgetter("lateral.torsion_constant"), midpoints)
-            twisted = stiffness * local[:, None] * _slope(breaks, rows["twist"])
-            rows["torque"] = _to_ends(breaks, twisted, acting)
+            torque = stiffness * local[:, None] * _slope(breaks, rows["twist"])
+            rows["torque"] = _to_ends(breaks, torque, places)
     return Line(np.repeat(breaks, 2)[1:-1], rows, paired=True)
 
 
@@ -100,9 +100,9 @@ def _slope(breaks: Array, rows: Array) -> Array:
     return np.asarray((rows[1::2] - rows[::2]) / np.diff(breaks)[:, None])
 
 
-def _to_ends(breaks: Array, means: Array, acting: set[float]) -> Array:
+def _to_ends(breaks: Array, means: Array, places: set[float]) -> Array:
     """Return rows (2 num_pieces, num_modes) at both ends of each piece, from means over pieces."""
-    jumps = [int(np.abs(breaks - x).argmin()) for x in acting]
+    jumps = [int(np.abs(breaks - x).argmin()) for x in places]
     ends = np.repeat(means, 2, axis=0)
     for first, last in pairwise(np.unique(jumps).tolist()):
         if last - first > 1:

@@ -76,8 +76,8 @@ class Elements:
         components = []
         for number, segment in enumerate(self.boom.segments):
             breaks = [*_reaction_places(self.boom, number), *self.boom.stations_of(number)]
-            alone = replace(segment, supports=())
-            model = finite_element_segment(alone, size, breaks, theory, rotary_inertia=False)
+            free_segment = replace(segment, supports=())
+            model = finite_element_segment(free_segment, size, breaks, theory, rotary_inertia=False)
             components.append(model.components["z"])
         return components
 
@@ -183,7 +183,7 @@ def _reactions(
 ) -> list[NodeReaction]:
     """Return the reactions on a segment at all its possible supports."""
     nodes = component.breaks
-    bent = [
+    displacements = [
         row @ position
         for x in nodes
         for row in (modes.displacement(number, x, "z"), modes.rotation(number, x, "z"))
@@ -198,8 +198,8 @@ def _reactions(
         ):
             load += applied_load.history(np.array([time]))[0] * applied_load.push(component.beam)
     stiffness = component.stiffness - component.geometric_stiffness
-    left = (stiffness @ np.array(bent) - load).reshape(-1, 2)
+    residual = (stiffness @ np.array(displacements) - load).reshape(-1, 2)
     return [
-        NodeReaction(number, x, *map(float, left[np.abs(nodes - x).argmin()]))
+        NodeReaction(number, x, *map(float, residual[np.abs(nodes - x).argmin()]))
         for x in sorted(_reaction_places(boom, number))
     ]

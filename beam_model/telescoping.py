@@ -71,11 +71,11 @@ def _travel(
         return rows_at(group.extensions(extension)).evaluate_rows(moving, lambda row: row)
 
     table = RowTable.interpolate(rows, _breaks(boom, models, group))
-    alone = len(group.joints) == 1
-    pressing = moving_axial_forces(boom, models, beams, group.joints[0]) if alone else []
+    is_single = len(group.joints) == 1
+    axial_forces = moving_axial_forces(boom, models, beams, group.joints[0]) if is_single else []
     history = HistorySum(tuple(drive.history for drive in group.drives))
-    against = joint_thrust(boom.segments, boom.joints, group.joints[0]) if alone else 0.0
-    return Travel(history, table, moving, group.suffix, pressing, against)
+    axial_load = joint_thrust(boom.segments, boom.joints, group.joints[0]) if is_single else 0.0
+    return Travel(history, table, moving, group.suffix, axial_forces, axial_load)
 
 
 def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStations) -> list[float]:
@@ -85,13 +85,13 @@ def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStatio
         np.concatenate([c.breaks for c in models[segment].components.values()])
         for segment in (joint.outer, joint.inner)
     )
-    passed = []
+    crossings = []
     if len(group.joints) == 1:
-        passed += [x - inner for x in joint.stations] + [outer - x for x in joint.stations]
+        crossings += [x - inner for x in joint.stations] + [outer - x for x in joint.stations]
     for stop in boom.stops:
         if drives_below(boom.joints, stop.segment) == group.joints:
-            passed += [stop.x - c.breaks for c in models[stop.segment].components.values()]
-    return _extensions_between(boom, group.reach, passed)
+            crossings += [stop.x - c.breaks for c in models[stop.segment].components.values()]
+    return _extensions_between(boom, group.reach, crossings)
 
 
 def _extensions_between(

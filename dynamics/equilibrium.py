@@ -46,9 +46,9 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     Raises:
         NumericsError: neither supports nor contacts resist the load.
     """
-    pressed = [float(law.force(np.zeros(()))) for law in system.laws]
+    shim_forces = [float(law.force(np.zeros(()))) for law in system.laws]
     # Scale of the force of shims at zero displacement.
-    unbalanced_load = load - np.array(pressed) @ system.rows
+    unbalanced_load = load - np.array(shim_forces) @ system.rows
     if not unbalanced_load.any():
         return np.zeros(system.num_modes)
     laws = contact_terms(system.laws)

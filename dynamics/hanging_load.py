@@ -160,18 +160,18 @@ class HangingLoad:
             return np.asarray(self.pendulum.read(time, tip, lateral)[:dimensions] - coordinates)
 
         height, first = coordinates[0], len(system.rows)
-        hung = stretches(0.0)
+        initial_rows = stretches(0.0)
         travels, excitations = list(wide.travels), list(wide.excitations)
         if self.hoist is not None:
-            constant = np.pad(hung[None, None, :1], [(0, 0), (0, 3), (0, 0), (0, 0)])
+            constant = np.pad(initial_rows[None, None, :1], [(0, 0), (0, 3), (0, 0), (0, 0)])
             table = RowTable(np.array([0.0, 1.0]), constant)
             travels.append(Travel(self.hoist, table, (("rows", first),), shifts=(1.0,)))
-        pulling = PowerContact(self.stiffness, 1.0).upper().with_clearance(self.slack or 0.0)
-        contacts: list[tuple[Array, ContactLaw]] = [(hung[0], pulling)]
+        rope_law = PowerContact(self.stiffness, 1.0).upper().with_clearance(self.slack or 0.0)
+        contacts: list[tuple[Array, ContactLaw]] = [(initial_rows[0], rope_law)]
         if self.pendulum is not None:
             swing = self.pendulum
             spring = PowerContact(self.weight / swing.length, 1.0)
-            contacts += [(row, spring) for row in hung[1:]]
+            contacts += [(row, spring) for row in initial_rows[1:]]
             moves = [*swing.frame.slew.kinks, *swing.frame.luff.kinks]
             if moves and max(moves) > 0.0:
                 # The rows follow time, up to the end of slewing and luffing.

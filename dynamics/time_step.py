@@ -195,17 +195,17 @@ class Integration:
                 continue
             extension = travel.history(trajectory.time)
             friction = axial_friction(system, travel, self.output.means)
-            moved = np.diff(extension, prepend=extension[0])
-            resisting = np.sign(moved) * friction
-            power = np.diff(work + np.cumsum((resisting + travel.axial_load) * moved), prepend=0.0)
+            steps = np.diff(extension, prepend=extension[0])
+            resistance = np.sign(steps) * friction
+            power = np.diff(work + np.cumsum((resistance + travel.axial_load) * steps), prepend=0.0)
             power[1:] /= np.diff(trajectory.time)
-            values = extension, resisting, power
+            values = extension, resistance, power
             for (name, of), value in zip(DRIVE_VARIABLES.items(), values, strict=True):
                 added[f"{name}{travel.suffix}"] = ("time", value, of)
             if travel.elastic is not None:
-                moved_by = move_segment(travel.elastic, travel.history, trajectory.time, friction)
-                stick_slip[f"drive_force{travel.suffix}"] = moved_by.results
-                for name, value in moved_by.series.items():
+                lagged = move_segment(travel.elastic, travel.history, trajectory.time, friction)
+                stick_slip[f"drive_force{travel.suffix}"] = lagged.results
+                for name, value in lagged.series.items():
                     added[f"{name}{travel.suffix}"] = ("time", value, ELASTIC_DRIVE_VARIABLES[name])
         data = trajectory.data.assign(added)
         data.attrs |= {"stick_slip": stick_slip} if stick_slip else {}

@@ -71,12 +71,12 @@ def with_compression(
         gravity: acceleration towards the base in m/s²; it acts on all masses, including
             collars and diaphragms.
     """
-    passed: list[list[tuple[float, float]]] = [[] for _ in segments]
-    carrying = list(segments)
+    transferred: list[list[tuple[float, float]]] = [[] for _ in segments]
+    loaded = list(segments)
     for number in reversed(range(len(segments))):
         segment = segments[number]
         points = [(t.x, t.force) for t in thrusts if t.segment == number]
-        points += passed[number] + _weights(segment, gravity)
+        points += transferred[number] + _weights(segment, gravity)
         spread = _distributed_weights(segment, gravity)
         joint = _lock(joints, number)
         anchor = segment.start if joint is not None or segment.foot is None else segment.foot.x
@@ -84,12 +84,10 @@ def with_compression(
             locked = segment.start if joint.locked_at is None else joint.locked_at
             total = sum(force for _, force in points)
             total += sum(each * (end - start) for start, end, each in spread)
-            passed[joint.outer].append((locked, total))
+            transferred[joint.outer].append((locked, total))
             anchor = max(anchor, locked)
-        carrying[number] = replace(
-            segment, compression=_compression(segment, anchor, points, spread)
-        )
-    return tuple(carrying)
+        loaded[number] = replace(segment, compression=_compression(segment, anchor, points, spread))
+    return tuple(loaded)
 
 
 @dataclass(frozen=True, slots=True)
@@ -211,12 +209,14 @@ class AxialChange:
             for direction, (x, rows) in lines.items():
                 total = total + np.zeros((rows.shape[1],) * 2)
                 spline = CubicSpline(x, rows)
-                if self.compressions and (pressed := self.compressions[number]):
-                    slopes, weights = _at_gauss_points(spline.derivative(), {*x, *pressed.places})
-                    total = total + (slopes.T * (weights[1] * pressed(weights[0]))) @ slopes
+                if self.compressions and (compression := self.compressions[number]):
+                    slopes, weights = _at_gauss_points(
+                        spline.derivative(), {*x, *compression.places}
+                    )
+                    total = total + (slopes.T * (weights[1] * compression(weights[0]))) @ slopes
                 if self.masses and direction == self.direction:
-                    moved = spline([mass.x for mass in self.masses[number]])
-                    total = total + (moved.T * [m.mass for m in self.masses[number]]) @ moved
+                    values = spline([mass.x for mass in self.masses[number]])
+                    total = total + (values.T * [m.mass for m in self.masses[number]]) @ values
         return total
 
 
@@ -224,8 +224,8 @@ def largest_change(changes: Sequence[AxialChange]) -> Array:
     """Return the factors (num_changes,) of the histories when the foot's compression is largest."""
     times = np.unique(np.concatenate([np.zeros(1), *(change.times for change in changes)]))
     factors = np.array([change.history(times) for change in changes])
-    pressed = [one.compressions[0].transferred if one.compressions else 0.0 for one in changes]
-    return np.asarray(factors[:, (np.array(pressed) @ factors).argmax()])
+    compressions = [one.compressions[0].transferred if one.compressions else 0.0 for one in changes]
+    return np.asarray(factors[:, (np.array(compressions) @ factors).argmax()])
 
 
 def _at_gauss_points(function: Any, places: set[float]) -> tuple[Array, Array]:

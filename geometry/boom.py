@@ -176,8 +176,8 @@ class Boom:
             for place in station_positions(joint, extension)
         }
         if drives := drives_of(self.joints, segment):
-            moved = [stop.x for stop in self.stops if stop.segment == segment]
-            places |= {x - extension for x in moved for extension in reach(drives)}
+            stop_places = [stop.x for stop in self.stops if stop.segment == segment]
+            places |= {x - extension for x in stop_places for extension in reach(drives)}
         return tuple(sorted(places | moving_force_places(self.segments, self.joints, segment)))
 
     def stations_of(self, segment: int) -> tuple[float, ...]:

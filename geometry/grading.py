@@ -72,9 +72,9 @@ def _along(
     fine, middle, coarse = (part * size for part in _ALONG)
     ends = {x for zone in zones for length in (middle, coarse) for x in zone.reach(length)}
     # Changes of length near a break are omitted, since they would add slender triangles.
-    apart = [x for x in ends if min(abs(x - place) for place in breaks.values()) > fine]
+    distant = [x for x in ends if min(abs(x - place) for place in breaks.values()) > fine]
     lengths: dict[float, float] = {}
-    for x in sorted([start, *(x for x in apart if start < x < end)]):
+    for x in sorted([start, *(x for x in distant if start < x < end)]):
         if lengths and x - max(lengths) < fine:
             continue
         lengths[x] = coarse

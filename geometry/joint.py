@@ -241,13 +241,13 @@ class Joint(BareJoint):
         An interference is negative.
         """
         if direction == "z":
-            play, first, pressed = self.play, self.play_above, self.interference
+            play, first, interference = self.play, self.play_above, self.interference
         else:
             assert self.lateral_play is not None
             play, first = self.lateral_play, self.lateral_play_right
-            pressed = self.lateral_interference
+            interference = self.lateral_interference
         first = 0.5 * play if first is None else first
-        return first - 0.5 * pressed, play - first - 0.5 * pressed
+        return first - 0.5 * interference, play - first - 0.5 * interference
 
     def law(self, direction: Direction) -> Any:
         """Return the contact law of each station in a direction, with its clearances.

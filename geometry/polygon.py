@@ -288,8 +288,8 @@ def _mirror(places: Array, axis: Direction) -> Array:
 
 def _partners(places: Array, images: Array) -> Indices:
     """Return the index (num_places,) of the mirror image nearest to each place."""
-    apart = np.linalg.norm(places[:, None] - images, axis=2)
-    return np.asarray(apart.argmin(axis=1))
+    distances = np.linalg.norm(places[:, None] - images, axis=2)
+    return np.asarray(distances.argmin(axis=1))
 
 
 def _moments(polygons: Array) -> Array:

@@ -94,10 +94,10 @@ def u_section(
             f"{radius:g}"
         )
     fold = 0.5 * np.pi / (facets + 1)
-    turned = (np.arange(facets + 1) + 0.5) * fold
+    angles = (np.arange(facets + 1) + 0.5) * fold
     corner = radius / np.cos(0.5 * fold)
-    y = 0.5 * width - radius + corner * np.sin(turned)
-    z = -0.5 * height + radius - corner * np.cos(turned)
+    y = 0.5 * width - radius + corner * np.sin(angles)
+    z = -0.5 * height + radius - corner * np.cos(angles)
     right = np.vstack([2.0 * np.column_stack([y, z]), [width, height]])
     return _mirror_right_half(right, [bottom, *[bottom] * facets, web, top])
 

@@ -282,11 +282,11 @@ class Segment:
     @property
     def rigid_modes(self) -> int:
         """The number of rigid modes along z."""
-        held = sum(
+        num_restraints = sum(
             2 if support.holds_slope("z") or support.rotation_stiffness is not None else 1
             for support in self.supports
         )
-        return max(0, 2 - held)
+        return max(0, 2 - num_restraints)
 
     @property
     def rigid_twists(self) -> int:

@@ -89,7 +89,7 @@ def shear_plates(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[i
     The shear force acts on the axis. The forces of the plates follow from the shear flow, and from
     the torque that shifts the shear force from the shear centre to the axis.
     """
-    carried = ShearFlow.from_plates(plates, direction)
-    around = carried.moment / (carried.arms @ carried.lengths)
-    forces = carried.forces - around * carried.lengths
+    flow = ShearFlow.from_plates(plates, direction)
+    around = flow.moment / (flow.arms @ flow.lengths)
+    forces = flow.forces - around * flow.lengths
     return tuple((n, force) for n, force in enumerate(forces.tolist()) if abs(force) > _NO_PART)

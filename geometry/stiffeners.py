@@ -77,8 +77,8 @@ class Collar:
         )
         images = midpoints.copy()
         images[:, COMPONENT[axis] - 1] *= -1.0
-        apart = np.abs(images[:, None] - midpoints).max(axis=2).min(axis=1)
-        return bool((apart < section.near).all())
+        distances = np.abs(images[:, None] - midpoints).max(axis=2).min(axis=1)
+        return bool((distances < section.near).all())
 
 
 @part(frozen=True, slots=True, config=PART)

@@ -218,8 +218,10 @@ def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> Non
             )
         return
     for extension in (low, high):
-        held = outer.holds(x + extension) if drive.locked == "inner" else inner.holds(x - extension)
-        if not held:
+        segment, place = (
+            (outer, x + extension) if drive.locked == "inner" else (inner, x - extension)
+        )
+        if not segment.holds(place):
             raise BoomError(
                 where,
                 f"{x:g} m leaves the overlap as {inner.name!r} telescopes by {extension:g} m; "
@@ -253,11 +255,11 @@ def _check_order(boom: Boom) -> None:
 def _check_unsupported(boom: Boom, number: int) -> None:
     """Check that a segment that telescopes has no supports and cylinders; stops may touch it."""
     segment = boom.segments[number]
-    held = [f"segments[{number}].supports"] if segment.supports else []
-    held += [f"cylinders[{k}]" for k, c in enumerate(boom.cylinders) if c.segment == number]
-    if held:
+    restraints = [f"segments[{number}].supports"] if segment.supports else []
+    restraints += [f"cylinders[{k}]" for k, c in enumerate(boom.cylinders) if c.segment == number]
+    if restraints:
         raise BoomError(
-            held[0],
+            restraints[0],
             f"the ground holds {segment.name!r}, which a drive moves along; let it hold a segment "
             "that stays, or leave drive out",
         )

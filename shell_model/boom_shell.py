@@ -204,8 +204,8 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
         tolerance, line = options.contact_tolerance, options.contact_line
         fine = refinement_zones(boom, number, tolerance, line, stop_patches(boom), pads(boom))
         mesh = graded_mesh(*box, fine, closed=closed, across=across)
-    built = add_thickness(segment, mesh)
-    return built if segment.head_section is None else tapered_mesh(segment, built)
+    plated = add_thickness(segment, mesh)
+    return plated if segment.head_section is None else tapered_mesh(segment, plated)
 
 
 def observers(boom: Boom, shells: Sequence[SegmentShell]) -> dict[str, OutputOperator[Operator]]:

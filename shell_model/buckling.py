@@ -279,9 +279,9 @@ def _modes_on(
             *lateral_springs(boom, number, shell),
         ]
         rows, stiffness = (np.array(one) for one in zip(*springs, strict=True))
-        held = replace(shell, springs=with_springs(shell.springs, rows.T, stiffness))
-        modes = buckling_modes(held, state.forces[number], count)
-        held.stiffness.destroy()
+        restrained = replace(shell, springs=with_springs(shell.springs, rows.T, stiffness))
+        modes = buckling_modes(restrained, state.forces[number], count)
+        restrained.stiffness.destroy()
         shapes = vertex_displacements(shell, modes.shapes)
         if shapes is not None:
             shapes = shapes.T.reshape(modes.factors.size, -1, 3)

@@ -108,9 +108,9 @@ def reduce_boom(
             own_loads = np.pad(own_loads, ((0, 0), (0, system.num_modes - own_loads.shape[1])))
     if telescoping:
         whole = compliance(system.omega2, system.rows)
-        lost = telescoping.compliance_error(len(system.laws))
+        compliance_errors = telescoping.compliance_error(len(system.laws))
     else:
-        whole, lost = _contact_compliance(full, segments)
+        whole, compliance_errors = _contact_compliance(full, segments)
     coarse = None
     if helper is not None:
         with suppress(BrokenExecutor):
@@ -128,7 +128,7 @@ def reduce_boom(
         num_dofs=full.num_dofs,
         fields=fields,
         errors={
-            "contact_compliance": _largest(lost / local),
+            "contact_compliance": _largest(compliance_errors / local),
             "deflections": max(segment.output_error for segment in segments),
             "frequency_limit_in_hz": min(segment.frequency_limit for segment in segments),
         },
@@ -165,11 +165,11 @@ def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> 
     separate = BoomCoordinates(full.comm, full.shells, segments, ())
     contacts = full.rows.contacts
     rows = np.array([separate.row(contact.operator) for contact in contacts])
-    lost = np.zeros(len(contacts))
+    errors = np.zeros(len(contacts))
     for number, segment in enumerate(segments):
         touching = [i for i, contact in enumerate(contacts) if number in contact.operator]
-        lost[touching] += segment.lost_compliance[: len(touching)]
-    return compliance(separate.omega2, rows.reshape(-1, separate.omega2.size)), lost
+        errors[touching] += segment.lost_compliance[: len(touching)]
+    return compliance(separate.omega2, rows.reshape(-1, separate.omega2.size)), errors
 
 
 def _reduce(
@@ -240,8 +240,8 @@ def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegmen
     """
     if not boom.compressed:
         return float("inf")
-    held = ties(boom.bonded, full.shells)
-    factor = BoomCoordinates(full.comm, full.shells, reduced, held, full.lines).critical_factor
+    bonds = ties(boom.bonded, full.shells)
+    factor = BoomCoordinates(full.comm, full.shells, reduced, bonds, full.lines).critical_factor
     if factor is not None and factor <= 1.0:
         raise NumericsError(
             f"the shell of the boom buckles under {factor:.3g} times its axial forces; make these "

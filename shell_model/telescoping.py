@@ -108,12 +108,12 @@ def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]
             full.touching.rows(group.extensions(extension)) for extension in extensions.tolist()
         ]
         samples.append(_SampledRows(group, moving, extensions, touching))
-    moved = {row for sampled in samples for row in sampled.moving}
+    moving_rows = {row for sampled in samples for row in sampled.moving}
     counts = len(full.rows.contacts), len(full.rows.frictions), len(full.rows.dashpots)
     every = [
         (kind, row) for kind, count in zip(ROW_KINDS, counts, strict=True) for row in range(count)
     ]
-    fixed_rows = [row for row in every if row not in moved]
+    fixed_rows = [row for row in every if row not in moving_rows]
     return (
         [*samples, _SampledRows(None, fixed_rows, np.zeros(1), [full.rows])]
         if fixed_rows
@@ -180,12 +180,12 @@ class TelescopingShell:
             first_of[kind] = stacked
             stacked += len(getattr(system, kind))
         behind = np.cumsum([0, *(omega2.size for omega2, _ in self._springs)])
-        pulled, travels = np.zeros((stacked, behind[-1])), []
+        spring_rows, travels = np.zeros((stacked, behind[-1])), []
         for k, (sampled, (_, pulls)) in enumerate(zip(self._sampled, self._springs, strict=True)):
             beside = np.zeros((*pulls.shape[:2], behind[-1]))
             beside[..., behind[k] : behind[k + 1]] = pulls
             at = [first_of[kind] + position for kind, position in sampled.moving]
-            pulled[at] = beside[sampled.start]
+            spring_rows[at] = beside[sampled.start]
             if sampled.group is not None:
                 rows = np.concatenate([coordinates.of_rows(self._rows[k]), beside], axis=2)
                 travel = Travel(
@@ -200,7 +200,7 @@ class TelescopingShell:
                 )
                 travels.append(travel)
         omega2 = np.concatenate([omega2 for omega2, _ in self._springs])
-        return replace(with_coordinates(system, omega2, pulled), travels=travels)
+        return replace(with_coordinates(system, omega2, spring_rows), travels=travels)
 
     def _columns(self, number: int, step: int = 1) -> Array:
         shell = self._full.shells[number]
@@ -230,9 +230,9 @@ class TelescopingShell:
         parts = rows[moving] ** 2 / (segment.omega2 + squared(SLOW))
         below = segment.omega2 < squared(_CUTOFF)
         local = np.diag(self._responses[number].compliance)[moving]
-        left = local - parts[:, below].sum(axis=1)
+        residual = local - parts[:, below].sum(axis=1)
         slow = segment.omega2 < squared(_SLOWEST)
-        slow |= below & (parts > _PART * left[:, None]).any(axis=0)
+        slow |= below & (parts > _PART * residual[:, None]).any(axis=0)
         fixed = self._full.fixed_loads(number), self._full.columns(number, self._full.ties)
         pushes = [*(project(some) for some in fixed), observed, rows[constant]]
         modes = np.flatnonzero(slow), np.flatnonzero(~slow)

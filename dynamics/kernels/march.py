@@ -362,22 +362,22 @@ def march(
                 y_end[j] = free[j]
                 for i in range(m):
                     y_end[j] -= matrix[j, i] * now[i]
-                moved = now[j] * (y_end[j] - y[j])
+                row_work = now[j] * (y_end[j] - y[j])
                 if j < contacts:
                     mean[j] += share * now[j]
                     # This includes the stored energy of a contact that opens at zero force.
                     if laws.limits[j]["damping"] > 0.0:
                         _, _, elastic = contact_response(laws, j, y[j], y_end[j], time)
-                        tally[CONTACT] += moved - elastic * (y_end[j] - y[j])
+                        tally[CONTACT] += row_work - elastic * (y_end[j] - y[j])
                 elif j < contacts + frictions:
                     friction[j - contacts] -= share * now[j]
-                    tally[FRICTION] += moved
+                    tally[FRICTION] += row_work
                 else:
-                    tally[DAMPING] += moved
+                    tally[DAMPING] += row_work
                 if moves and now[j] != 0.0:
                     for i in range(n):
-                        moved -= now[j] * rows_mean[j, i] * (end[i] - a[i])
-                    driven[travel_of[j]] += moved
+                        row_work -= now[j] * rows_mean[j, i] * (end[i] - a[i])
+                    driven[travel_of[j]] += row_work
             if softens:
                 # ½ aᵀ ΔK_G a, the mean of both ends of the step.
                 for corner in range(4):

@@ -163,8 +163,8 @@ def move_rows(
         piece, u, _ = find_piece(extensions, moving.spans[m], moving.knots)
         cubic = moving.cubics[piece]
         for i in range(after.shape[1]):
-            bent = cubic[2, i] + u * cubic[3, i]
-            after[row, i] = cubic[0, i] + u * (cubic[1, i] + u * bent)
+            upper_terms = cubic[2, i] + u * cubic[3, i]
+            after[row, i] = cubic[0, i] + u * (cubic[1, i] + u * upper_terms)
             mean[row, i] = 0.5 * (before[row, i] + after[row, i])
 
 
@@ -189,30 +189,30 @@ def add_axial_forces(
         count = axial.num_modes[t]
         for i in range(count):
             coordinates[i] = a[axial.modes[t, i]]
-        level, turned, bent = 0.0, 0.0, 0.0
+        constant, linear, quadratic = 0.0, 0.0, 0.0
         for i in range(count):
-            level += slopes[p, 0, i] * coordinates[i]
-            turned += slopes[p, 1, i] * coordinates[i]
-            bent += slopes[p, 2, i] * coordinates[i]
+            constant += slopes[p, 0, i] * coordinates[i]
+            linear += slopes[p, 1, i] * coordinates[i]
+            quadratic += slopes[p, 2, i] * coordinates[i]
         scale = length * u * axial.force[t]
-        of_level = scale * (level + u * (turned / 2.0 + u * bent / 3.0))
-        of_turned = scale * u * (level / 2.0 + u * (turned / 3.0 + u * bent / 4.0))
-        of_bent = scale * u * u * (level / 3.0 + u * (turned / 4.0 + u * bent / 5.0))
+        of_constant = scale * (constant + u * (linear / 2.0 + u * quadratic / 3.0))
+        of_linear = scale * u * (constant / 2.0 + u * (linear / 3.0 + u * quadratic / 4.0))
+        of_quadratic = scale * u * u * (constant / 3.0 + u * (linear / 4.0 + u * quadratic / 5.0))
         for i in range(count):
-            force[i] = of_level * slopes[p, 0, i] + of_turned * slopes[p, 1, i]
-            force[i] += of_bent * slopes[p, 2, i]
+            force[i] = of_constant * slopes[p, 0, i] + of_linear * slopes[p, 1, i]
+            force[i] += of_quadratic * slopes[p, 2, i]
         for j in range(count):
-            pressed = axial.force[t] * coordinates[j]
+            scaled_force = axial.force[t] * coordinates[j]
             for i in range(count):
-                force[i] += products[p, j, i] * pressed
+                force[i] += products[p, j, i] * scaled_force
         for i in range(count):
             total[axial.modes[t, i]] += share * force[i]
             energies[axial.spans[t, 0]] += 0.5 * share * coordinates[i] * force[i]
     for r in range(axial.factors.size):
-        vector, level = axial.vectors[r], 0.0
+        vector, product = axial.vectors[r], 0.0
         for i in range(a.size):
-            level += vector[i] * a[i]
-        pressed = share * extensions[axial.changed_by[r]] * axial.factors[r] * level
+            product += vector[i] * a[i]
+        scaled_force = share * extensions[axial.changed_by[r]] * axial.factors[r] * product
         for i in range(a.size):
-            total[i] += pressed * vector[i]
-        energies[axial.changed_by[r]] += 0.5 * pressed * level
+            total[i] += scaled_force * vector[i]
+        energies[axial.changed_by[r]] += 0.5 * scaled_force * product

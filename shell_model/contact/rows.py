@@ -172,10 +172,10 @@ class ShellContacts:
         for rest in stop_patches(boom):
             segment, drives = rest.stop.segment, drives_below(boom.joints, rest.stop.segment)
             extension = sum(extensions.get(number, 0.0) for number in drives)
-            pressed, lines = rest.at_extension(boom, extension).interval, self.corners[segment]
+            interval, lines = rest.at_extension(boom, extension).interval, self.corners[segment]
             # A stop touches a flange at both webs.
             flanges = [
-                (side, 1.0, Operator({segment: lines.deflection(pressed, "z", 0.0, side)}))
+                (side, 1.0, Operator({segment: lines.deflection(interval, "z", 0.0, side)}))
                 for side in _SIDES
             ]
             rows.add_stop(rest.station, rest.stop.law, flanges)

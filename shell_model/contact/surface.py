@@ -157,9 +157,9 @@ def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) ->
     compliances = gains[:, elastic] ** 2 / reduced.omega2[elastic]
     above = np.cumsum(compliances[:, ::-1], axis=1)[:, ::-1]
     shares = (above / above[:, :1]).max(axis=0)
-    left = int(np.count_nonzero(shares >= STIFF))
-    kept = int(np.count_nonzero(~elastic)) + left
-    lost = above[:, left] if left < shares.size else np.zeros(len(above))
+    num_elastic = int(np.count_nonzero(shares >= STIFF))
+    kept = int(np.count_nonzero(~elastic)) + num_elastic
+    lost = above[:, num_elastic] if num_elastic < shares.size else np.zeros(len(above))
     return replace(
         reduced,
         omega2=reduced.omega2[:kept],

@@ -57,8 +57,8 @@ class BoomCoordinates:
         springs = [line for line in lines if line.stiffness > 0.0]
         if ties or springs:
             tied = np.array([self.row(tie) for tie in ties]).reshape(-1, self.omega2.size)
-            pulled = [np.sqrt(s.stiffness) * self.push(s.segment, s.push) for s in springs]
-            pulls = np.array(pulled).reshape(-1, self.omega2.size)
+            spring_rows = [np.sqrt(s.stiffness) * self.push(s.segment, s.push) for s in springs]
+            pulls = np.array(spring_rows).reshape(-1, self.omega2.size)
             self.omega2, self._combination = comm.bcast(
                 _constrained_modes(self.omega2, tied, pulls)
             )
@@ -68,9 +68,9 @@ class BoomCoordinates:
             # Transform to the modes under the axial forces of the segments.
             tied = np.eye(self.omega2.size) if self._combination is None else self._combination
             softening = tied.T @ geometric @ tied
-            held = not (self.omega2 == 0.0).any()
+            is_supported = not (self.omega2 == 0.0).any()
             self.critical_factor = (
-                buckling_factor(np.diag(self.omega2), softening) if held else None
+                buckling_factor(np.diag(self.omega2), softening) if is_supported else None
             )
             self.omega2, turn = comm.bcast(soften_modes(self.omega2, softening))
             self._combination = tied @ turn
@@ -104,16 +104,16 @@ def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array,
         pulls: rows (num_springs, num_modes) of springs times the root of their stiffness, in 1/s.
     """
     free = null_space(tied) if tied.size else np.eye(omega2.size)
-    held = pulls @ free
-    held_omega2, combination = eigh(free.T @ (omega2[:, None] * free) + held.T @ held)
+    free_pulls = pulls @ free
+    held_omega2, combination = eigh(free.T @ (omega2[:, None] * free) + free_pulls.T @ free_pulls)
     # Rigid motions that satisfy all constraints are rigid modes.
     rigid = [rows[:, omega2 == 0.0] for rows in (tied, pulls) if rows.size]
     scaled = np.concatenate(
         [rows / np.abs(rows).max(initial=np.finfo(float).tiny) for rows in rigid]
     )
-    bound = np.linalg.svd(scaled, compute_uv=False) if scaled.size else np.zeros(0)
-    left = scaled.shape[1] - int((bound > ROUND_OFF * bound.max(initial=0.0)).sum())
-    held_omega2[:left] = 0.0
+    values = np.linalg.svd(scaled, compute_uv=False) if scaled.size else np.zeros(0)
+    num_rigid = scaled.shape[1] - int((values > ROUND_OFF * values.max(initial=0.0)).sum())
+    held_omega2[:num_rigid] = 0.0
     return held_omega2, free @ combination
 
 
@@ -125,17 +125,17 @@ def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
     """
     rows = np.flatnonzero(left != 0.0)
     parts = [np.zeros((1, right.shape[1]))]
-    lost, size = np.zeros((2, right.shape[1]))
+    rounding, size = np.zeros((2, right.shape[1]))
     for begin in range(0, rows.size, _AT_ONCE):
         some = rows[begin : begin + _AT_ONCE]
         terms = left[some, None] * right[some]
         part, off = _sum(terms)
         parts.append(part[None, :])
-        lost += off
+        rounding += off
         size += np.abs(terms).sum(axis=0)
-    gathered = comm.allgather((np.concatenate(parts), lost, size))
+    gathered = comm.allgather((np.concatenate(parts), rounding, size))
     total, off = _sum(np.concatenate([part for part, _, _ in gathered]))
-    total += off + np.sum([lost for _, lost, _ in gathered], axis=0)
+    total += off + np.sum([rounding for _, rounding, _ in gathered], axis=0)
     # A sum that is only round-off is zero.
     total[np.abs(total) < _CANCELLED * np.sum([size for _, _, size in gathered], axis=0)] = 0.0
     return total
@@ -143,12 +143,12 @@ def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
 
 def _sum(terms: Array) -> tuple[Array, Array]:
     """Return the sums over the first axis, and their rounding errors (Knuth 1969)."""
-    lost = np.zeros(terms.shape[1:])
+    rounding = np.zeros(terms.shape[1:])
     while len(terms) > 1:
         half = len(terms) // 2
         a, b = terms[:half], terms[half : 2 * half]
         both = a + b
         of_b = both - a
-        lost += ((a - (both - of_b)) + (b - of_b)).sum(axis=0)
+        rounding += ((a - (both - of_b)) + (b - of_b)).sum(axis=0)
         terms = np.concatenate([both, terms[2 * half :]])
-    return terms[0], lost
+    return terms[0], rounding

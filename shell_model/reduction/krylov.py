@@ -163,15 +163,15 @@ class _FullResponse(NamedTuple):
         cls, frequency: float, solve: ShiftedSolver, forces: Array, rows: Array
     ) -> _FullResponse:
         solve.move(frequency)
-        moved = solve(forces)
-        compliance = forces.T @ moved
+        displacements = solve(forces)
+        compliance = forces.T @ displacements
         of_forces = np.diag(compliance)
         of_rows = np.einsum("ij,ij->j", rows, solve(rows))
         return cls(
             solve.sigma,
             compliance,
             np.sqrt(np.outer(of_forces, of_forces)),
-            rows.T @ moved,
+            rows.T @ displacements,
             np.sqrt(np.outer(of_rows, of_forces)),
         )
 
@@ -218,11 +218,11 @@ class _Basis:
         compliance = transfer = 0.0
         for response in full:
             shifted = self._stiffness + response.sigma * np.eye(self.size)
-            moved = np.linalg.solve(shifted, gains)
-            off = np.abs(gains.T @ moved - response.compliance) / response.scale
-            compliance = float(np.maximum(compliance, off.max(initial=0.0)))
-            off = np.abs(read.T @ moved - response.transfer) / response.transfer_scale
-            transfer = float(np.maximum(transfer, off.max(initial=0.0)))
+            reduced = np.linalg.solve(shifted, gains)
+            error = np.abs(gains.T @ reduced - response.compliance) / response.scale
+            compliance = float(np.maximum(compliance, error.max(initial=0.0)))
+            error = np.abs(read.T @ reduced - response.transfer) / response.transfer_scale
+            transfer = float(np.maximum(transfer, error.max(initial=0.0)))
         return compliance, transfer
 
     def compliance_error(self, full: Sequence[_FullResponse], parts: Array) -> Array:
@@ -250,14 +250,14 @@ class _Basis:
         omega2, combination = eigh(self._stiffness[self._rigid :, self._rigid :])
         # Rigid motions that no force excites, such as translation along x, are omitted. The basis
         # contains them so that round-off does not add them to other modes.
-        moved = np.abs(rigid.T @ self._forces).max(axis=1, initial=0.0) > _DEPENDENT
-        shapes = np.hstack([rigid[:, moved], elastic @ combination])
+        excited = np.abs(rigid.T @ self._forces).max(axis=1, initial=0.0) > _DEPENDENT
+        shapes = np.hstack([rigid[:, excited], elastic @ combination])
         # Signs are such that an input with a large modal load has a positive one.
         gains = shapes.T @ self._forces
         much = np.abs(gains) > 0.5 * np.abs(gains).max(axis=1, keepdims=True)
         first = gains[np.arange(len(gains)), much.argmax(axis=1)]
         signs = np.where(first < 0.0, -1.0, 1.0)
-        return np.concatenate([np.zeros(moved.sum()), omega2]), shapes * signs
+        return np.concatenate([np.zeros(excited.sum()), omega2]), shapes * signs
 
     def _append(self, block: Array) -> Array:
         """Append a block to the basis, and return the new vectors (num_rows, num_new)."""
@@ -273,9 +273,9 @@ class _Basis:
             for _ in range(2):  # two passes suffice (Kahan; Parlett 1980)
                 column = column - vectors[:, :size] @ (vectors[:, :size].T @ weighed)
                 weighed = self._weighed(column)
-            left = np.sqrt(column @ weighed)
-            if left > _DEPENDENT * length:
-                vectors[:, size] = column / left
+            remainder = np.sqrt(column @ weighed)
+            if remainder > _DEPENDENT * length:
+                vectors[:, size] = column / remainder
                 size += 1
         self._vectors = vectors[:, :size]
         new = self._vectors[:, before:]
@@ -298,9 +298,9 @@ def _independent(block: Array) -> Array:
     for column in (block[:, lengths > 0.0] / lengths[lengths > 0.0]).T[:, :, None]:
         for _ in range(2):
             column = column - basis @ (basis.T @ column)
-        left = float(np.linalg.norm(column))
-        if left > _DEPENDENT:
-            basis = np.hstack([basis, column / left])
+        remainder = float(np.linalg.norm(column))
+        if remainder > _DEPENDENT:
+            basis = np.hstack([basis, column / remainder])
     return basis
 
 

@@ -45,12 +45,12 @@ def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> P
         shell = job.shell(symmetry.cell)
         solve = ShiftedSolver(shell, SLOW)
         # Pads press on few nodes, so that columns are sparse.
-        pressed = np.flatnonzero((job.forces != 0.0).any(axis=1))
-        forces = job.forces[pressed]
-        moved = solve(job.forces)
-        slow = forces.T @ moved[pressed], moved.T @ times(shell.mass, moved)
+        loaded_rows = np.flatnonzero((job.forces != 0.0).any(axis=1))
+        forces = job.forces[loaded_rows]
+        response = solve(job.forces)
+        slow = forces.T @ response[loaded_rows], response.T @ times(shell.mass, response)
         solve.move(test)
-        tested = forces.T @ solve(job.forces)[pressed]
+        tested = forces.T @ solve(job.forces)[loaded_rows]
         solve.destroy()
         return np.array([*slow, tested])
 

@@ -217,11 +217,11 @@ class SymmetryReduction:
         jobs = []
         for symmetry_class in symmetry_classes(self._mirrors):
             signs = symmetry_class.signs[:, self.cell.component]
-            forces, read, probed, springs, masses = (_sum_of_class(one, signs) for one in images)
-            if forces.any() or probed.any():
-                pulled = Attachments(springs, shell.springs.factors)
-                carried = Attachments(masses, shell.masses.factors)
-                jobs.append(Job(symmetry_class, forces, read, probed, pulled, carried))
+            forces, rows, loads, springs, masses = (_sum_of_class(one, signs) for one in images)
+            if forces.any() or loads.any():
+                attached_springs = Attachments(springs, shell.springs.factors)
+                attached = attached_springs, Attachments(masses, shell.masses.factors)
+                jobs.append(Job(symmetry_class, forces, rows, loads, *attached))
         return jobs
 
     def sum_classes(

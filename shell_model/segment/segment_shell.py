@@ -57,10 +57,10 @@ class SegmentShell(Shell):
 
     def own_load(self, directions: Iterable[Direction]) -> Array:
         """Return the load vector (num_owned,) of the constant uniform loads in N."""
-        kept = {"z": self.segment.load}
+        line_loads = {"z": self.segment.load}
         if self.segment.lateral is not None:
-            kept["y"] = self.segment.lateral.load
-        parts = [kept[d] * self.unit_loads[d] for d in directions if d in kept]
+            line_loads["y"] = self.segment.lateral.load
+        parts = [line_loads[d] * self.unit_loads[d] for d in directions if d in line_loads]
         return np.asarray(np.sum(parts, axis=0))
 
     def unit_load_vector(self, x: float, direction: Direction) -> Array:

@@ -147,14 +147,14 @@ class Shell:
         for i, axis in enumerate(np.eye(3)):
             motions[self.node_dofs - first, i] = axis
             motions[:, 3 + i] = self.turn(axis, middle)
-        held = np.concatenate(self.comm.allgather(motions[~self.free]))
-        held = np.concatenate([held, self.comm.allreduce(self.springs.rows.T @ motions)])
+        fixed = np.concatenate(self.comm.allgather(motions[~self.free]))
+        fixed = np.concatenate([fixed, self.comm.allreduce(self.springs.rows.T @ motions)])
         # All ranks use the basis of rank 0. The translation along x is separate, since no force
         # excites it.
         free = np.eye(6)
-        if held.size:
-            slides = 0 if held[:, 0].any() else 1
-            others = null_space(qr(held[:, slides:], mode="r")[0][:6])
+        if fixed.size:
+            slides = 0 if fixed[:, 0].any() else 1
+            others = null_space(qr(fixed[:, slides:], mode="r")[0][:6])
             free = block_diag(np.eye(slides), others)
         return np.asarray(motions @ self.comm.bcast(free))
 
@@ -198,8 +198,8 @@ def assemble_plates(
     points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
     if mesh is not None:
         # Collars do not carry the axial force, so that it is the same in all sections.
-        pressed = segment.compression(mesh.along) / segment.area * mesh.load_weight
-        points, triangles, of_cells = mesh.points, mesh.triangles, (mesh.thickness, pressed)
+        membrane_force = segment.compression(mesh.along) / segment.area * mesh.load_weight
+        points, triangles, of_cells = mesh.points, mesh.triangles, (mesh.thickness, membrane_force)
     domain = compat.create_mesh(comm, points, triangles)
     thickness, compression = (
         compat.cellwise_function(domain, values) for values in comm.bcast(of_cells)

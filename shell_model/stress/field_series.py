@@ -60,11 +60,11 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
         zip(states, shell.instants(output_times[steps].tolist()), strict=True)
     ):
         path = folder / f"{model}-{number:0{digits}}.vtu"
-        moved = np.tensordot(state, modes, axes=1).astype(np.float32)
+        displacement = np.tensordot(state, modes, axes=1).astype(np.float32)
         meshio.Mesh(
             fields["points"].values,
             [("triangle", fields["triangles"].values)],
-            point_data={"displacement (m)": moved},
+            point_data={"displacement (m)": displacement},
             cell_data={"segment": [segment], **_stresses_by_name(stress)},
         ).write(path, compression=None)
         written.append(path)

@@ -130,7 +130,7 @@ def gather_fields(
         segment, which include the forces of its cylinders. The sum of these coordinates times
         ``stress_k`` is the stress in Pa. ``plate_k`` has the plate names to which ``wall`` refers.
     """
-    moved = [
+    displacements = [
         vertex_displacements(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)
     ]
     stresses = [
@@ -139,7 +139,7 @@ def gather_fields(
     meshes = [shell.mesh for shell in shells if shell.mesh is not None]
     if not meshes:
         return None
-    shapes = [one for one in moved if one is not None]
+    shapes = [one for one in displacements if one is not None]
     begins = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, begins[:-1], strict=True)]
     numbers = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
@@ -179,10 +179,10 @@ def vertex_displacements(shell: SegmentShell, shapes: Array) -> _Numbers | None:
     gathered = shell.comm.gather((vertex[at_vertex], shapes[rows].astype(np.float32)))
     if gathered is None:
         return None
-    moved = np.zeros((*points.shape, shapes.shape[1]), dtype=np.float32)
+    displacements = np.zeros((*points.shape, shapes.shape[1]), dtype=np.float32)
     for places, parts in gathered:
-        moved[places] = parts
-    return moved.reshape(-1, shapes.shape[1])
+        displacements[places] = parts
+    return displacements.reshape(-1, shapes.shape[1])
 
 
 def _axial_stress_of(segment: Segment, mesh: PlatedMesh, force: Callable[[Array], Array]) -> Array:

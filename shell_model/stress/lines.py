@@ -35,10 +35,10 @@ def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
 def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Line:
     walls = shell.wall < len(shell.plates[number])
     triangles = np.flatnonzero((shell.segment == number) & walls)
-    acting = {support.x for support in boom.segments[number].supports}
-    cuts = band_boundaries(shell.spans[triangles], sorted(acting.union(boom.stations_of(number))))
+    places = {support.x for support in boom.segments[number].supports}
+    cuts = band_boundaries(shell.spans[triangles], sorted(places.union(boom.stations_of(number))))
     band = np.searchsorted(cuts, shell.centroids[triangles, 0]) - 1
-    moved = _mean_deflections(shell, fields, triangles, band, cuts.size - 1)
+    means = _mean_deflections(shell, fields, triangles, band, cuts.size - 1)
     corners = fields["points"].values[fields["triangles"].values[triangles]]
     part = band * len(shell.plates[number]) + shell.wall[triangles]
     reaches = _reaches(corners, part)
@@ -46,17 +46,17 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
     forces = forces @ fields[f"coordinates_{number + 1}"].values
     segment = boom.segments[number]
     if segment.compression:
-        pressed = segment.compression(0.5 * (cuts[1:] + cuts[:-1]))[:, None]
+        compression = segment.compression(0.5 * (cuts[1:] + cuts[:-1]))[:, None]
         along_y, along_z = _slopes(shell, fields, triangles, band, cuts.size - 1)
-        forces[0] -= pressed * along_z
-        forces[2] -= pressed * along_y
-    rows: dict[Quantity, Array] = {"deflection": moved[1], "shear": forces[0], "moment": forces[1]}
+        forces[0] -= compression * along_z
+        forces[2] -= compression * along_y
+    rows: dict[Quantity, Array] = {"deflection": means[1], "shear": forces[0], "moment": forces[1]}
     if boom.spatial:
         rows |= {
-            "lateral": moved[0],
+            "lateral": means[0],
             "lateral_shear": forces[2],
             "lateral_moment": forces[3],
-            "twist": moved[2],
+            "twist": means[2],
             "torque": forces[4],
         }
     return Line(0.5 * (cuts[1:] + cuts[:-1]), rows, paired=False)
