@@ -195,7 +195,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
         along = np.sign(plate.end[across] - plate.start[across])
         places = folds[face.plate] + along * (np.array(area.spans) - plate.start[across])
         spans.append(np.sort(places, axis=1))
-    # The intervals around the section with a collar, and its thickness.
+    # Collars with the intervals around the section that they cover.
     strips = [
         (collar, folds[k] + 0.5 * section.plates[k].length + np.array(ends))
         for collar in segment.collars
@@ -204,7 +204,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     ]
     cuts_around = [*(span.ravel() for span in spans), *(ends for _, ends in strips)]
     edges = np.concatenate([folds, *cuts_around])
-    # Collars that cover a wall end at its folds, to round-off.
+    # Collars over a whole wall end at the folds of the wall, except for round-off.
     at_fold = np.abs(np.subtract.outer(edges, folds)).min(axis=1) < section.near
     edges = np.unique(np.concatenate([folds, edges[~at_fold]]))
     around = _Axis(_graded_nodes(edges, length, (0.0, folds[-1])), closed=True)
@@ -214,7 +214,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     pad_ends = [x for area in areas for x in (area.start, area.end)]
     collar_ends = [x for collar in segment.collars for x in collar.span if low < x < high]
     cuts = np.unique([low, high, *pad_ends, *closed_at, *collar_ends])
-    # A pad at the end of its segment ends there to round-off only.
+    # A pad at the end of a segment ends there, except for round-off.
     cuts = cuts[np.diff(cuts, prepend=-np.inf) > section.near]
     along_x = _Axis(_graded_nodes(cuts, length, (start, end)), closed=False)
     midpoints = 0.5 * (along_x.nodes[:-1] + along_x.nodes[1:])

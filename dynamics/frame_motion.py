@@ -73,7 +73,7 @@ class FrameMotion:
         Args:
             time: times (...) in s.
             x: initial position of the point in m.
-            extension: travel in m of its segment.
+            extension: travel in m of the segment with the point.
         """
         along, speed = x - self.foot + extension(time), extension.rate(time, 1)
         luffed, turn, faster = (self.luff_angle(time, order) for order in range(3))

@@ -25,8 +25,8 @@ if TYPE_CHECKING:
 class Cylinder:
     """A luffing cylinder: a spring between a lug of a segment and a point of the ground.
 
-    The lug is fixed to its cross-section. The segment is rigid along x and supported along x at
-    its foot, the support nearest to the base.
+    The lug is fixed to the cross-section at its x. The segment is rigid along x, and supported
+    along x at its foot, the support nearest to the base.
 
     >>> jack = pt.Cylinder(segment=0, x=4.0, depth=0.3, ground=(1.0, -4.3), stiffness=5e7)
     >>> jack.length, jack.direction

@@ -300,7 +300,7 @@ def _moving_axial_forces(
     if shell.mesh is not None:
         along = shell.mesh.points[shell.mesh.triangles, 0]
         around = lines_around(np.stack([along.min(axis=1), along.max(axis=1)], axis=1))
-        # The exact x of nodes on these lines, which are rounded.
+        # Mesh lines are rounded; nodes on them have the exact x.
         x = np.unique(along)
         lines = x[np.searchsorted(0.5 * (x[1:] + x[:-1]), around)]
     # Extensions at which the force passes mesh lines.

@@ -47,8 +47,7 @@ class AxialForces(NamedTuple):
         knots: knots of all forces in m.
         slopes: (num_pieces, 3, most_modes) coefficients of w′, as in
             :class:`dynamics.drive.row_table.MovingAxialForce`.
-        products: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds̃ from 0 to each
-            piece.
+        products: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds̃ from 0 to each piece.
         changed_by: (num_vectors,) index of the travel of each vector.
         factors, vectors: as in :class:`dynamics.drive.row_table.ChangingAxialForce`.
     """

@@ -181,7 +181,7 @@ class SymmetryReduction:
             if shell.mesh is None:
                 return None
             cell = SymmetryCell(shell.segment, self._mirrors, cell_mesh(shell.mesh, self._mirrors))
-            # Assembled here, so that all ranks receive an error.
+            # The plates are assembled here, so that an error is raised on all ranks.
             assert cell.plates.nodes
             return cell
 
