@@ -138,7 +138,6 @@ STUDIES = (
     "sections",
     "taper",
     "design_results",
-    "combinations",
     "validation",
 )
 

@@ -102,7 +102,9 @@ def proofs_of(folder: Path, text: str) -> tuple[dict[tuple[str, str], Proof], Pr
 )  # fmt: skip
 def test_winter(slenderness: float, ratio: float, reduction: float) -> None:
     """Reference: analytic, (λ̄ − 0.055(3 + ψ))/λ̄² by hand; 0.673 and 0.874 end its plateaus."""
-    assert winter(slenderness, ratio) == pytest.approx(reduction, abs=1e-3)
+    # The ends of plateaus are rounded.
+    off = 1e-9 if slenderness >= 1.0 else 1e-3
+    assert winter(slenderness, ratio) == pytest.approx(reduction, abs=off)
 
 
 def test_reduced_stress_of_a_wall() -> None:

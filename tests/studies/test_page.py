@@ -73,7 +73,6 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "telescoping_column": {},
     "stick_slip": {"_one_way": lambda _: [1.0] * 6},
     "design_results": {},
-    "combinations": {},
     "supports": {
         "_MODELS": dict.fromkeys(supports._MODELS, supports._MODELS["elements"]), "decrement": one,
     },
@@ -111,7 +110,7 @@ def test_sections_follow_the_order_of_the_studies() -> None:
 @pytest.mark.parametrize("name", STAND_INS)
 def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: the study, with constants in place of slow computations. Measured values hold."""
-    if name in ("design_results", "combinations"):
+    if name == "design_results":
         pytest.importorskip("rainflow", reason="the cycles are counted by it")
     for what, surrogate in STAND_INS[name].items():
         monkeypatch.setattr(f"studies.{name}.{what}", surrogate)
