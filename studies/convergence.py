@@ -131,7 +131,6 @@ STUDIES = (
     "stick_slip",
     "interpretations",
     "numerics_1997",
-    "supports",
     "second_order",
     "wall_buckling",
     "telescoping_column",

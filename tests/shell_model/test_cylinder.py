@@ -113,7 +113,8 @@ def test_a_shell_turns_on_a_spring(stiffness: float) -> None:
     segment = replace(boom.segments[0], supports=(support,))
     boom = replace(boom, segments=(segment,), cylinders=())
     found, expected = (system.frequencies[:2] for system in (shell(boom), beam(boom)))
-    assert found == pytest.approx(expected, rel=1e-2)
+    assert found[0] == pytest.approx(expected[0], rel=5e-3)
+    assert found[1] == pytest.approx(expected[1], rel=1e-2)
 
 
 @pytest.mark.slow

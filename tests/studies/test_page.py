@@ -15,7 +15,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from studies import direct, supports, taper, working_load
+from studies import direct, taper, working_load
 from studies.convergence import STUDIES, verification_table
 from studies.motions import friction_case
 from studies.reference_models import plates
@@ -73,9 +73,6 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "telescoping_column": {},
     "stick_slip": {"_one_way": lambda _: [1.0] * 6},
     "design_results": {},
-    "supports": {
-        "_MODELS": dict.fromkeys(supports._MODELS, supports._MODELS["elements"]), "decrement": one,
-    },
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
     "taper": {"MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])}},
 }  # fmt: skip
