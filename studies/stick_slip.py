@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Elastic drives: cycles of stick-slip, and the effect of the lag on the motion of the boom.
+"""Effect of the lag behind an elastic drive on the motion of the boom.
 
 A model moves the boom with the commanded extension. A second run uses the actual extension, which
 lags behind the command; the difference is the error.
@@ -13,41 +13,26 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, move_segment
-from dynamics.excitation import PiecewiseLinear, SCurve, Stroke
+from dynamics.excitation import PiecewiseLinear
 from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
 from geometry.typography import TO_MILLI, TO_PERCENT
 from protractile.cases import change
 from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.pipeline.drives import critical_speed
 from runs.pipeline.models import MotionPlan, build
 from runs.report.tables import Table
-from studies.study import Criterion, Piece, Progress, Verification, define_study
-
-# Mass in kg, stiffness in N/m, sliding friction in N, and ratio of static to sliding friction.
-MASS, STIFFNESS, FRICTION, STICKING = 500.0, 1.0e5, 1000.0, 1.5
-SPEED = 0.05
-RATIOS = (0.01, 0.1, 0.5)
+from studies.study import Progress, define_study
 
 # Stiffnesses in N/m of the drive of the paper's boom; damping ratio 0.5 %, static friction 0.3.
 ROPES = (2.0e5, 1.0e6, 5.0e6)
 GRAVITY = 9.80665
 
-ROPE = ElasticDrive(MASS, STIFFNESS, sticking=STICKING)
-CYCLE = "sticking until the spring is taut, slipping on a circle"
-
 
 @define_study("stick_slip", "Elastic drives with stick and slip")
-def study(progress: Progress) -> Iterator[Piece]:
-    """Compare cycles, critical speeds and a stiff drive with closed forms, and measure the lag."""
-    progress("a mass on a spring")
-    yield from _cycle()
-    yield from map(_critical, RATIOS)
-    yield _stiff()
+def study(progress: Progress) -> Iterator[Table]:
+    """Measure the lag and its effect for several stiffnesses."""
     columns = {
         "stiffness\nN/m": ".3g", "sticks": "", "slips by\nmm": ".3g",
         "lags at most\n% of overlap": ".3g", "contact forces off\n% of the largest": ".2g",
@@ -62,59 +47,6 @@ def study(progress: Progress) -> Iterator[Piece]:
         progress(f"the paper's boom on {stiffness:g} N/m")
         rows.append(_one_way(stiffness))
     yield Table.of_rows("one-way", "Lag behind an elastic drive", columns, rows, notes)
-
-
-def _follow_drive(pulled: ElasticDrive, speed: float, time: Array) -> DriveMotion:
-    way = Stroke(2.0 * speed * float(time[-1]), speed)
-    return move_segment(pulled, way, time, np.full(time.size, FRICTION))
-
-
-def _cycle() -> Iterator[Verification]:
-    """Compare ten undamped cycles at constant speed with the closed form."""
-    omega, slack = np.sqrt(STIFFNESS / MASS), (STICKING - 1.0) * FRICTION / STIFFNESS
-    radius, first = np.hypot(slack, SPEED / omega), STICKING * FRICTION / STIFFNESS / SPEED
-    slipping = 2.0 / omega * (np.pi - np.arctan(slack * omega / SPEED))
-    period = 2.0 * slack / SPEED + slipping
-    time = np.linspace(0.0, first + 9.99 * period, 40_001)
-    found = _follow_drive(ROPE, SPEED, time)
-    still = found.series["extension_speed"] == 0.0
-    begins = time[1:][still[:-1] & ~still[1:]]
-    told = found.results
-    for what, value, reference, unit, allowed in (
-        ("period", (begins[9] - begins[0]) / 9.0, period, "s", 1.0e-3),
-        ("slip", told.slip, 2.0 * radius, "m", 1.0e-4),
-        ("largest force", told.peak, FRICTION + STIFFNESS * radius, "N", 1.0e-4),
-        ("largest speed", told.speed, SPEED + omega * radius, "m/s", 1.0e-4),
-        ("largest acceleration", told.acceleration, omega**2 * radius, "m/s²", 1.0e-3),
-        ("energy not accounted for", told.energy_residual, 0.0, "", 1.0e-10),
-    ):
-        criterion: Criterion = ("analytic", CYCLE, allowed)
-        yield Verification(f"cycle: {what}", float(value), float(reference), unit, *criterion)
-
-
-def _critical(ratio: float) -> Verification:
-    """Compare the critical speed with bisection; below this speed the segment sticks again."""
-    pulled = replace(ROPE, dashpot=2.0 * ratio * np.sqrt(STIFFNESS * MASS))
-    expected = critical_speed(pulled, FRICTION)
-    low, high = 0.5 * expected, 2.0 * expected
-    while high - low > 1.0e-5 * expected:
-        middle = 0.5 * (low + high)
-        lasting = 5.0 * FRICTION / STIFFNESS / middle + 20.0 * np.pi * np.sqrt(MASS / STIFFNESS)
-        sticks = _follow_drive(pulled, middle, np.linspace(0.0, lasting, 2001)).results.sticks
-        low, high = (middle, high) if sticks else (low, middle)
-    criterion: Criterion = ("analytic", "the swing that just comes back to it", 1.0e-4)
-    return Verification(f"critical speed at ζ = {ratio:g}", high, expected, "m/s", *criterion)
-
-
-def _stiff() -> Verification:
-    """Compare the force of a drive of 1e9 N/m at a quarter of an S-curve with a closed form."""
-    way, time = SCurve(travel=2.0, duration=4.0), np.linspace(0.0, 1.0, 1001)
-    pulled = ElasticDrive(MASS, 1.0e9, dashpot=0.2 * np.sqrt(1.0e9 * MASS))
-    found = move_segment(pulled, way, time, np.full(time.size, FRICTION))
-    asked = FRICTION + MASS * 0.25 * np.pi
-    criterion: Criterion = ("analytic", "friction and m s̈ of the drive", 1.0e-4)
-    force = float(found.series["drive_force"][-1])
-    return Verification("force of a stiff drive", force, float(asked), "N", *criterion)
 
 
 def _one_way(stiffness: float) -> list[float]:

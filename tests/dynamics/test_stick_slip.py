@@ -54,6 +54,7 @@ def test_cycles_of_sticking_and_slipping(speed: float) -> None:
     assert told.speed == pytest.approx(speed + OMEGA * radius, rel=1e-5)
     assert told.acceleration == pytest.approx(radius * OMEGA**2, rel=1e-3)
     assert told.slip == pytest.approx(2.0 * radius, rel=1e-5)
+    assert told.energy_residual < 1e-10
 
 
 @pytest.mark.parametrize("ratio", [0.01, 0.1, 0.5])
@@ -61,7 +62,7 @@ def test_above_a_critical_speed_nothing_sticks(ratio: float) -> None:
     """Reference: analytic, the speed that a damped vibration just reaches again."""
     pulled = damped(ratio)
     critical = critical_speed(pulled, FRICTION)
-    for part, sticks in ((0.999, True), (1.001, False)):
+    for part, sticks in ((0.9999, True), (1.0001, False)):
         speed = part * critical
         duration = 5.0 * FRICTION / STIFFNESS / speed + 40.0 * np.pi / OMEGA
         assert (drawn(pulled, speed, duration, 2000).results.sticks > 1) == sticks
@@ -96,7 +97,7 @@ def test_a_stiff_drive_follows() -> None:
         lag = found.series["drive_force"][1:] / stiffness
         assert found.series["drive_lag"][1:][inside] == pytest.approx(lag[inside], rel=0.02)
     assert off[0] < 2e-3 * FRICTION
-    assert off[1] < 2e-4 * FRICTION
+    assert off[1] < 1e-4 * FRICTION
 
 
 def test_other_drives_push() -> None:
