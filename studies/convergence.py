@@ -127,7 +127,6 @@ STUDIES = (
     "surface_contact",
     "stiffeners",
     "damping",
-    "histories",
     "stick_slip",
     "interpretations",
     "numerics_1997",

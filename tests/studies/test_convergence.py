@@ -18,9 +18,9 @@ from scipy.integrate import quad
 from dynamics.excitation import PiecewiseLinear
 from runs.report.tables import Table
 from studies import convergence
-from studies.histories import response
 from studies.refined import Reference, Refined, refined_table
 from studies.study import Plot, Study, Verification
+from tests.dynamics.histories import response
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
 

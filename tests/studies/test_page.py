@@ -68,7 +68,6 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "stress": {"InnerSegmentState.on_mesh": pressed, "InnerSegmentState.reduced": pressed},
     "stiffeners": {"measure": one, "table": one, "racking_stiffness": one, "ring_flexibility": one},
     "damping": {"PressedBoom.of": swung, "_system": one},
-    "histories": {},
     "second_order": {},
     "telescoping_column": {},
     "design_results": {},

@@ -1,30 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Responses to loads with histories, compared with closed forms."""
+"""Closed forms of vibrations under histories with kinks."""
 
-from __future__ import annotations
-
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 import numpy as np
 
+from dynamics.arrays import Array
 from dynamics.excitation import Excitation, PiecewiseLinear, Ramp, Sine
 from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from studies.study import Criterion, Progress, Verification, define_study
 
-# Output step, time step and duration in s. A step is a tenth of the smallest 1/ω below.
-OUTPUT_STEP, STEP = 0.02, 2.0e-5
-DURATION = 4.0
 # ω in rad/s of 1 kg on a spring: free, as slow as a boom, as fast as the plates of a shell.
 OMEGAS = (0.0, 2.0, 19.0, 300.0, 5.0e3)
-# ω in rad/s of the mass whose vibration is reported.
-BOOM = 19.0
-# Force in N.
-FORCE = 10.0
-
-DUHAMEL: Criterion = ("analytic", "Duhamel's integral of each line", 1.0e-8)
 
 _MANY = np.linspace(0.011, 2.9, 1500)
 KINKED: Mapping[str, Ramp | PiecewiseLinear] = {
@@ -78,22 +64,3 @@ def masses(history: Ramp | Sine | PiecewiseLinear) -> GapSystem:
         observers={f"{w:g}": Observer(row) for w, row in zip(OMEGAS, np.eye(n), strict=True)},
         excitations=[Excitation(np.ones(n), history)],
     )
-
-
-@define_study("histories", f"Loads with histories, steps of {STEP:g} s")
-def study(progress: Progress) -> Iterator[Verification]:
-    """Compare vibrations under histories with kinks with closed forms."""
-    for what, history in KINKED.items():
-        progress(what)
-        run = FixedStep(STEP)(Motion(masses(history), DURATION, OUTPUT_STEP))
-        found = {omega: run.data[f"{omega:g}"].values for omega in OMEGAS}
-        expected = {omega: response(omega, history, run.time) for omega in OMEGAS}
-        after = run.time > history.kinks[-1]
-        measured, exact = (
-            FORCE * 1.0e3 * 0.5 * np.ptp(way[BOOM][after]) for way in (found, expected)
-        )
-        worst = max(np.abs(found[w] - expected[w]).max() / np.ptp(expected[w]) for w in OMEGAS)
-        swing = f"{what}: swing left at {BOOM / (2.0 * np.pi):.2g} Hz"
-        largest = f"{what}: largest error, 0 to {OMEGAS[-1] / (2.0 * np.pi):.0f} Hz, part of range"
-        yield Verification(swing, measured, exact, "mm", *DUHAMEL)
-        yield Verification(largest, float(worst), 0.0, "", *DUHAMEL)
