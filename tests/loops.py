@@ -3,11 +3,13 @@
 
 from pathlib import Path
 
-from studies.numerics_1997.schemes import NEWMARK, measured_root
+from dynamics.motion import Motion
+from studies.numerics_1997.schemes import NEWMARK, integrate
 from tests import rubbing
+from tests.modal import oscillator
 
 
 def compile_loops(rubbed: Path) -> None:
     """Compile the time step, recorded in a file, and the schemes of 1997."""
     rubbing.compile_loop(rubbed)
-    measured_root(NEWMARK, 0.1)
+    integrate(Motion(oscillator(), 1.0, 0.1), NEWMARK, iterated=False)

@@ -37,3 +37,8 @@ def modal_system(
     }
     contacts = np.array(rows, dtype=float).reshape(len(laws), modes.size)
     return GapSystem(modes, np.array(load, dtype=float), contacts, laws, **usual | more)
+
+
+def oscillator() -> GapSystem:
+    """Return 1 kg on a spring of 1 N/m."""
+    return modal_system([1.0], [0.0], tip=[1.0])

@@ -10,7 +10,6 @@ checked.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,12 +19,11 @@ from dynamics.arrays import Array
 from dynamics.contact import contact_terms
 from dynamics.contact_term import Terms
 from dynamics.energy import ENERGIES
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.terms import contact_energy, term_force, term_slope
 from dynamics.motion import Motion
 from dynamics.trajectory import Output, Trajectory
-from studies.study import Verification
 
 # Maximum numbers of iterations in a step: of gaps with friction, and of gaps alone.
 ROUNDS, NEWTON = 8, 30
@@ -203,90 +201,3 @@ def _fill_motion(
         v, acceleration = v1, after
         states[k + 1], speeds[k + 1] = a, v
     return int(unconverged.size)
-
-
-PER_PERIOD = 10
-# Number of steps for the measurement of an eigenvalue.
-STEPS = 100
-
-SOURCE = "roots of the amplification matrix, Bathe 1996"
-
-
-def textbook_root(scheme: Scheme, phase: float) -> complex:
-    """Return the eigenvalue λ of the amplification matrix of an undamped oscillator.
-
-    Newmark's scheme and central differences have closed forms; Wilson's scheme has the matrix of
-    Bathe (1996, section 9.4).
-
-    Args:
-        scheme: one of the three schemes.
-        phase: ω h, the circular frequency times the step.
-    """
-    if scheme == NEWMARK:
-        return complex(np.exp(2.0j * np.arctan(0.5 * phase)))
-    if scheme == CENTRAL:
-        return complex(np.exp(2.0j * np.arcsin(0.5 * phase)))
-    theta = scheme.theta
-    b = 1.0 / (theta / phase**2 + theta**3 / 6.0)
-    matrix = [
-        [1.0 - b * theta**2 / 3.0 - 1.0 / theta, -b * theta, -b],
-        [1.0 - 0.5 / theta - b * theta**2 / 6.0, 1.0 - 0.5 * b * theta, -0.5 * b],
-        [0.5 - (1.0 / theta + b * theta**2 / 3.0) / 6.0, 1.0 - b * theta / 6.0, 1.0 - b / 6.0],
-    ]
-    return _rotating_root(np.linalg.eigvals(matrix))
-
-
-def measured_root(scheme: Scheme, phase: float) -> complex:
-    """Return the eigenvalue λ of the amplification matrix from a computed motion."""
-    motion = Motion(oscillator(), STEPS * phase, phase, position=np.ones(1))
-    way = integrate(motion, scheme, iterated=False).trajectory.states[:, 0]
-    behind = np.stack([way[2:-1], way[1:-2], way[:-3]], axis=1)
-    return _rotating_root(np.roots([1.0, *-np.linalg.lstsq(behind, way[3:], rcond=1.0e-9)[0]]))
-
-
-def oscillator() -> GapSystem:
-    """Return 1 kg on a spring of 1 N/m."""
-    return GapSystem(
-        omega2=np.ones(1),
-        load=np.zeros(1),
-        rows=np.zeros((0, 1)),
-        laws=[],
-        station_of_row=np.zeros(0, dtype=np.int64),
-        stations=[],
-        observers={"tip": Observer(np.ones(1))},
-    )
-
-
-def period_elongation(root: complex, phase: float) -> float:
-    """Return the relative elongation of the period for an eigenvalue."""
-    return float(phase / np.angle(root)) - 1.0
-
-
-def amplitude_loss(root: complex) -> float:
-    """Return the relative loss of amplitude in a period for an eigenvalue."""
-    return 1.0 - float(abs(root) ** (2.0 * np.pi / np.angle(root)))
-
-
-def verifications() -> Iterator[Verification]:
-    """Yield the verifications of period and amplitude of each scheme, at ten steps per period."""
-    phase = 2.0 * np.pi / PER_PERIOD
-    for scheme in (NEWMARK, WILSON, CENTRAL):
-        roots = measured_root(scheme, phase), textbook_root(scheme, phase)
-        periods, amplitudes = (
-            [100.0 * error for error in errors]
-            for errors in (
-                [period_elongation(root, phase) for root in roots],
-                [amplitude_loss(root) for root in roots],
-            )
-        )
-        name = f"{scheme.name}, {PER_PERIOD} steps a period"
-        for what, (value, reference) in (
-            ("period longer by", periods),
-            ("amplitude lost in a period", amplitudes),
-        ):
-            yield Verification(f"{name}: {what}", value, reference, "%", "analytic", SOURCE, 1.0e-6)
-
-
-def _rotating_root(roots: object) -> complex:
-    """Return the eigenvalue with a positive imaginary part."""
-    return complex(max(np.asarray(roots), key=lambda root: root.imag))

@@ -14,7 +14,7 @@ from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
 from runs.report.formatting import NONE, number
 from runs.report.tables import Cell, Table
 from studies.numerics_1997.samples import MEMBERS, MODES, PAPER_STEP, SERIES, ModelRun, Numerics
-from studies.numerics_1997.schemes import NEWMARK, WILSON, verifications
+from studies.numerics_1997.schemes import NEWMARK, WILSON
 from studies.numerics_1997.survey import (
     ABOUT,
     METHODS,
@@ -34,7 +34,6 @@ def study(progress: Progress) -> Iterator[Piece]:
     """Study both examples with all schemes, steps, numbers of modes, and types of iteration."""
     survey = Survey.of(progress)
     yield from tables(survey)
-    yield from verifications()
     yield from plots(survey)
 
 

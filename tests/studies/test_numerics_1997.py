@@ -20,7 +20,6 @@ from studies.numerics_1997.samples import (
     Sample,
     all_numerics,
 )
-from studies.numerics_1997.schemes import oscillator
 from studies.numerics_1997.survey import (
     METHODS,
     TOLERANCES,
@@ -31,6 +30,7 @@ from studies.numerics_1997.survey import (
     solve,
 )
 from studies.numerics_1997.tables import tables
+from tests.modal import oscillator
 
 TIME = np.arange(0.0, 10.0, 1.6e-3)
 CUTOFF = 1.7
