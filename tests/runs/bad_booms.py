@@ -7,17 +7,9 @@ NUMBERS = [
     *replacing("supports = [0.0, 2.0]", {
         'supports = [0.0, { x = 2.0, kind = "welded" }]':
             "segment[1].supports[2].kind: must be 'pinned', 'hinged' or 'clamped', got 'welded'",
-        'supports = [0.0, { x = 2.0, kind = "clamped", stiffness = 1e6 }]':
-            "segment[1].supports: a clamped support is rigid, and the one at 2 m has a "
-            "stiffness; leave it out, or make the support pinned",
         'supports = [0.0, { x = 2.0, kind = "clamped" }]':
             "model[1].base: 'outer' has clamped or elastic supports, for which the functions "
             "'as printed' have no form; use base = 'complete'",
-        "supports = [0.0, 12.0]":
-            "segment[1].supports: 12 m lies outside 'outer'; it must be between 0 and 10 m",
-        "supports = []":
-            "segment[1]: nothing holds 'outer': give it two supports, a hinge and a cylinder "
-            "whose line passes beside it, or a joint with two stations to a segment that is held",
     }),
     *adding("load = 55.07", {
         "lateral_load = 20.0":
@@ -34,8 +26,6 @@ NUMBERS = [
         "1e7\n\n[[joint]]":
             "stop[1].x: 3 m lies outside 'inner'; it must be between 9 and 19 m",
     }),
-    ("mass_per_length = 83.16", "mass_per_length = -83.16",
-     "segment[1].mass_per_length: must be a number greater than 0, got -83.16"),
     ("stiffness = 1e13", "stiffness = 0.0",
      "joint[1].stiffness: must be a number greater than 0, got 0.0"),
     *replacing("play = 0.014", {
@@ -49,12 +39,8 @@ NUMBERS = [
             "SI units",
     }),
     *replacing("span = [9.0, 19.0]", {
-        "span = [9.0, inf]": "segment[2].span[2]: must be a finite number, got inf",
         "span = [19.0, 9.0]":
             "segment[2].span: must run from a smaller to a larger x, got [19, 9] m",
-        "span = [11.0, 19.0]":
-            "joint[1]: 'outer' ends at 10 m before 'inner' starts at 11 m; the segments of a "
-            "joint must overlap",
         "span = [9.9999999, 19.0]":
             "joint[1]: 'inner' overlaps 'outer' by 1e-07 m; it must be at least 0.0009 m, usual "
             "is a tenth of its length",
@@ -64,13 +50,10 @@ NUMBERS = [
     ("poissons_ratio = 0.3", "poissons_ratio = 0.5",
      "material.poissons_ratio: must be a number less than 0.5, got 0.5"),
     *replacing("exponent = 2.0", {
-        "exponent = 0.5": "joint[1].exponent: must be a number not less than 1, got 0.5",
         "exponent = 2e9":
             "joint[1].exponent: must be a number not greater than 10, got 2000000000.0",
     }),
     *replacing("terms = [2, 3]", {
-        "terms = [2, 0]": "model[2].terms[2]: must be a number not less than 1, got 0",
-        "terms = []": "model[2].terms: must have one number for each of the 2 segments, got []",
         "terms = [2, 3, 1]":
             "model[2].terms: must have one number for each of the 2 segments, got [2, 3, 1]",
         "terms = [2, 61]":
@@ -83,25 +66,11 @@ NUMBERS = [
      "segment[2].name: 'outer' is the name of segment[1] already; give each its own"),
     *replacing('inner = "inner"', {
         'inner = "innner"': "joint[1].inner: 'innner' is no segment; give 'outer' or 'inner'",
-        'inner = "outer"': "joint[1].inner: must be another segment than the outer one",
     }),
-    ('outer = "outer"\ninner = "inner"', 'outer = "inner"\ninner = "outer"',
-     "joint[1]: 'outer' is nearer to the base than 'inner'; exchange inner and outer"),
     *replacing("stations = [9.0, 10.0]", {
-        "stations = [9.0, 10.5]":
-            "joint[1].stations: 10.5 m lies outside the overlap of 'outer' and 'inner'; it must "
-            "be between 9 and 10 m",
         "stations = []": "joint[1].stations: empty; give at least one",
     }),
-    ("mass_per_length = 55.07\nsecond_moment_of_area = 2.1829e-4",
-     "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }",
-     "joint[1].play: 'inner' does not fit in 'outer': -0.014127 m of height and -0.0170849 m of "
-     "width are free, and a play of 0.014 m is asked for; make the inner section or the play "
-     "smaller"),
     *replacing("height_to_width = 1.5", {
-        "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.4 }":
-            "segment[1].section: walls of 0.0065 m (flange) and 0.4 m (web) leave no room in a "
-            "box of 0.49 m x 0.33 m; the walls must be thinner",
         "section = { height = 0.49, width = 0.33, flange = 0.0075, web = 0.0065 }":
             "segment[1].mass_per_length: 83.16 is not the section's own 88.862, and beams and "
             "shell would be different booms; leave it out, or change the section",
@@ -115,22 +84,16 @@ NUMBERS = [
     }),
     ("duration = 0.6", "duration = 0.6\nstep = 0.01",
      "time.step: must not be above the output step of 0.001 s, got 0.01 s"),
-    ("terms = [2, 3]", "terms = [2, 3]\nstep = 0.01",
-     "model[2].step: must not be above the output step of 0.001 s, got 0.01 s"),
     ("element_length = 0.5", "element_length = 1e-9",
      "model[3].element_length: 1e-09 m makes more than 5000 elements of a segment; it must be "
      "at least 0.002 m"),
     *adding("mesh_size = 0.25", {
         'modes = "many"': "model[6].modes: must be a whole number above 0, or 'auto', got 'many'",
-        "modes = 0": "model[6].modes: must be a whole number above 0, or 'auto', got 0",
     }),
     *replacing('contact_tolerance = "any"', {
         "contact_tolerance = 1e-4":
             "model[6].contact_tolerance: must be a number from 0.001 to below 1, or 'any', got "
             "0.0001",
-        'contact_tolerance = "fine"':
-            "model[6].contact_tolerance: must be a number from 0.001 to below 1, or 'any', got "
-            "'fine'",
     }),
     ("mesh_size = 0.25", "mesh_size = 1e-9",
      "model[6].mesh_size: 1e-09 m makes more than 2e+07 triangles; it must be at least 0.00176 m"),

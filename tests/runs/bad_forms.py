@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Errors in keys and types of a case file, and missing keys; see ``bad_edits``."""
 
-from tests.runs.coarse_case import CONTACT, replacing
+from tests.runs.coarse_case import replacing
 
 BOX = "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }"
 
@@ -9,16 +9,14 @@ FORMS = [
     *replacing("duration = 0.6", {
         "colour = 1":
             "time.colour: unknown key; known ones are duration, output_step, step, tolerance",
-        "durration = 0.6": "time.durration: unknown key; the nearest known one is duration",
         "duration = 0.6\nangle = 45.0": "time.angle: unknown key; use gravity.angle",
         "step_output = 0.6": "time.step_output: unknown key; the nearest known one is output_step",
-        'duration = "0.6"': "time.duration: must be a number, got '0.6'",
         "duration = true": "time.duration: must be a number, got true",
+        'duration = "0.6"': "time.duration: must be a number, got '0.6'",
         '"\\u001b[31m" = 1':
             "time.\\x1b[31m: unknown key; known ones are duration, output_step, step, tolerance",
     }),
     *replacing("terms = [2, 3]", {
-        "term = [2, 3]": "model[2].term: unknown key; the nearest known one is terms",
         "terms = [2, 2.5]": "model[2].terms[2]: must be a whole number, got 2.5",
     }),
     *replacing("[material]", {
@@ -27,55 +25,28 @@ FORMS = [
         "[[axial]]\nforce = 1e3\nramp = 0.5\n\n[material]":
             "axial[1].ramp: an axial force is constant; give it at its largest, or one "
             "[[load_case]] per value",
-        "[materials]": "materials: unknown key; the nearest known one is material",
-        "[life]\ndetail_category = 0.0\n\n[material]":
-            "life.detail_category: must be a number greater than 0, got 0.0",
-        "[life]\ncategory = 71.0\n\n[material]":
-            "life.category: unknown key; the nearest known one is detail_category",
     }),
     *replacing("height_to_width = 1.5", {
-        "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065, wall = 2 }":
-            "segment[1].section.wall: unknown key; known ones are shape, height, width, flange, "
-            "web",
         "section = { shape = 'star', height = 0.49 }":
             "segment[1].section.shape: must be 'box', 'unequal box', 'polygon', 'hexagon', "
             "'octagon' or 'U', got 'star'",
-        "section = { shape = 'hexagon', height = 0.5, width = 0.3, top = 0.01, bottom = 0.01, "
-        "web = 0.01 }":
-            "segment[1].section.flat: missing; it is the width of the top, and of the bottom, "
-            "in m",
         "section = { shape = 'octagon', height = 0.5, width = 0.3, chamfer = 0.1, top = 0.01, "
         "bottom = 0.01, web = 0.01, radius = 0.1 }":
             "segment[1].section.radius: unknown key; known ones are shape, height, width, top, "
             "bottom, web, chamfer",
-        "section = { shape = 'polygon', corners = [[0, 0], [1], [0, 1]], thicknesses = [1, 1, "
-        "1] }":
-            "segment[1].section.corners[2]: must be a list of two numbers, got [1]",
-        "section = { shape = 'polygon', corners = [[0, 0], [1, 0], [0.4, 0.4], [0, 1]], "
-        "thicknesses = [0.01, 0.01, 0.01, 0.01] }":
-            "segment[1].section: corner 3 turns inwards; plates go once around, every corner "
-            "outwards",
         "head_section = { height = 0.4, width = 0.3, flange = 0.0065, web = 0.0065 }":
             "segment[1].section: missing; a segment with a head_section tapers from it",
         "section = { shape = 'U', height = 0.5, width = 0.3, radius = 0.1, facets = 21, top = "
         "0.01, bottom = 0.01, web = 0.01 }":
             "segment[1].section.facets: must be a number not greater than 20, got 21",
-        "section = { shape = 'U', height = 0.5, width = 0.3, radius = 0.2, top = 0.01, bottom = "
-        "0.01, web = 0.01 }":
-            "segment[1].section: radius must be above 0 and not above half the width and the "
-            "height, 0.15 m, got 0.2",
         "section = { shape = 'unequal box', height = 0.5, width = 0.3, top = 0.01, web = 0.01 }":
             "segment[1].section.bottom: missing; it is the thickness of the lower flange in m",
-        "section = 3": "segment[1].section: must be a table, got 3",
     }),
     ("supports = [0.0, 2.0]", 'supports = [0.0, "2 m"]',
      "segment[1].supports[2].x: must be a number of m, 'tail', 'head' or a distance in m from "
      "one of them such as { tail = 0.2 }, got '2 m'"),
     ("density = 7850.0\n", "",
      "material.density: missing; it is the density in kg/m^3"),
-    ("span = [9.0, 19.0]\n", "",
-     "segment[2].span: missing; it is the x of its two ends in m, in ascending order; or give "
-     "length"),
     ("mass_per_length = 55.07\n", "",
      "segment[2].mass_per_length: missing; it is the mass per length in kg/m; follows from the "
      "section unless given"),
@@ -93,7 +64,6 @@ FORMS = [
     }),
     *replacing("span = [9.0, 19.0]", {
         "span = 9.0": "segment[2].span: must be a list, got 9.0",
-        "span = [9.0]": "segment[2].span: must be a list of two numbers, got [9.0]",
         "span = [9.0, 14.0, 19.0]":
             "segment[2].span: must be a list of two numbers, got [9.0, 14.0, 19.0]",
     }),
@@ -102,8 +72,6 @@ FORMS = [
      "'inner', 'stations': [9.0, 10..."),
     ('kind = "shell"', 'kind = "plate"',
      "model[6].kind: must be 'kantorovich', 'finite-element', 'shell' or 'rigid', got 'plate'"),
-    ('contact_line = "near webs"', 'contact_line = "middle"',
-     "model[6].contact_line: must be 'near webs', 'across' or 'surface', got 'middle'"),
     *replacing("[time]", {
         'demand = ["S1", "S12"]\n[time]':
             "demand[2]: must be 'S1', 'S2', 'S3', 'S4', 'S5', 'S6', 'S7', 'S8', 'S9', 'S10' or "
@@ -120,17 +88,6 @@ FORMS = [
     ("height_to_width = 1.5",
      f"{BOX}\nhead_section = {{ height = 0.4, width = 0.3, flange = 0.0065, web = 0.0065 }}",
      "segment[2].section: missing, and none is inferred within 'outer', which tapers; give it"),
-    ("height_to_width = 1.5",
-     f"{BOX}\nhead_section = {{ height = 0.4, width = 0.3, flange = 0.0065, wall = 0.0065 }}",
-     "segment[1].head_section.wall: unknown key; known ones are shape, height, width, flange, "
-     "web"),
-    (CONTACT,
-     "contact = { exponent = 1.0 }",
-     "model[3].contact.stiffness: missing; it is the contact stiffness in N/m^n where the inner "
-     "segment presses up"),
-    (CONTACT,
-     "contact = 3",
-     "model[3].contact: must be a table, got 3"),
     ('name = "beam-fe"',
      f'name = "{"b" * 61}"',
      "model[3].name: too long; give 60 characters at most"),
@@ -142,9 +99,6 @@ FORMS = [
     ("supports = [0.0, 2.0]",
      f"supports = {[0.0] * 20_000}",
      "segment[1].supports: too many; give 100 at most"),
-    ("stations = [9.0, 10.0]",
-     f"stations = {[9.0] * 300}",
-     "joint[1].stations: too many; give 50 at most"),
     ("[[joint]]",
      '[[stop]]\nsegment = "inner"\nx = 10.0\nplay = 1.0\nstiffness = 1e7\n' * 2000 + "[[joint]]",
      "stop: too many; give 50 at most"),
@@ -154,7 +108,4 @@ FORMS = [
     ("terms = [2, 3]",
      f"terms = [2, 0x{'f' * 5000}]",
      "model[2].terms[2]: has more than 64 bits; give fewer digits, or a number as 1.0e20"),
-    (CONTACT,
-     "contact = { stiffness = 1e13, exponent = 1,5 }",
-     "line 61: not TOML: 1,5 has a decimal comma; give 1.5"),
 ]  # fmt: skip

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Reading, writing and selecting cases, and their JSON schema."""
 
-import copy
 import json
+import re
 import tomllib
 from dataclasses import replace
 from pathlib import Path
@@ -30,12 +30,6 @@ def test_beam_elements_are_shear_flexible_unless_the_case_says_otherwise(tmp_pat
     case = read_case(tmp_path, COARSE.replace('theory = "euler-bernoulli"\n', ""))
     theories = {model.theory for model in case.models if isinstance(model, BeamElements)}
     assert theories == {"timoshenko"}
-
-
-@pytest.mark.parametrize("name", ["paper", "coarse"])
-def test_the_effective_case_reads_back_as_itself(name: str) -> None:
-    case = shipped(name)
-    assert Case.model_validate(tomllib.loads(toml.dumps(case))) == case
 
 
 def test_any_text_and_number_survives_writing(tmp_path: Path) -> None:
@@ -142,14 +136,6 @@ def test_selection_changes_the_members_of_ensembles() -> None:
     assert select(paper, "paper.toml", members=0).ensemble is None
 
 
-@pytest.mark.parametrize("members", [-1, 1, 10_001])
-def test_refuses_ensembles_of_other_sizes(members: int) -> None:
-    with refused(
-        f"paper.toml: --members: must be from 2 to 10000, or 0 for no ensembles, got {members}"
-    ):
-        select(shipped("paper"), "paper.toml", members=members)
-
-
 def test_every_key_is_described_and_no_other_is_allowed() -> None:
     schema = Case.model_json_schema()
     for one in [schema, *schema["$defs"].values()]:
@@ -208,40 +194,34 @@ def test_a_byte_order_mark_is_no_fault(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("models", "mesh_size", "line"),
+    ("asked", "line"),
     [
-        (["shell", "plate"], None, "--models: 'plate' is not a model of the case; give "
+        ({"members": 1}, "--members: must be from 2 to 10000, or 0 for no ensembles, got 1"),
+        ({"members": 10_001},
+         "--members: must be from 2 to 10000, or 0 for no ensembles, got 10001"),
+        ({"models": ["shell", "plate"]}, "--models: 'plate' is not a model of the case; give "
          "'kantorovich-4', 'kantorovich-5', 'beam-fe', 'timoshenko', 'beam-fe-bonded' or 'shell'"),
-        (None, -1.0, "--mesh-size: must be a finite number of m above 0, got -1"),
-        (None, float("nan"), "--mesh-size: must be a finite number of m above 0, got nan"),
-        (None, 1e-9,
+        ({"mesh_size": -1.0}, "--mesh-size: must be a finite number of m above 0, got -1"),
+        ({"mesh_size": float("nan")}, "--mesh-size: must be a finite number of m above 0, got nan"),
+        ({"mesh_size": 1e-9},
          "--mesh-size: 1e-09 m makes more than 2e+07 triangles; it must be at least 0.00176 m"),
-        (["beam-fe"], 0.5, "--mesh-size: no shell is to be run; leave it out"),
+        ({"models": ["beam-fe"], "mesh_size": 0.5},
+         "--mesh-size: no shell is to be run; leave it out"),
+        ({"modes": "many"}, "--modes: must be a whole number above 0, or auto, got 'many'"),
+        ({"modes": "0"}, "--modes: must be a whole number above 0, or auto, got '0'"),
+        ({"models": ["beam-fe"], "modes": "auto"},
+         "--modes: no shell is to be run; leave it out"),
     ],
 )  # fmt: skip
-def test_refuses_a_selection_with_one_exact_line(models: Any, mesh_size: Any, line: str) -> None:
-    case = shipped("coarse")
+def test_refuses_a_selection_with_one_exact_line(asked: dict[str, Any], line: str) -> None:
     with refused(f"coarse.toml: {line}"):
-        select(case, "coarse.toml", models, mesh_size)
+        select(shipped("coarse"), "coarse.toml", **asked)
 
 
 @pytest.mark.parametrize(("modes", "chosen"), [("auto", "auto"), ("12", 12)])
 def test_chooses_the_coordinates_of_the_shells(modes: str, chosen: object) -> None:
     case = select(shipped("coarse"), "coarse.toml", modes=modes)
     assert [m.modes for m in case.models if isinstance(m, Shell)] == [chosen]
-
-
-@pytest.mark.parametrize(
-    ("models", "modes", "line"),
-    [
-        (None, "many", "--modes: must be a whole number above 0, or auto, got 'many'"),
-        (None, "0", "--modes: must be a whole number above 0, or auto, got '0'"),
-        (["beam-fe"], "auto", "--modes: no shell is to be run; leave it out"),
-    ],
-)
-def test_refuses_coordinates_with_one_exact_line(models: Any, modes: str, line: str) -> None:
-    with refused(f"coarse.toml: {line}"):
-        select(shipped("coarse"), "coarse.toml", models, modes=modes)
 
 
 VALIDATOR = jsonschema.Draft202012Validator(case_schema())
@@ -263,50 +243,57 @@ def test_it_is_a_schema() -> None:
 
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_schema_accepts_the_shipped_cases(path: Path) -> None:
+def test_shipped_cases_are_valid_and_read_back_as_themselves(path: Path) -> None:
     """Both the shipped files and the files written by a run are valid."""
-    assert faults(data(path.read_text(encoding="utf-8"))) == []
-    assert faults(data(toml.dumps(load(str(path))))) == []
+    case = load(str(path))
+    written = toml.dumps(case)
+    assert faults(data(path.read_text(encoding="utf-8"))) == faults(data(written)) == []
+    assert Case.model_validate(tomllib.loads(written)) == case
 
 
-def test_it_accepts_supports_and_modes_in_all_their_forms() -> None:
-    case = data((CASES / "coarse.toml").read_text(encoding="utf-8"))
-    case["segment"][0]["supports"] = [0, 1.5, {"x": 2.0, "kind": "clamped"}]
+def test_it_accepts_keys_in_all_their_forms() -> None:
+    case = data(COARSE)
+    outer, inner = case["segment"]
+    outer["supports"] = [0, 1.5, {"x": 2.0, "kind": "clamped"}, "tail", {"x": {"tail": 2.0}}]
+    inner["length"] = inner.pop("span")[1]
+    case["joint"][0] |= {"extension": 9, "stations": ["tail", {"head": 0.2}, 10]}
+    case["units"] = "N-mm"
     for modes in (3, "auto"):
         case["model"][-1]["modes"] = modes
         assert faults(case) == []
 
 
-def test_it_accepts_places_in_all_their_forms() -> None:
-    case = data((CASES / "coarse.toml").read_text(encoding="utf-8"))
-    case["segment"][1] |= {"length": 10.0}
-    del case["segment"][1]["span"]
-    case["segment"][0]["supports"] = ["tail", {"x": {"tail": 2.0}}]
-    case["joint"][0] |= {"extension": 9, "stations": ["tail", {"head": 0.2}, 10]}
-    case["units"] = "N-mm"
-    assert faults(case) == []
-    case["joint"][0]["stations"] = ["tip"]
-    assert faults(case) == ["$.joint[0].stations[0]"]
+ENSEMBLE = {"members": 8, "relative": 1e-9, "seed": 1}
 
 
 @pytest.mark.parametrize(
-    ("place", "value", "fault"),
+    ("place", "value"),
     [
-        (("durration",), 1.0, "$"), (("time", "duration"), "0.6", "$.time.duration"),
-        (("time", "duration"), -1.0, "$.time.duration"), (("title",), "two\nlines", "$.title"),
-        (("segment", 0, "supports"), [True], "$.segment[0].supports[0]"),
-        (("segment", 0, "supports"), [{"y": 1.0}], "$.segment[0].supports[0]"),
-        (("segment", 0, "span"), [0.0], "$.segment[0].span"),
-        (("joint", 0, "stations"), [], "$.joint[0].stations"),
-        (("joint", 0, "exponent"), 0.5, "$.joint[0].exponent"),
-        (("model", 5, "modes"), 0, "$.model[5]"), (("model", 5, "modes"), "many", "$.model[5]"),
-        (("model", 0, "kind"), "plate", "$.model[0]"),
+        ("durration", 1.0), ("time.duration", "0.6"), ("time.duration", -1.0),
+        ("title", "two\nlines"), ("segment.0.supports.0", True), ("segment.0.span", [0.0]),
+        ("segment.0.supports.0", {"y": 1.0}), ("segment.0.mass_per_length", -83.16),
+        ("segment.0.collars", [{"span": [1.0, 2.0], "thickness": 0.0}]),
+        ("segment.0.diaphragms", [{"x": 1.0, "thickness": -0.008}]), ("joint.0.stations", []),
+        ("joint.0.stations.0", "tip"), ("joint.0.exponent", 0.5), ("joint.0.friction", -0.2),
+        ("joint.0.dashpot", -1e3), ("joint.0.contact_length", 0.0), ("joint.0.extension", -1.0),
+        ("joint.0.drive", {"stiffness": 0.0}), ("joint.0.drive", {"dashpot": -1.0}),
+        ("joint.0.drive", {"static_friction": 0.0}), ("model.1.terms.1", 0),
+        ("model.5.modes", 0), ("model.5.modes", "many"), ("model.0.kind", "plate"),
+        ("gravity", {"angle": 100.0}), ("gravity", {"acceleration": -9.8}),
+        ("damping", {"modal": 2.0}), ("payload", {"mass": -1.0}), ("limits", {"tip": -0.9}),
+        ("life", {"detail_category": 0.0}), ("ensemble", ENSEMBLE | {"seed": -1}),
+        ("ensemble", ENSEMBLE | {"members": 1}), ("ensemble", ENSEMBLE | {"members": 20000}),
+        ("ensemble", ENSEMBLE | {"relative": 1.0}),
+        ("combination", [{"name": "A", "factors": {"dead": [-1.0]}}]),
     ],
 )  # fmt: skip
-def test_it_refuses_a_slip(place: tuple[str | int, ...], value: object, fault: str) -> None:
-    case = copy.deepcopy(data((CASES / "coarse.toml").read_text(encoding="utf-8")))
+def test_it_refuses_a_slip(place: str, value: object) -> None:
+    case = data(COARSE)
     here: Any = case
-    for step in place[:-1]:
+    *steps, key = (int(step) if step.isdigit() else step for step in place.split("."))
+    for step in steps:
         here = here[step]
-    here[place[-1]] = value
-    assert faults(case) == [fault]
+    here[key] = value
+    (fault,) = faults(case)
+    expected = re.sub(r"\.(\d+)", r"[\1]", f"$.{place}")
+    assert fault.startswith(expected) or expected.startswith(fault)

@@ -197,9 +197,6 @@ def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
          "'level' is of this group; give its factor, 0 where it does not act"),
         ((", wind = 1.22", ""), "combination[2].factors.wind: missing, and load[1] is of this "
          "group; give its factor, 0 where it does not act"),
-        (("[1.2, 1.1]", "-1.0"), "combination[1].factors.dead[1]: must be a number not less "
-         "than 0, got -1.0"),
-        (("[1.2, 1.1]", "[]"), "combination[1].factors.dead: empty; give at least one"),
         (("wind = 0.0", "snow = 0.0"), "combination[1].factors.snow: unknown key; known ones "
          "are dead, payload, wind, dynamic, test"),
         (('["level"]', '["low"]'), "combination[2].load_cases: 'low' is no load case; give "

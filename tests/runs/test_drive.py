@@ -121,9 +121,6 @@ exponent = 1.0
          "joint[1].drive.speed: time is given; leave one of them out"),
         (DRIVE, "drive = { travel = 4.0, time = 5.0, ramp = 1.0 }\n",
          "joint[1].drive.ramp: time is given; only a speed has a ramp"),
-        (DRIVE, "drive = { travel = 4.0, speed = 4.0, ramp = 2.0 }\n",
-         "joint[1].drive.ramp: within a travel of 4 a ramp of 2 s does not come to a speed of "
-         "4; the ramp must be at most 1 s"),
         (DRIVE, "drive = { travel = 4.0, time = 1e-9 }\n",
          "joint[1].drive.time: must be at least 1e-06 s, got 1e-09 s"),
         (DRIVE, "drive = { travel = 1e308, speed = 1e-300 }\n",
@@ -132,17 +129,6 @@ exponent = 1.0
          "joint[1].drive.travel: table is given; leave one of them out"),
         (DRIVE, TABLE.replace("[0.0, 0.0]", "[0.0, 0.5]"),
          "joint[1].drive.table: must be 0 m at t = 0, where the boom is as it is given, got 0.5 m"),
-        (DRIVE, TABLE.replace("[1.0, 2.0]", "[0.0, 2.0]"),
-         "joint[1].drive.table: times must rise"),
-        (DRIVE, TABLE.replace("table", 'file = "ways.csv", table'),
-         "joint[1].drive.file: table is given; leave one of them out"),
-        (DRIVE, DRIVE.replace("least", "columns = ['a', 'b'], least"),
-         "joint[1].drive.columns: there is no file whose columns these are; leave it out"),
-        (DRIVE, DRIVE.replace("time", "tiem"),
-         "joint[1].drive.tiem: unknown key; the nearest known one is time"),
-        (DRIVE, DRIVE.replace("4.0", "4.5"),
-         "joint[1].drive: extends 'inner' by 4.5 m until 0.5 m of overlap are left; it must "
-         "leave at least 1 m"),
         ('stations = ["tail", "head"]', "stations = [5.0, 10.0]",
          "joint[1].stations: 5 m does not tell on which segment the station moves as "
          "'inner' telescopes; give 'tail' or 'head', or a distance from one"),
@@ -161,18 +147,12 @@ exponent = 1.0
         ('theory = "euler-bernoulli"', 'theory = "euler-bernoulli"\nbonded = true',
          "model[2]: 'beam-fe' is bonded, and cannot telescope; leave the model out, or "
          "joint[1].drive"),
-        ("[[joint]]", "[[axial]]\nforce = 7e5\n\n[[joint]]",
-         "model[2]: the boom of 'beam-fe' buckles under 0.789 times its axial forces, and has no "
-         "motion; it must bear more than all of them: make these smaller, or the sections larger"),
         ("[[joint]]", "[[joint]]\nlocked_at = 7.0",
          "joint[1].locked_at: 7 m does not tell on which segment the place moves as 'inner' "
          "telescopes; give 'tail' or 'head', or a distance from one"),
         ("[[joint]]", "[[joint]]\nlocked_at = { tail = 2.0 }",
          "joint[1].locked_at: 7 m leaves the overlap as 'inner' telescopes by 4 m; make the travel "
          "shorter, or move the place"),
-        ("[[joint]]", "[[joint]]\nlocked_at = { head = 4.5 }",
-         "joint[1].locked_at: 5.5 m leaves the overlap as 'inner' telescopes by 4 m; make the "
-         "travel shorter, or move the place"),
         (DRIVE, "locked_at = 4.0\ndrive = { travel = -3.0, time = 5.0 }\n",
          "joint[1].locked_at: 'inner' retracts by 3 m, past 4 m, where it is pushed; make "
          "the travel shorter, or move the place"),

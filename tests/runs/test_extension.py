@@ -136,12 +136,8 @@ def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
         ("length = 9.5", "length = 19.0",
          "joint[1].extension: must be at least 9 m and below 19 m, so that 'middle' begins in "
          "'base', got 8 m"),
-        ("extension = 7.5", "extension = -1.0",
-         "joint[2].extension: must be a number not less than 0, got -1.0"),
         ('inner = "fly"', 'inner = "middle"',
          "joint[2].inner: must be another segment than the outer one"),
-        ('outer = "middle"\ninner = "fly"', 'outer = "fly"\ninner = "middle"',
-         "joint[2]: 'middle' is nearer to the base than 'fly'; exchange inner and outer"),
         ('outer = "base"\ninner = "middle"', 'outer = "base"\ninner = "fly"',
          "joint[2].extension: 'fly' has its place by joint[1].extension; leave one of them out"),
         ('["tail", { head = 0.1 }]', '["tail", { head = 1.6 }]',
@@ -150,10 +146,6 @@ def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
         ('["tail", { head = 0.1 }]', '["tail", { heads = 0.1 }]',
          "joint[1].stations[2]: must be a number of m, 'tail', 'head' or a distance in m from one "
          "of them such as { tail = 0.2 }, got {'heads': 0.1}"),
-        ('["tail", { head = 0.1 }]', '["tail", { head = -0.1 }]',
-         "joint[1].stations[2]: must be a number of m, 'tail', 'head' or a distance in m from one "
-         "of them such as { tail = 0.2 }, got {'head': -0.1}"),
-        ('x = "head"', "x = inf", "load[2].x: must be a finite number, got inf"),
     ],
 )  # fmt: skip
 def test_a_contradiction_is_one_line(relative: str, wrong: str, line: str) -> None:

@@ -82,20 +82,10 @@ def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
          "joint[1].exponent: force_table is given; leave one of them out"),
         ("force_table = [[1e-3, 2.0]]\nlateral_play = 0.01\nlateral_exponent = 2.0",
          "joint[1].lateral_exponent: force_table is given; leave one of them out"),
-        ("lateral_stiffness = 1e9\nforce_table = [[1e-3, 2.0]]\nstiffness = 1e9",
-         "joint[1].stiffness: force_table is given; leave one of them out"),
         ('force_table = [[1e-3, 2.0]]\nforce_file = "back.csv"',
          "joint[1].force_file: force_table is given; leave one of them out"),
-        ("force_table = []", "joint[1].force_table: empty; give at least one"),
         ("force_table = [[0.0, 0.0], [1e-3, 2.0]]",
          "joint[1].force_table: depths must be finite and rise from above 0"),
-        ("force_table = [[1e-3, 2.0], [2e-3, 1.0]]",
-         "joint[1].force_table: forces must be positive, and must not fall at the end"),
-        ("force_table = [[1e-3]]",
-         "joint[1].force_table[1]: must be a list of two numbers, got [0.001]"),
-        ('force_file = "words.csv"',
-         "joint[1].force_file: 'words.csv' has no finite number in line 2, column 2; give a CSV "
-         "file of two columns, penetration in m and force in N; a heading may say other units"),
         ('force_file = "back.csv"',
          "joint[1].force_file: 'back.csv' has a penetration in line 2 that does not rise; sort "
          "them"),
@@ -104,8 +94,6 @@ def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
     ],
 )  # fmt: skip
 def test_bad_tables_are_refused(tmp_path: Path, law: str, message: str) -> None:
-    for name, text in (
-        ("words", "p, F\n1, a\n"), ("back", "2e-3, 1\n1e-3, 2\n"), ("pulls", "1e-3, 2\n2e-3, -1\n")
-    ):  # fmt: skip
+    for name, text in (("back", "2e-3, 1\n1e-3, 2\n"), ("pulls", "1e-3, 2\n2e-3, -1\n")):
         (tmp_path / f"{name}.csv").write_text(text, encoding="utf-8")
     assert refusal(tmp_path, COARSE.replace(LAW, f"{law}\n")) == message

@@ -105,15 +105,6 @@ def test_case_needs_no_material_besides_those_of_all_segments(tmp_path: Path) ->
          "",
          "payload.gravity: the table gravity is given, by which the payload weighs too; leave "
          "one of them out"),
-        ("[gravity]\nangle = 100.0",
-         "",
-         "gravity.angle: must be a number not greater than 90, got 100.0"),
-        ("[gravity]\nacceleration = -9.8",
-         "",
-         "gravity.acceleration: must be a number not less than 0, got -9.8"),
-        ("[gravity]\nluffing = 60.0",
-         "",
-         "gravity.luffing: unknown key; known ones are acceleration, angle"),
     ],
 )  # fmt: skip
 def test_bad_gravity_is_refused(tmp_path: Path, rest: str, material: str, line: str) -> None:

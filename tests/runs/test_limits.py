@@ -27,7 +27,6 @@ from tests.runs.cantilever import (
     YOUNG,
     static_tip,
 )
-from tests.runs.case_texts import refused
 from tests.runs.sweeping import run
 
 pytestmark = pytest.mark.usefixtures("here")
@@ -98,18 +97,6 @@ def test_check_compares_limits_with_the_tip_at_rest() -> None:
 def limit_sentences(case: Case) -> list[str]:
     """Return the sentences of ``check`` on limits."""
     return [line for line in check_case(CheckedCase(case)).lines if "imit " in line]
-
-
-@pytest.mark.parametrize(
-    ("limits", "line"),
-    [
-        ("tip = -0.9", "limits.tip: must be a number greater than 0, got -0.9"),
-        ("tips = 0.9", "limits.tips: unknown key; the nearest known one is tip"),
-    ],
-)
-def test_bad_limit_is_refused(limits: str, line: str) -> None:
-    with refused(f"case.toml: {line}"):
-        reading.load(write(limits))
 
 
 @pytest.mark.usefixtures("few_figures")

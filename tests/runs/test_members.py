@@ -210,12 +210,7 @@ def test_models_are_compared_in_the_summary(run: Run) -> None:
     [
         ("relative = 1e-9", "members: missing; it is the number of runs of each model, "
          "including the unchanged one"),
-        ("members = 1", "members: must be a number not less than 2, got 1"),
-        ("members = 20000", "members: must be a number not greater than 10000, got 20000"),
-        ("members = 8\nrelative = 1.0", "relative: must be a number less than 1, got 1.0"),
-        ("members = 8\nseed = -1", "seed: must be a number not less than 0, got -1"),
         ('members = 8\nvary = "mass"', "vary: must be 'load' or 'clearance', got 'mass'"),
-        ("members = 8\nmember = 3", "member: unknown key; the nearest known one is members"),
     ],
 )  # fmt: skip
 def test_a_bad_table_is_one_line(table: str, line: str, tmp_path: Path) -> None:

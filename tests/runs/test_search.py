@@ -75,7 +75,6 @@ def test_search_with_governing_walls_gives_a_caution() -> None:
          "--until: 'tip=0.9' is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER"),
         (("--vary", LENGTHS, "--vary", "segment.load=1,2", "--until", "tip<0.9"),
          "--until: 2 keys vary; give one --vary"),
-        (("--sensitivity", "--until", "tip<0.9"), "--until: 0 keys vary; give one --vary"),
     ],
 )  # fmt: skip
 def test_a_search_without_an_aim_is_refused(
