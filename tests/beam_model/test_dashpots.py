@@ -93,9 +93,7 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
     assert (hertz, ratios) == (pytest.approx([omega / (2.0 * np.pi)]), pytest.approx([ratio]))
 
 
-def test_a_nearly_rigid_bar_on_a_dashpot_loses_its_swing(
-    beam: Callable[..., Segment],
-) -> None:
+def test_a_nearly_rigid_bar_on_a_dashpot_loses_its_swing(beam: Callable[..., Segment]) -> None:
     """Reference: analytic, the rigid bar: ζ = c r / 2√(k I). Bending has much higher frequencies;
     the default step must not cause damping by them.
     """

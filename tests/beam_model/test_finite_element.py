@@ -97,9 +97,7 @@ def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inerti
 
 @pytest.mark.parametrize("theory", THEORIES)
 @pytest.mark.parametrize("length", [20.0, 1.3, 0.4])
-def test_statics_are_exact_at_the_nodes_of_any_mesh(
-    beam: Beam, theory: Theory, length: float
-) -> None:
+def test_statics_are_exact_at_nodes_of_any_mesh(beam: Beam, theory: Theory, length: float) -> None:
     """Reference: analytic, an overhanging beam under its load, and forces at breaks and tip."""
     segment = beam(supports=(3.0, 4.2), load=-4000.0)
     forces = [(6.1, 3.0e4), (8.0, -1.0e4)]
@@ -115,9 +113,7 @@ def test_statics_are_exact_at_the_nodes_of_any_mesh(
 
 @pytest.mark.parametrize("theory", THEORIES)
 @pytest.mark.parametrize("apart", [1.0e-4, 1.0e-5, 1.0e-7])
-def test_places_too_near_for_an_element_share_a_node(
-    beam: Beam, theory: Theory, apart: float
-) -> None:
+def test_places_too_near_for_element_share_node(beam: Beam, theory: Theory, apart: float) -> None:
     """Reference: analytic, an overhanging beam under a force at one of two close positions."""
     segment = beam(supports=(3.0, 4.2), masses=(PointMass(8.0 - apart, 1.0),))
     exact = OverhangingBeam(segment, [(6.1 + apart, 3.0e4)], 0.0, shear_stiffness(segment, theory))

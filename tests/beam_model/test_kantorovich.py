@@ -89,9 +89,7 @@ def test_printed_base_has_no_slope_at_its_first_support(paper_boom: Boom) -> Non
         assert (np.abs(slope(model, 0.0)).min() > 1e-3 * size) == (not clamped)
 
 
-def test_printed_inner_functions_keep_the_tip_on_the_tangent_at_the_tail(
-    paper_boom: Boom,
-) -> None:
+def test_printed_inner_functions_keep_the_tip_on_the_tangent_at_the_tail(paper_boom: Boom) -> None:
     """Reference: analytic, u(x4) = u(x2) + u'(x2) (x4 − x2) of each of (30), (31)."""
     model = kantorovich_bending(paper_boom.segments[1], 9, "as printed", rotary_inertia=False)
     tangent = model.at(9.0) + 10.0 * slope(model, 9.0)

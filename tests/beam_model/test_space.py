@@ -210,9 +210,7 @@ def same(one: Trajectory, other: Trajectory, names: dict[str, str], tolerance: f
 
 
 @pytest.mark.parametrize(("kind", "duration"), [("series", 0.18), ("elements", 0.4)])
-def test_the_vertical_plane_is_the_flat_boom(
-    spatial_boom: Boom, kind: str, duration: float
-) -> None:
+def test_the_vertical_plane_is_flat_boom(spatial_boom: Boom, kind: str, duration: float) -> None:
     """Reference: the flat model, to round-off, which contacts amplify to 3e-8 in 0.5 s."""
     (joint,) = spatial_boom.joints
     flat = replace(spatial_boom, joints=(replace(joint, lateral_play=None),))

@@ -161,9 +161,7 @@ def test_frequencies_with_a_rotational_spring_at_the_hinge(
 
 
 @KINDS
-def test_a_mass_on_the_end_of_a_cantilever(
-    beam: Beam, model_of: Callable[[Segment], Component]
-) -> None:
+def test_a_mass_on_end_of_cantilever(beam: Beam, model_of: Callable[[Segment], Component]) -> None:
     """Reference: analytic, the same equation with −ω² M in place of the spring."""
     mass = 900.0
     segment = beam(supports=(Support(3.0, "clamped"),), masses=(PointMass(8.0, mass),))
@@ -249,9 +247,7 @@ def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: Po
     assert uniform.history == Step()
 
 
-def test_a_stop_holds_the_tip_up(
-    paper_boom: Boom, elements: Models, paper_law: PowerContact
-) -> None:
+def test_a_stop_holds_tip_up(paper_boom: Boom, elements: Models, paper_law: PowerContact) -> None:
     """Reference: analytic. A stop below the tip pushes upwards, one above down or not."""
     stop = Stop(1, 19.0, 0.01, PowerContact(0.0, 1.0, stiffness_below=2.0e8))
     boom = replace(paper_boom, stops=(stop,))

@@ -166,9 +166,7 @@ def test_changes_are_uniform_and_spare_member_0() -> None:
     assert changes[1:].std() == pytest.approx(1e-3 / np.sqrt(3.0), rel=0.02)
 
 
-def test_the_same_seed_gives_the_same_on_any_number_of_cores(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_the_same_seed_gives_same_on_any_number_of_cores(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: other code path. Chaos would amplify any difference of bits."""
     found = []
     for cores in ({0}, {0, 1, 2, 3, 4}):

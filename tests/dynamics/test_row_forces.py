@@ -187,9 +187,7 @@ def test_diverging_forces_end_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.mark.parametrize(("side", "slope"), [(-1.0, 1.0e9), (1.0, 0.0)])
-def test_a_side_without_a_law_ends_the_search_for_its_deepest_press(
-    side: float, slope: float
-) -> None:
+def test_a_side_without_a_law_ends_search_for_its_deepest_press(side: float, slope: float) -> None:
     """Reference: analytic, a linear stop below. Round-off may cause a force on the other side."""
     system = modal_system([0.0], [0.0], [1.0], [PowerContact(1.0e9, 1.0).lower()])
     assert march._stiffness_at_energy(row_laws(system), 0, side, 1.0e-3) == pytest.approx(slope)

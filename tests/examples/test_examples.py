@@ -47,9 +47,7 @@ def test_a_ball_bounces(example: ModuleType) -> None:
 
 
 @of("change_a_case")
-def test_changed_case_equals_the_case_of_a_changed_file(
-    example: ModuleType, tmp_path: Path
-) -> None:
+def test_changed_case_equals_case_of_a_changed_file(example: ModuleType, tmp_path: Path) -> None:
     """Reference: other code path, a case file with this number."""
     text = (pt.CASES / "coarse.toml").read_text("utf-8")
     file = tmp_path / "case.toml"

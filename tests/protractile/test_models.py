@@ -75,9 +75,7 @@ def declared(model: ModelTable, **tables: Any) -> pt.Case:
         pytest.param("BeamElements", {"calibrated_by": 0.4}, marks=pytest.mark.slow),
     ],
 )
-def test_motion_equals_the_motion_of_a_case_file(
-    boom: pt.Boom, kind: str, keys: dict[str, Any]
-) -> None:
+def test_motion_equals_motion_of_case_file(boom: pt.Boom, kind: str, keys: dict[str, Any]) -> None:
     """Reference: other code path, the case file, to the last bit."""
     if "mesh_size" in keys or "calibrated_by" in keys:
         pytest.importorskip("dolfinx", reason="shells need FEniCSx")

@@ -62,9 +62,7 @@ def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
         ("[[axial]]\nfalls = 2\n[payload]\nmass = 600.0\n[gravity]\n", 300.0 * 9.80665),
     ],
 )  # fmt: skip
-def test_a_rope_presses_the_boom_from_the_tip_to_the_base(
-    tmp_path: Path, text: str, force: float
-) -> None:
+def test_a_rope_presses_the_boom_from_tip_to_base(tmp_path: Path, text: str, force: float) -> None:
     """Reference: analytic, the carried weight over the number of falls."""
     np.testing.assert_allclose(pressed(tmp_path, text), [[force, 0.0], [force, force]], rtol=1e-12)
 

@@ -64,9 +64,7 @@ def ensembles(members: dict[str, list[np.ndarray]]) -> xr.Dataset:
         (["beam-fe-bonded"], None),
     ],
 )
-def test_the_reference_is_the_most_complicated_model(
-    models: list[str], expected: str | None
-) -> None:
+def test_the_reference_is_most_complicated_model(models: list[str], expected: str | None) -> None:
     assert reference_of(case_of(*models).models) == expected
 
 

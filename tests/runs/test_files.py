@@ -170,9 +170,7 @@ def test_folder_changes_exclude_each_other(tmp_path: Path) -> None:
     assert contents(folder) == {"later": "later"}
 
 
-def test_leftovers_of_killed_processes_only_are_removed(
-    tmp_path: Path,
-) -> None:
+def test_leftovers_of_killed_processes_only_are_removed(tmp_path: Path) -> None:
     folder, mine = tmp_path / "out", tmp_path / ".out.mine"
     mine.mkdir()
     killed, live = in_the_making(folder), in_the_making(folder)

@@ -201,9 +201,7 @@ def test_malformed_request_keeps_the_server_alive(address: str, body: str) -> No
          "must be a number greater than 0, got 0"),
     ],
 )  # fmt: skip
-def test_a_refusal_names_the_key(
-    address: str, request_: dict[str, Any], key: str, what: str
-) -> None:
+def test_a_refusal_names_key(address: str, request_: dict[str, Any], key: str, what: str) -> None:
     status, text = sent(address, "POST", "beam", json.dumps(request_))
     assert (status, json.loads(text)) == (200, {"stage": "refused", "key": key, "what": what})
 

@@ -82,9 +82,7 @@ def test_summary_has_horizons_and_slow_peaks(run: Run) -> None:
     assert json.loads(str(run.results.summary))["models"].keys() == models.keys()
 
 
-def test_progress_of_the_ensembles_is_reported(
-    run: Run, told: list[tuple[str, str, float]]
-) -> None:
+def test_progress_of_ensembles_is_reported(run: Run, told: list[tuple[str, str, float]]) -> None:
     parts = [part for name, stage, part in told if (name, stage) == (SERIES[0], "ensemble")]
     assert parts == pytest.approx([0.0, 0.25, 0.5, 0.75, 1.0, 1.0])
 

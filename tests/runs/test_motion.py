@@ -60,9 +60,7 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
     assert steps == motions * [4.0e-5]
 
 
-def test_bonded_rest_is_known_without_a_motion(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_bonded_rest_is_known_without_a_motion(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: the same static state after a motion."""
     run = short("coarse.toml", "kantorovich-4", **{"time.duration": 0.03})
     whole = answers(run)

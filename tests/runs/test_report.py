@@ -299,9 +299,7 @@ POOR_MESH = (
         ({"mesh_error": 0.34}, POOR_MESH),
     ],
 )
-def test_cautions_against_a_poor_shell(
-    results: Results, changes: dict[str, Any], line: str
-) -> None:
+def test_cautions_against_poor_shell(results: Results, changes: dict[str, Any], line: str) -> None:
     name = str(results.trajectories["model"].values[0])
     assert told(changed(results, name, **changes)) == ([line.format(name)] if line else [])
 

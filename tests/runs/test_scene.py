@@ -98,9 +98,7 @@ def test_change_of_shape_excludes_the_rigid_motion(shell: Scene) -> None:
 
 
 @pytest.mark.parametrize(("scale", "section"), [(1.0, 1.0), (5.0, 1.0), (20.0, 2.0)])
-def test_contact_in_the_run_is_contact_in_the_picture(
-    shell: Scene, scale: float, section: float
-) -> None:
+def test_contact_in_run_is_contact_in_picture(shell: Scene, scale: float, section: float) -> None:
     """Reference: analytic. In contact the distance of the mid-surfaces is a wall thickness. On the
     opposite side it is larger by twice the clearance.
     """

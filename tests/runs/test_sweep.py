@@ -366,9 +366,7 @@ def charts(sweeping: Plan, *quantities: Sequence[str]) -> None:
     ],
     ids=["one key", "two keys", "three keys"],
 )  # fmt: skip
-def test_charts_fit_the_number_of_keys(
-    planned: Planned, texts: list[str], names: list[str]
-) -> None:
+def test_charts_fit_number_of_keys(planned: Planned, texts: list[str], names: list[str]) -> None:
     """Quantities without values, here the settling time, and constant quantities have no chart."""
     assert written(planned(*texts)) == names
 

@@ -56,9 +56,7 @@ def test_special_and_oversized_files_are_refused(
         (lambda path: Path(path).write_bytes(b"0,1\n" * 100_001), "'gust.csv' has 100001 lines; "),
     ],
 )
-def test_a_history_s_file_is_read_with_the_same_care(
-    make: Callable[[str], object], what: str
-) -> None:
+def test_a_history_s_file_is_read_with_same_care(make: Callable[[str], object], what: str) -> None:
     make("gust.csv")
     Path("case.toml").write_text(COARSE.replace("[[model]]", GUST, 1), encoding="utf-8")
     assert complaint("case.toml").startswith(f"case.toml: base[1].file: {what}")

@@ -200,9 +200,7 @@ def with_strips(boom: Boom) -> Boom:
     ],
     ids=["beside the webs", "away from the webs", "under a collar", "under strips"],
 )
-def test_estimated_compliance_follows_the_shell(
-    pad: PadSize, change: Callable[[Boom], Boom]
-) -> None:
+def test_estimated_compliance_follows_shell(pad: PadSize, change: Callable[[Boom], Boom]) -> None:
     """Reference: other code, the shell, whose own error of the local compliance is 2 %."""
     boom = change(short_boom(pad))
     shell = reduced(boom, 0.2, contact_tolerance=0.02)

@@ -234,9 +234,7 @@ def test_thicker_flanges_give_way_less() -> None:
     ],
     ids=["octagon", "u", "u-across", "u-surface"],
 )
-def test_polygon_segment_with_all_attachments(
-    pair: tuple[Section, Section], line: ContactLine
-) -> None:
+def test_polygon_segment_with_attachments(pair: tuple[Section, Section], line: ContactLine) -> None:
     """Reference: analytic, the masses of a rigid motion along z, on any outline."""
     boom = _laden(sections.boom_of(*pair), line)
     found = reduced(boom, 0.5, line, law=LINEAR, contact_tolerance=1.0)

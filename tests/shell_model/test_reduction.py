@@ -62,9 +62,7 @@ def test_modes_below_the_stated_limit_are_the_full_models(box_shell: Shells) -> 
 
 
 @pytest.mark.slow
-def test_a_load_in_the_plane_of_bending_leaves_two_rigid_modes_exactly_zero(
-    box_shell: Shells,
-) -> None:
+def test_a_load_in_plane_of_bending_leaves_two_rigid_modes_exactly_zero(box_shell: Shells) -> None:
     """The load excites only vertical translation and pitch of the six rigid motions."""
     shell = box_shell(0.25)
     reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())

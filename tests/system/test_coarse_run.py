@@ -176,9 +176,7 @@ def test_snapshots_of_given_times_join_the_others(whole: Path, again: Path) -> N
     check_common_files(again, [*BEAMS, "shell"])
 
 
-def test_a_time_outside_the_run_is_one_line(
-    whole: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_time_outside_run_is_one_line(whole: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert protractile("snapshot", whole, "--time", "0.7") == 2
     assert capsys.readouterr().err == (
         f"protractile: {whole}: --time: must be between 0 and 0.6 s, got 0.7\n"
