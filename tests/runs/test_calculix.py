@@ -126,7 +126,7 @@ def factors(folder: Path, box: LoadedBox, n: int, count: int) -> tuple[list[floa
     ("box", "n", "tolerance"),
     [
         # A column, which bends in two directions at equal factors.
-        (replace(COLUMN, compression=5.0e8), 4, 1e-4),
+        (replace(COLUMN, compression=5.0e8), 2, 1e-4),
         # Walls of a tube, b/t = 100.
         (replace(BOXES[0], length=0.6, compression=4.0e7), 16, 1e-3),
     ],
