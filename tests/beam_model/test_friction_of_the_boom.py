@@ -77,7 +77,7 @@ def test_the_ledger_closes_beside_damping_for_long(five_terms: GapSystem) -> Non
 def test_a_smaller_step_changes_little(five_terms: GapSystem) -> None:
     """Reference: a step of 1 µs. Joints that stick give order 1: a tenth for a sixteenth."""
     tips = [
-        FixedStep(step)(Motion(five_terms, 2.0)).data["tip"].values
+        FixedStep(step)(Motion(five_terms, 1.0)).data["tip"].values
         for step in (2.56e-4, 1.6e-5, 1e-6)
     ]
     errors = [np.abs(tip - tips[-1]).max() / np.ptp(tips[-1]) for tip in tips[:-1]]

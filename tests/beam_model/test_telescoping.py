@@ -53,25 +53,6 @@ def three(boom: Boom, ways: tuple[float, float], drives: Sequence[Drive | None])
     return Boom((*plain, last), joints, stops=stops)
 
 
-SYSTEMS: dict[str, Callable[[Boom], GapSystem]] = {
-    "Euler-Bernoulli": lambda boom: elements(touching(boom, LAW), length=0.5),
-    "Timoshenko": lambda boom: elements(touching(boom, LAW), length=0.5, theory="timoshenko"),
-    "series": lambda boom: gap_system(
-        touching(boom, LAW), kantorovich_segments(boom, (4, 6), "complete", rotary_inertia=True)
-    ),
-}
-
-
-@pytest.mark.parametrize("kind", SYSTEMS)
-def test_standing_on_the_way_is_the_boom_built_there(paper_boom: Boom, kind: str) -> None:
-    """Reference: analytic, the boom built at this extension, with nodes at the same positions."""
-    system = SYSTEMS[kind](telescope(paper_boom, 0.0, DRIVE))
-    for way, time in ((0.0, 0.0), (2.0, 2.5), (4.0, 5.0)):
-        there = SYSTEMS[kind](telescope(paper_boom, way))
-        assert tips(system.at_time(time)) == pytest.approx(tips(there), rel=1e-7)
-    assert tips(system)[0] < 0.5 * tips(there)[0]
-
-
 def test_three_segments_a_stop_and_dashpots_on_the_way(paper_boom: Boom) -> None:
     """Reference: analytic, the boom built there; the stop's row is at the new position."""
     drives = (Drive(SCurve(1.0, 2.0), ("inner", "outer")), Drive(SCurve(2.0, 2.0), DRIVE.carriers))
@@ -147,19 +128,6 @@ def test_an_integration_of_its_own(paper_boom: Boom) -> None:
     for without, least in ((resting, 3.0e-4), ([], 0.05)):
         still = FixedStep(2.0e-5)(Motion(replace(system, travels=without), 0.4, 5.0e-3))
         assert np.abs(still.data["tip"].values - tip).max() / np.ptp(tip) > least
-
-
-@pytest.mark.slow
-def test_the_ledger_of_the_papers_boom(paper_boom: Boom) -> None:
-    """Reference: analytic, the energy balance within 1e-5 of the load's work; with friction."""
-    for changes in ({}, RESISTED):
-        boom = telescope(paper_boom, 0.0, Drive(Stroke(4.0, 4.0, 0.2), DRIVE.carriers), **changes)
-        system = elements(touching(boom, LAW), length=1.0)
-        run = FixedStep(1.0e-5)(Motion(system, 1.5))
-        put_in = float(np.abs(run.data["work"]).max())
-        assert run.energy_residual < 1.0e-5
-        assert abs(float(run.data["drive_work"][-1])) > 0.01 * put_in
-        assert (float(run.data["friction_loss"][-1]) > 0.01 * put_in) == bool(changes)
 
 
 def test_out_and_in_again(paper_boom: Boom) -> None:
@@ -268,8 +236,10 @@ def frequencies(system: GapSystem) -> Array:
     return np.asarray(np.sqrt(found) / (2.0 * np.pi))
 
 
-@pytest.mark.parametrize("kind", BUILDS)
-@pytest.mark.parametrize("lock", LOCKS)
+@pytest.mark.parametrize(
+    ("kind", "lock"),
+    [*((kind, LOCKS[0]) for kind in BUILDS), *(("Euler-Bernoulli", lock) for lock in LOCKS[1:])],
+)
 def test_a_pressed_boom_on_the_way_is_the_boom_built_there(
     paper_boom: Boom, kind: str, lock: tuple[Carrier, float | None]
 ) -> None:
@@ -341,4 +311,7 @@ def test_the_ledger_and_the_order(paper_boom: Boom) -> None:
         assert then < 0.35 * first
         passed = system.travels[0].axial_forces[0].geometric_stiffness(4.0)
         taken = 0.5 * runs[-1].states[-1] @ passed @ runs[-1].states[-1]
-        assert taken > 2.0e-4 * float(np.abs(runs[-1].data["work"]).max())
+        put_in = float(np.abs(runs[-1].data["work"]).max())
+        assert taken > 2.0e-4 * put_in
+        assert abs(float(runs[-1].data["drive_work"][-1])) > 0.01 * put_in
+        assert (float(runs[-1].data["friction_loss"][-1]) > 0.01 * put_in) == bool(changes)

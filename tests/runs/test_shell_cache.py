@@ -153,18 +153,6 @@ def test_a_damaged_entry_is_made_again(
     assert list(reduce(case, cache).seconds) == ["cache"]
 
 
-def test_entry_of_another_type_is_made_again(
-    case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    """The entry has a correct checksum."""
-    cache = Cache(tmp_path / "cache")
-    reduce(case, cache)
-    (entry,) = entries(cache)
-    cache.store(entry.stem, build_boom(case))
-    assert "reduction" in reduce(case, cache).seconds
-    assert len(caplog.records) == 1
-
-
 def test_unwritable_cache_gives_one_line(
     case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
