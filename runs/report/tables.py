@@ -243,8 +243,8 @@ class Table:
         for row in self.rows:
             grid.add_row(*map(Text, row))
         unlimited = console.options.update(max_width=WIDE)
-        # Otherwise rich would cut the words of headings in a narrow terminal.
-        if Measurement.get(console, unlimited, grid).minimum > console.width:
+        # Narrow gaps save rich from breaking headings, or even words.
+        if Measurement.get(console, unlimited, grid).maximum > console.width:
             grid.padding = 0
         console.print(grid)
         for note in self.notes:
