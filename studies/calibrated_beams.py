@@ -22,8 +22,7 @@ from geometry.arrays import Array
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.schema import Case, Model
 from runs.report.tables import Cell, Table
-from studies.motions import build_all, friction_case, model_of, run_parallel, shell_of
-from studies.pads import with_pads
+from studies.motions import build_all, friction_case, model_of, run_parallel, shell_of, with_pads
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 from studies.working_load import Point, PointMotion, set_point
 

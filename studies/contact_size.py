@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Local compliance of walls under contacts of several sizes, on finer meshes and by plate theory.
+"""Local compliance of walls under contacts of several sizes, on finer meshes.
 
 The study uses the unreduced shells of the paper's boom with friction, under equal and opposite
 forces at a station (:mod:`shell_model.contact.local_compliance`). The first peak shows the effect
@@ -19,12 +19,11 @@ from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.tables import Table
-from studies.motions import friction_case, gap_system, move, scale_mesh, shell_of
-from studies.pads import with_pads
+from studies.motions import friction_case, gap_system, move, scale_mesh, shell_of, with_pads
 from studies.refined import Refined, refined_table
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 
-# Permitted errors of the local compliance and of a wall under a pad.
+# Permitted error of the local compliance.
 ALLOWED = 0.01
 NANO = 1.0e9
 UNIT = "1e-9 m/N"
@@ -45,7 +44,6 @@ class Sizes:
     lengths: Sequence[float] = (0.05, 0.1, 0.2)  #: lengths of contacts at corners in m
     #: Lengths and widths in m.
     pads: Sequence[tuple[float, float]] = ((0.1, 0.03), (0.1, 0.06), (0.2, 0.06))
-    plate: Sequence[float] = (0.0125, 0.00625)  #: edge lengths in m of the plate's mesh
     peak: float = 0.9  #: time in s that includes the tip's first peak
     loads: Sequence[float] = (1.0, 10.0)  #: ratios to the paper's load
 
@@ -134,25 +132,9 @@ def first_peaks(contact: Contact, sizes: Sizes) -> list[float]:
     return [move(one, sizes.peak).first_peak()[1] for one in loaded]
 
 
-def plate_verifications(sizes: Sizes) -> Iterator[Verification]:
-    """Compare the deflection of a wall under a patch load beside its edge with plate theory."""
-    from studies.reference_models.plates import FLANGE
-
-    criterion: Criterion = (
-        "analytic",
-        "Navier 1823, with the shear of Reissner and Mindlin",
-        ALLOWED,
-    )
-    for size in sizes.plate:
-        what = f"simply supported plate under a patch beside its edge, mesh of {1e3 * size:g} mm"
-        yield Verification(
-            what, NANO * FLANGE.shell(size), NANO * FLANGE.theory(), UNIT, *criterion
-        )
-
-
 @define_study("contact-size", "Local compliance at contacts")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Study contacts at corners and pads of several sizes, a support, and a plate."""
+    """Study contacts at corners and pads of several sizes, and a support."""
     sizes = sizes or Sizes()
     default = sizes.meshes.index(sizes.default)
     criterion: Criterion = (
@@ -160,8 +142,6 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         f"edges {1.0 / sizes.meshes[-1]:g} times as short",
         ALLOWED,
     )
-    progress("plates")
-    yield from plate_verifications(sizes)
     progress("support")
     values = [NANO * value for value in support_compliance(friction_case(), sizes.meshes)]
     what = "local compliance, elastic support, at 2 m"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Study of design results against the lever rule and exact beams."""
+"""Study of design results at rest against the lever rule."""
 
 from __future__ import annotations
 
@@ -8,23 +8,12 @@ from collections.abc import Iterator
 import numpy as np
 from mpi4py import MPI
 
-from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
-from beam_model.lines import lines
-from beam_model.segment_model import gap_system
-from dynamics.integrator import simulate
-from geometry.boom import Boom, Segment
 from runs import CASES
 from runs.case import reading as case_file
 from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.modes import modes
-from runs.pipeline.motion_results import MotionAndStatics, evaluate_motion
 from runs.pipeline.run import run_case
-from runs.pipeline.section_forces import LoadedModel
-from runs.pipeline.static_results import Diagram, positions, static_result
-from studies.second_order import BOX, CLAMP, LENGTH, STEEL, STIFFNESS
+from runs.pipeline.static_results import Diagram
 from studies.study import Criterion, Progress, Verification, define_study
 
 # Distributed loads in N/m on both segments of the paper's boom.
@@ -34,8 +23,6 @@ TAIL, HEAD, SUPPORT, TIP, PLAY, STIFF = 9.0, 10.0, 2.0, 19.0, 0.014, 1.0e9
 MODELS = ("timoshenko", "shell")
 # Places in m between which section forces are compared.
 ALONG_OUTER, ALONG_INNER = 5.5, 14.0
-# Distributed load in N/m on the cantilever.
-LOAD = -100.0
 
 # Elements of half a metre have moments with errors up to q h²/12, here 1.7 N m.
 CLOSE, OF_PIECES, EXACT = 1.0e-3, 5.0e-3, 1.0e-6
@@ -44,7 +31,7 @@ LEVERS: Criterion = ("analytic", "lever rule", EXACT)
 
 @define_study("design-results", "Design results")
 def study(progress: Progress) -> Iterator[Verification]:
-    """Compare the paper's boom at rest and a cantilever in motion with closed forms."""
+    """Compare the paper's boom at rest with closed forms."""
     progress("the paper's boom at rest")
     answers = design_results_at_rest()
     for name in MODELS:
@@ -52,8 +39,6 @@ def study(progress: Progress) -> Iterator[Verification]:
     for held, force in zip(answers.reactions, support_forces(), strict=True):
         what = f"reaction at {held.x:g} m"
         yield Verification(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
-    progress("a cantilever")
-    yield from _cantilever()
 
 
 def design_results_at_rest() -> DesignResults:
@@ -116,47 +101,3 @@ def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Verification]:
 def value_at(diagram: Diagram, what: str, place: float) -> float:
     """Return the value of a curve at x in m."""
     return float(np.interp(place, diagram.x, diagram.curves[what]))
-
-
-def _cantilever() -> Iterator[Verification]:
-    """Compare a cantilever with closed forms: modes, static stress, and vibration of one mode."""
-    arm = Segment.of_section("arm", 0.0, LENGTH, STEEL, BOX, supports=(CLAMP,), load=LOAD)
-    boom = Boom((arm,), ())
-    elements = finite_element_segments(boom, 0.2, "euler-bernoulli", rotary_inertia=False)
-    own = suddenly_loaded_results(boom, elements)
-    rate = np.sqrt(STIFFNESS / arm.mass_per_length) / (2.0 * np.pi * LENGTH**2)
-    for number, root in ((1, 1.875104068711961), (2, 4.694091132974175)):
-        mode = next(one for one in own.modes if one.number == number)
-        what = f"cantilever, {mode.motion}, mode {number}"
-        yield Verification(
-            what, mode.frequency, root**2 * rate, "Hz", "analytic", "Blevins 1979", CLOSE
-        )
-    assert own.motion is not None
-    moment = 0.5 * abs(LOAD) * LENGTH**2
-    stress = moment * 0.5 * (BOX.height + BOX.flange) / BOX.second_moment_of_area
-    (fibre,) = own.motion.fibres
-    assert fibre.at_rest is not None
-    criterion: Criterion = ("analytic", "M c/J, Navier 1826", CLOSE)
-    yield Verification(
-        "outer fibre of it at rest", 1e-6 * fibre.at_rest, 1e-6 * stress, "MPa", *criterion
-    )
-    single = suddenly_loaded_results(
-        boom, kantorovich_segments(boom, [1], "complete", rotary_inertia=False)
-    )
-    assert single.motion is not None
-    for peak in single.motion.peaks:
-        assert peak.factor is not None
-        what = f"dynamic factor of its {peak.what}, one coordinate, loaded suddenly"
-        yield Verification(what, peak.factor, 2.0, "", "analytic", "1 − cos ωt", CLOSE)
-
-
-def suddenly_loaded_results(boom: Boom, segments: list[SegmentModel]) -> ModelDesignResults:
-    """Return the design results of half a second of a single segment under a sudden load."""
-    system, along = gap_system(boom.bonded, segments), lines(boom, segments)
-    rest = positions(system)[0.0]
-    model = LoadedModel.of(boom, system, along)
-    static = [static_result(model, 0.0, rest)]
-    motion = simulate(system, duration=0.5)
-    motions = MotionAndStatics(model, motion, rest[None], static, jumps=False)
-    moved, _ = evaluate_motion(motions)
-    return ModelDesignResults(static=static, modes=modes(model, rest), motion=moved)

@@ -23,8 +23,15 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.models import MotionPlan
 from runs.report.tables import Table
-from studies.motions import STEP, friction_case, gap_system, scale_loads, set_duration, shell_of
-from studies.pads import with_pads
+from studies.motions import (
+    STEP,
+    friction_case,
+    gap_system,
+    scale_loads,
+    set_duration,
+    shell_of,
+    with_pads,
+)
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 # Permitted error of the tip as a fraction of its range.

@@ -21,6 +21,7 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from geometry.joint import PadSize
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
@@ -60,6 +61,13 @@ def set_duration(case: Case, duration: float) -> Case:
     """Return the case with another duration in s."""
     time = case.time.model_copy(update={"duration": duration})
     return case.model_copy(update={"time": time})
+
+
+def with_pads(case: Case, length: float, width: float) -> Case:
+    """Return the case with pads of a length and a width in m at all joints."""
+    pad = PadSize(length, width)
+    joints = tuple(replace(joint, pad=pad) for joint in case.joints)
+    return case.model_copy(update={"joints": joints})
 
 
 def model_of(case: Case, name: str) -> Model:

@@ -42,8 +42,7 @@ from studies.calibrated_beams import (
     peak_errors,
     tip_errors,
 )
-from studies.motions import build_all, friction_case, model_of, shell_of
-from studies.pads import with_pads
+from studies.motions import build_all, friction_case, model_of, shell_of, with_pads
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 from studies.working_load import Point
 

@@ -14,7 +14,6 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.formatting import number
@@ -22,16 +21,13 @@ from runs.report.tables import Table
 from studies.motions import (
     friction_case,
     gap_system,
-    model_of,
     move,
     shell_of,
+    with_pads,
     without_friction,
 )
-from studies.pads import pad_verifications, rigid_motion, with_pads
-from studies.study import Piece, Progress, Verification, define_study
+from studies.study import Progress, define_study
 
-# Depth of the approaches of the verifications beyond the play, in m.
-DEPTH = 1.0e-3
 DEFAULT_POINTS = (8, 4)
 
 NOTES = (
@@ -65,7 +61,7 @@ class ContactModel(NamedTuple):
 
 
 @define_study("surface-contact", "Contact over the whole overlap")
-def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
+def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Table]:
     """Compare contact over surfaces and at stations, penalties, quadratures, and pad sizes."""
     sizes = sizes or Sizes()
     case = friction_case()
@@ -93,7 +89,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         )
         for points in sizes.points
     }
-    lines, padded = stations[0], stations[2]
+    lines = stations[0]
     default = surfaces.get(DEFAULT_POINTS) or next(iter(surfaces.values()))
     softer = [
         ContactModel(
@@ -119,8 +115,6 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     )
     progress("first peaks")
     yield _peaks([*stations, *surfaces.values(), *softer], notes, sizes)
-    yield from _verifications(case, default.system)
-    yield from pad_verifications(case, sizes.pads[0], padded.system)
 
 
 def _upper_stiffness(system: GapSystem) -> float:
@@ -160,37 +154,3 @@ def _peaks(contacts: Sequence[ContactModel], notes: Sequence[str], sizes: Sizes)
         for (name, _, system), row in zip(contacts, numbers, strict=True)
     ]
     return Table.of_rows("surface", "Where the segments touch", columns, rows, notes)
-
-
-def _verifications(case: Case, system: GapSystem) -> Iterator[Verification]:
-    """Compare forces with closed-form integrals of the pressure."""
-    boom = build_boom(case)
-    (joint,) = boom.joints
-    start, end = boom.overlap(joint)
-    clearance = system.laws[0].terms[0].onset
-    whole = _upper_stiffness(system)
-    upper, _ = model_of(case, "shell").model_boom(boom).boom.joints[0].contact.terms
-    n, k = upper.exponent, upper.stiffness * len(joint.stations)
-
-    def forces(tail: float, slope: float) -> Array:
-        """Return the contact forces in N on the inner segment, for tail height in m and slope."""
-        high = clearance + tail
-        gaps = system.rows @ rigid_motion(system, high, high + slope * (boom.tip - start))
-        return np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])
-
-    places = system.rows @ rigid_motion(system, start, boom.tip)
-    uniform, tilted = forces(DEPTH, 0.0), forces(0.0, DEPTH / (end - start))
-    approach = f"{1e3 * DEPTH:g} mm beyond the play"
-    over = "contact force over the overlap"
-    weightless = sum(w.terms[0].stiffness <= 1.0e-9 * whole for w in system.laws)
-    for what, value, reference, unit, source, allowed in (
-        (f"{over}, uniform approach {approach}", uniform.sum(), k * DEPTH**n, "N",
-         "(4) at all stations", 1.0e-6),
-        ("its place along the boom", uniform @ places / uniform.sum(), 0.5 * (start + end),
-         "m", "middle of the overlap", 1.0e-6),
-        (f"{over}, approach rising to {approach}", tilted.sum(), k * DEPTH**n / (n + 1.0), "N",
-         "integral of the pressure", 1.0e-6),
-        ("contact rows of a surface without weight", weightless, 0.0, "",
-         "Gauss's weights are positive", 0.0),
-    ):  # fmt: skip
-        yield Verification(what, float(value), reference, unit, "analytic", source, allowed)

@@ -23,8 +23,15 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.report.tables import Cell, Table
 from studies.mesh import peak_heights
-from studies.motions import friction_case, gap_system, move, run_parallel, scale_mesh, shell_of
-from studies.pads import with_pads
+from studies.motions import (
+    friction_case,
+    gap_system,
+    move,
+    run_parallel,
+    scale_mesh,
+    shell_of,
+    with_pads,
+)
 from studies.study import Piece, Progress, Verification, define_study
 
 # Permitted errors of the first peak, and of the tip as a part of its range.

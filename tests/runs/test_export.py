@@ -21,8 +21,7 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.pipeline.models import build
 from runs.report.opensees import _points, write
-from studies.motions import friction_case, model_of, move
-from studies.pads import with_pads
+from studies.motions import friction_case, model_of, move, with_pads
 from tests.other_codes import INSTALLED, run_elsewhere
 from tests.runs.case_texts import elements, read_case, refused, shipped, table
 

@@ -12,22 +12,21 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices
 from shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.benchmarks import PUBLISHED, twisted_beam
-from studies.reference_models.plates import (
-    FLANGE,
-    OBLIQUE,
-    STEEL,
-    ConstantStrain,
-    Patch,
-    PressedPlate,
-    SupportedPlate,
-    constant_strains,
-)
-from studies.reference_models.prismatic import ANGLE, Member, PlainBox
-from studies.reference_models.prismatic import BOX as CLOSED
+from studies.reference_models.plates import STEEL, SupportedPlate
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
 from tests.shell_model.booms import HELD, flat_boom
 from tests.shell_model.conftest import BOX
+from tests.shell_model.flat_plates import (
+    FLANGE,
+    OBLIQUE,
+    ConstantStrain,
+    Patch,
+    PressedPlate,
+    constant_strains,
+)
+from tests.shell_model.prismatic import ANGLE, Member, PlainBox
+from tests.shell_model.prismatic import BOX as CLOSED
 
 Shells = Callable[..., SegmentShell]
 

@@ -132,6 +132,7 @@ def test_every_point_has_its_share_of_the_penalty() -> None:
     system = _system(flat_boom(), law=law)
     sides, stiffnesses = np.array([one.terms[0][:2] for one in system.laws]).T
     assert all(len(one.terms) == 1 for one in system.laws)
+    assert stiffnesses.min() > 2.0e4
     assert stiffnesses[sides > 0.0].sum() == pytest.approx(2.0e13)
     assert stiffnesses[sides < 0.0].sum() == pytest.approx(1.0e13)
     assert [int(n) for n in np.bincount(system.station_of_row)] == [8, 8]
@@ -217,6 +218,9 @@ def test_pads_take_the_place_of_points_one_by_one(boom: Boom) -> None:
     along_z = np.array(padded.station_directions)[padded.station_of_row] == "z"
     assert set(np.abs(arms[along_z])) == {0.05, 0.95}
     assert set(np.abs(arms[~along_z])) <= {0.0}
+    lifted = padded.rows @ _rigid(padded, readings | {"tip": 1.0, "tail": 1.0})
+    if not boom.spatial:
+        assert np.abs(lifted) == pytest.approx(1.0, rel=1.0e-9)
 
 
 @pytest.mark.slow

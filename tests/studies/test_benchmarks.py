@@ -21,10 +21,6 @@ COARSE = Sizes(
     hemisphere=(8, 16, 32),
     twisted=(1, 2, 4),
     plate=(4, 8, 16),
-    torsion=(1, 2),
-    slenderness=8,
-    box=0.5,
-    frequencies=6,
 )
 
 
@@ -73,21 +69,6 @@ def test_shear_deepens_a_dent(found: Study) -> None:
     assert 1.02 < float(sheared["edges × 1"]) / PUBLISHED.pinched_cylinder < 1.03
 
 
-def test_exact_values_are_met_for_any_drilling_tie(found: Study) -> None:
-    verifications = {verification.what: verification for verification in found.verifications}
-    assert verifications["torsion constant, box 100 × 60 × 1 mm, 2 edges"].holds
-    exact = [
-        verification
-        for verification in found.verifications
-        if "patch" in verification.what or "turned" in verification.what
-    ]
-    assert len(exact) == 4
-    assert all(verification.holds for verification in exact)
-    spreads = [
-        verification for verification in found.verifications if "drilling" in verification.what
-    ]
-    assert len(spreads) == 3
-    assert all(verification.error > 0.0 and verification.holds for verification in spreads)
+def test_data_are_json_without_nan(found: Study) -> None:
     json.dumps(found.data, allow_nan=False)
-    assert len(found.data["benchmarks"]) == 12
-    assert len(found.data["drilling"]) == 15
+    assert len(found.data["benchmarks"]) == 10

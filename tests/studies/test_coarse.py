@@ -20,14 +20,13 @@ CONTACT_SIZE = contact_size.Sizes(
     default=4.0,
     lengths=(0.1,),
     pads=((0.2, 0.06),),
-    plate=(0.0125,),
     loads=(10.0,),
 )
 
 
 @pytest.mark.slow
 def test_pads_beside_the_webs_give_way_more() -> None:
-    """Reference: other code, plate theory. A flange is ten times as soft as a corner."""
+    """Reference: by order. A flange is ten times as soft as a corner."""
     found = contact_size.study(silent, CONTACT_SIZE)
     meshes = found.data["local-compliance"]
     local = np.array([[row[f"edges × {part:g}"] for part in CONTACT_SIZE.meshes] for row in meshes])
@@ -38,9 +37,6 @@ def test_pads_beside_the_webs_give_way_more() -> None:
     assert (of_pad > 10.0 * of_corner).all()
     peaks = [row["first tip peak\nload × 10 (mm)"] for row in found.data["contact-size"]]
     assert 350.0 < peaks[0] < 0.8 * peaks[1]
-    plates = [verification for verification in found.verifications if "plate" in verification.what]
-    assert len(plates) == 1
-    assert all(verification.holds for verification in plates)
 
 
 DIRECT = direct.Sizes(
@@ -167,10 +163,8 @@ SURFACE_CONTACT = surface_contact.Sizes(
 
 @pytest.mark.slow
 def test_a_surface_is_softer_than_webs_on_webs() -> None:
-    """Reference: the order of compliances, and integrals for known approaches."""
+    """Reference: the order of compliances."""
     found = surface_contact.study(silent, SURFACE_CONTACT)
-    assert all(verification.holds for verification in found.verifications)
-    assert len(found.verifications) == 6
     rubbed = "first tip peak\nwith friction (mm)"
     peaks = {row["contact"]: row[rubbed] for row in found.data["surface"]}
     assert peaks["near webs"] == pytest.approx(177.5, rel=0.01)
