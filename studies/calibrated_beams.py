@@ -10,8 +10,8 @@ shell of the same mesh. The study ``working_load`` measures the error of this sh
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
@@ -35,8 +35,7 @@ SHELL, EULER, PLAIN = "shell", "Euler–Bernoulli", "Timoshenko"
 SPRUNG, WITH_FIELDS = "with springs", "with section fields"
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the study."""
 
     mesh_size: float = 0.2  #: edge length of the shells in m
@@ -73,8 +72,7 @@ def peak_errors(moved: Sequence[PointMotion], shell: Sequence[PointMotion]) -> A
     return np.array([one.peak_errors(other)[0] for one, other in zip(moved, shell, strict=True)])
 
 
-@dataclass(frozen=True, slots=True)
-class ModelComparison:
+class ModelComparison(NamedTuple):
     """Results of all models with one type of contact."""
 
     where: str  #: contact of the segments, in words

@@ -9,7 +9,7 @@ on the motion.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -34,8 +34,7 @@ SPRING = 1.0e6
 BESIDE = 0.33
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the study."""
 
     #: Edge lengths over the default ones, each half the one before.

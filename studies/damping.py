@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.signal import find_peaks
@@ -48,8 +49,7 @@ NOTE = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class PressedBoom:
+class PressedBoom(NamedTuple):
     """Boom at rest under its weight."""
 
     system: GapSystem  #: system under its weight, without damping and friction

@@ -11,8 +11,9 @@ pads.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from time import perf_counter
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -48,8 +49,7 @@ NOTE = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the study."""
 
     mesh: float = 0.2  #: edge length in m
@@ -64,8 +64,7 @@ class Sizes:
     moments: int = 5
 
 
-@dataclass(frozen=True, slots=True)
-class Run:
+class Run(NamedTuple):
     """Motion of one model with one step."""
 
     how: str  #: model and integrator

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations, groupby, pairwise, product
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -138,8 +138,7 @@ ALL = tuple(
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
+class Finding(NamedTuple):
     """Verdict on a statement in an interpretation, with the measured numbers."""
 
     verdict: Judgement

@@ -18,7 +18,8 @@ with proportions other than the paper's, and with the paper's friction.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -134,11 +135,10 @@ WALLS = 0.08
 UNPREDICTABLE = 0.5
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the study."""
 
-    booms: Mapping[str, Proportions] = field(default_factory=lambda: BOOMS)  #: booms by name
+    booms: Mapping[str, Proportions] = BOOMS  #: booms by name
     mesh_size: float = 0.2  #: mesh size of the shells in m
     contact_tolerance: float = 0.04  #: contact tolerance of these shells
     wall_tolerance: float = 0.01  #: contact tolerance for the compliance of walls under pads
@@ -148,8 +148,7 @@ class Sizes:
     periods: float = 8.0  #: duration of the motions in periods of the boom without play
 
 
-@dataclass(frozen=True, slots=True)
-class Rule:
+class Rule(NamedTuple):
     """Data of a boom for the rule, without a shell."""
 
     #: Parts in m of the tip's static deflection under the weight at 1 m/s²: by bending, by shear,
@@ -230,8 +229,7 @@ def station_compliances(given: Proportions, case: Case) -> Array:
     return np.full(2, spread / material.youngs_modulus * walls)
 
 
-@dataclass(frozen=True, slots=True)
-class BoomErrors:
+class BoomErrors(NamedTuple):
     """Errors of the beams of a boom relative to its shell, at all points."""
 
     rule: Rule  #: rule for the boom

@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -48,8 +49,7 @@ CRITICAL = np.pi**2 * STIFFNESS / LENGTH**2
 SHARE = 0.3
 
 
-@dataclass(frozen=True, slots=True)
-class Model:
+class Model(NamedTuple):
     """Model of a column, with its system and critical factor."""
 
     of: Callable[[Boom], tuple[GapSystem, float | None]]  #: a boom of one segment

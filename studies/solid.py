@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Literal, NamedTuple, TypeVar
 
@@ -87,8 +86,7 @@ PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Quarter:
+class Quarter(NamedTuple):
     """Quarter of a segment, for one symmetry class of its motions."""
 
     model: Shell  #: a quarter of a shell or of a solid, with the energies of the whole segment
@@ -200,8 +198,7 @@ def box(
 ALLOWED, ALLOWED_OF_A_SQUEEZE = 0.01, 0.04
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the study."""
 
     #: Wall thicknesses in m, ascending.
@@ -248,8 +245,7 @@ COMPLIANCES = (
 EVERY = FREQUENCIES + COMPLIANCES
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+class Comparison(NamedTuple):
     """Pair of boxes of one wall thickness, as shells and as solids."""
 
     wall: float  #: wall thickness in m

@@ -11,7 +11,8 @@ is subtracted.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,8 +31,7 @@ from studies.study import Criterion, Piece, Progress, Verification, define_study
 ALLOWED = 0.01
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the study."""
 
     mesh: float = 0.05  #: edge length in m on the boom
@@ -47,8 +47,7 @@ class Sizes:
     ring_mesh: float = 0.0125
 
 
-@dataclass(frozen=True, slots=True)
-class Variant:
+class Variant(NamedTuple):
     """A segment with one set of stiffeners."""
 
     what: str  #: segment and its stiffeners

@@ -8,7 +8,7 @@ its moments and contact forces are statically determinate.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
@@ -40,8 +40,7 @@ NOTE = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the study."""
 
     #: Edge lengths in m, each half the one before, three at least.
@@ -50,8 +49,7 @@ class Sizes:
     places: Sequence[float] = (12.0, 14.0, 16.0)  #: x in m away from contacts
 
 
-@dataclass(frozen=True, slots=True)
-class InnerSegmentState:
+class InnerSegmentState(NamedTuple):
     """Static state of the inner segment under its load and contact forces."""
 
     boom: Boom  #: boom of the paper

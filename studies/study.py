@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import wraps
-from typing import Literal, ParamSpec
+from typing import Literal, NamedTuple, ParamSpec
 
 from rich.console import Console
 
@@ -22,8 +21,7 @@ Kind = Literal["measured", "analytic", "external", "other code", "non-regression
 Criterion = tuple[Kind, str, float]
 
 
-@dataclass(frozen=True, slots=True)
-class Verification:
+class Verification(NamedTuple):
     """Comparison of a computed value with a reference value."""
 
     what: str  #: quantity, and the model
@@ -46,8 +44,7 @@ class Verification:
         return self.error <= self.allowed
 
 
-@dataclass(frozen=True, slots=True)
-class Plot:
+class Plot(NamedTuple):
     """Curves of one figure."""
 
     name: str  #: name of the file
@@ -61,8 +58,7 @@ class Plot:
     logarithmic: bool = True  #: whether both axes are logarithmic
 
 
-@dataclass(frozen=True, slots=True)
-class Study:
+class Study(NamedTuple):
     """Results of one study."""
 
     name: str  #: name in the output files

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,8 +38,7 @@ NOTES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Numbers of edges across a plate or a wall; each is twice the previous number."""
 
     plate: Sequence[int] = (8, 16, 32)
@@ -90,8 +90,7 @@ PLATES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class LoadedBox:
+class LoadedBox(NamedTuple):
     """Box under axial stresses, on supports that keep the shape of its ends.
 
     Args:
@@ -144,8 +143,7 @@ class LoadedBox:
         return Strips.of(self.section, STEEL).lowest(self.length, range(1, most + 1), stress)
 
 
-@dataclass(frozen=True, slots=True)
-class PressedBox:
+class PressedBox(NamedTuple):
     """Box on the supports of :class:`LoadedBox`, under patch loads at midspan on both webs.
 
     Args:

@@ -10,7 +10,7 @@ all pairs on a mesh, since only contact laws and loads differ.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import product
 from time import perf_counter
 from typing import NamedTuple
@@ -56,8 +56,7 @@ class Point(NamedTuple):
         return [cls(*one) for one in product(plays, loads)]
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the study."""
 
     #: Ratios of edge lengths to the default ones, each half the previous ratio.
@@ -73,8 +72,7 @@ class Sizes:
     peaks: int = 3  #: number of compared peaks of the tip
 
 
-@dataclass(frozen=True, slots=True)
-class PointMotion:
+class PointMotion(NamedTuple):
     """Motion of one point of the study."""
 
     tip: Array  #: (num_times,) in m
@@ -124,8 +122,7 @@ class ContactType(NamedTuple):
     duration: float  #: duration of the motions in s
 
 
-@dataclass(frozen=True, slots=True)
-class ContactResults:
+class ContactResults(NamedTuple):
     """Results for a type of contact on every mesh."""
 
     touch: ContactType  #: the type of contact

@@ -11,7 +11,6 @@ import os
 import platform
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
@@ -67,8 +66,7 @@ CHANGE = 1.0e-9
 MEMBERS_STEP = 1.0e-4
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the measurements."""
 
     duration: float = 10.0  #: durations of ensembles and of telescoping booms in s
@@ -241,7 +239,7 @@ def bench(sizes: Sizes, folder: Path, console: Console) -> None:
         partial(other_programs, sizes.most, sizes.budget, sizes.problems),
     ]
     machine = {"cores": len(os.sched_getaffinity(0)), "python": platform.python_version()}
-    data: dict[str, Any] = {"sizes": asdict(sizes), "machine": machine}
+    data: dict[str, Any] = {"sizes": sizes._asdict(), "machine": machine}
     write_tables(
         folder, "bench", "What the time step costs", data, (part() for part in parts), console
     )

@@ -13,10 +13,9 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import perf_counter, process_time
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from rich.console import Console
@@ -55,8 +54,7 @@ REMEMBERED = ("mesh", "assembly", "reduction", "fields")
 STEPS = (1.0e-4, 1.0e-5)
 
 
-@dataclass(frozen=True, slots=True)
-class Sizes:
+class Sizes(NamedTuple):
     """Parameters of the measurements."""
 
     #: Edge lengths in m, descending; the last gives about a million degrees of freedom per segment.
@@ -285,7 +283,7 @@ def _peak() -> float:
 
 def scaling(sizes: Sizes, folder: Path, console: Console) -> None:
     """Measure all costs, print the tables, and write ``scaling.json`` and ``scaling.md``."""
-    data = {"sizes": asdict(sizes)}
+    data = {"sizes": sizes._asdict()}
     write_tables(folder, "scaling", "What a shell costs", data, measure(sizes), console)
 
 

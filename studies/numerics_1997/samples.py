@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -41,8 +42,7 @@ MODES = (6, 8, 10, 12, 14)
 MEMBERS, RELATIVE, SEED = 4, 1.0e-9, 1
 
 
-@dataclass(frozen=True, slots=True)
-class Numerics:
+class Numerics(NamedTuple):
     """Numerical method of 1997: scheme, step, and either iterated or lagged contact forces."""
 
     scheme: Scheme  #: scheme of the steps
@@ -60,8 +60,7 @@ def all_numerics() -> list[Numerics]:
     return [Numerics(*one) for one in parts]
 
 
-@dataclass(frozen=True, slots=True)
-class ModelRun:
+class ModelRun(NamedTuple):
     """Run of one model."""
 
     time: Array  #: (num_times,) in s
@@ -149,8 +148,7 @@ class Sample:
         return early < DIVERGENCE < without and early < late < head
 
 
-@dataclass(frozen=True, slots=True)
-class Example:
+class Example(NamedTuple):
     """Example of the paper, with its models and with accurate motions of an ensemble."""
 
     case: Case  #: case of the example

@@ -10,7 +10,8 @@ checked.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -33,8 +34,7 @@ TOLERANCE = 1.0e-13
 DIVERGED = 1.0e5
 
 
-@dataclass(frozen=True, slots=True)
-class Scheme:
+class Scheme(NamedTuple):
     """Parameters of a scheme of the family."""
 
     name: str  #: name in the literature
@@ -47,8 +47,7 @@ WILSON = Scheme("Wilson θ = 1.4", 1.0 / 6.0, 1.4)
 CENTRAL = Scheme("central differences", 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class SchemeRun:
+class SchemeRun(NamedTuple):
     """Motion by one of these schemes."""
 
     trajectory: Trajectory  #: an output for each step, NaN after the last finite one

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.integrate import LSODA, RK45
@@ -36,8 +37,7 @@ METHODS = {"LSODA": LSODA, "RK45": RK45}
 LARGEST_TIP = 10.0
 
 
-@dataclass(frozen=True, slots=True)
-class Solved:
+class Solved(NamedTuple):
     """Motion by a general solver up to its last step."""
 
     time: Array  #: (num_steps + 1,) in s
@@ -83,8 +83,7 @@ ABOUT = 1.0
 Way = tuple[str, float, str, bool]
 
 
-@dataclass(frozen=True, slots=True)
-class Outcome:
+class Outcome(NamedTuple):
     """Results for one statement by numerical methods of 1997."""
 
     shown: bool  #: whether most runs with some numerics show it

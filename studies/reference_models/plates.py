@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -31,8 +31,7 @@ def rectangle(length: float, width: float) -> Field:
     return lambda x, y: np.stack([length * x, width * y, np.zeros_like(x)], axis=1)
 
 
-@dataclass(frozen=True, slots=True)
-class SupportedPlate:
+class SupportedPlate(NamedTuple):
     """Rectangular steel plate of a by b by t in m on hard simple supports.
 
     At the edges, deflections and rotations about the normal of the edge are zero.

@@ -26,6 +26,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import scipy.sparse
@@ -198,8 +199,7 @@ LOSS_BOUND = 1.0e-2
 _CHECKS = 20
 
 
-@dataclass(frozen=True, slots=True)
-class DirectMotion:
+class DirectMotion(NamedTuple):
     """Motion of the unreduced shells.
 
     Args:

@@ -3,7 +3,6 @@
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 from types import SimpleNamespace
@@ -71,7 +70,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "telescoping_column": {},
     "design_results": {},
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
-    "taper": {"MODELS": taper.MODELS | {"shell": replace(taper.MODELS["shear-flexible elements"])}},
+    "taper": {"MODELS": taper.MODELS | {"shell": taper.MODELS[taper.ELEMENTS]}},
 }  # fmt: skip
 # Studies without a verification have no section; validation has its own page.
 TABLES_ALONE = ("surface_contact", "stick_slip", "interpretations", "numerics_1997")
