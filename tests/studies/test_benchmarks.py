@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from studies.benchmarks import Sizes, plates, study
+from studies.benchmarks import Sizes, study
 from studies.reference_models.benchmarks import PUBLISHED
 from studies.study import Study
 
@@ -20,7 +20,7 @@ COARSE = Sizes(
     cylinder=(12, 24, 48),
     hemisphere=(8, 16, 32),
     twisted=(1, 2, 4),
-    plate=(4, 8, 16),
+    plate=(4, 8),
 )
 
 
@@ -36,8 +36,6 @@ def found() -> Study:
         ("pinched cylinder, 48 edges", 0.01, 2.0),
         # Bending without stretching, which locks a poor element.
         ("hemisphere, 32 edges", 0.02, 2.0),
-        ("twisted, in plane, 4 edges", 1.0e-3, 1.0),
-        ("twisted, across, 4 edges", 1.0e-3, 1.0),
     ],
 )
 def test_coarse_meshes_close_in(found: Study, what: str, last: float, order: float) -> None:
@@ -45,14 +43,6 @@ def test_coarse_meshes_close_in(found: Study, what: str, last: float, order: flo
     (errors,) = (plot.curves[what][1] for plot in found.plots if what in plot.curves)
     assert errors[-1] < last
     assert np.log2(errors[-2] / errors[-1]) > order
-
-
-@pytest.mark.parametrize(("what", "last", "order"), [("thin", 0.01, 1.7), ("thick", 0.002, 0.4)])
-def test_plates_close_in(what: str, last: float, order: float) -> None:
-    """Reference: analytic. Errors of the first frequency and their order over the last halving."""
-    (plate,) = (one for one in plates(COARSE) if one.what == f"{what} plate, mode 1, 16 edges")
-    assert abs(plate.errors[-1]) < last
-    assert np.log2(abs(plate.errors[-2] / plate.errors[-1])) > order
 
 
 def test_a_roof_is_too_stiff_and_softens(found: Study) -> None:
