@@ -61,7 +61,7 @@ def cantilever(shape: str) -> Boom:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("shape", ENDS)
+@pytest.mark.parametrize("shape", ["wider head", "unequal box", "U"])
 def test_it_bends_as_its_beam(shape: str) -> None:
     """Reference: other code, Timoshenko elements: the tip within 1 %."""
     boom = cantilever(shape)
@@ -124,12 +124,10 @@ def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("lateral", [None, 5e-3])
-def test_motion_of_a_tapered_boom_follows_its_beam(lateral: float | None) -> None:
+def test_motion_of_a_tapered_boom_follows_its_beam() -> None:
     """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
-    boom = tapered_boom(None, lateral)
-    law = [LAW.with_clearance(4e-3)]
-    sides = [LAW.with_clearance(5e-3)] if lateral else []
+    boom = tapered_boom(None, 5e-3)
+    law, sides = [LAW.with_clearance(4e-3)], [LAW.with_clearance(5e-3)]
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     shell = reduce_boom(
         touching(boom, law, sides), ShellOptions(0.2, contact_tolerance=0.05), MPI.COMM_SELF
