@@ -38,14 +38,6 @@ class Sizes(NamedTuple):
     plate: Sequence[int] = (4, 8, 16, 32, 64)
 
 
-def refined(
-    what: str, unit: str, edges: Sequence[int], values: Sequence[float], reference: Reference
-) -> Refined:
-    """Return the values of a benchmark on several meshes, with sizes relative to the finest one."""
-    sizes = [edges[-1] / n for n in edges]
-    return Refined(f"{what}, {edges[-1]} edges", unit, sizes, values, reference)
-
-
 def published(sizes: Sizes) -> list[Refined]:
     """Return the values of benchmarks with published results, on all meshes."""
     stiff_in_shear = partial(benchmarks.pinched_cylinder, shear_correction=SHEAR_RIGID)
@@ -64,7 +56,7 @@ def published(sizes: Sizes) -> list[Refined]:
          beam.out_of_plane, macneal, 0.01),
     ]  # fmt: skip
     return [
-        refined(what, "", edges, values, Reference(value, "external", source, allowed))
+        Refined.by_edges(what, "", edges, values, Reference(value, "external", source, allowed))
         for what, edges, values, value, source, allowed in rows
     ]
 
@@ -81,7 +73,7 @@ def plates(sizes: Sizes) -> list[Refined]:
         for mode in (1, 4):
             reference = Reference(float(exact[mode - 1]), "analytic", source, 0.01)
             what, values = f"{name} plate, mode {mode}", measured[:, mode - 1].tolist()
-            found.append(refined(what, "Hz", sizes.plate, values, reference))
+            found.append(Refined.by_edges(what, "Hz", sizes.plate, values, reference))
     return found
 
 

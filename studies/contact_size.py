@@ -92,11 +92,8 @@ def support_compliance(case: Case, parts: Sequence[float]) -> list[float]:
     """Return the local compliance of the outer segment at its last support in m/N for each mesh.
 
     The force of an elastic support acts on the walls. A mesh line on each side of the support, the
-    same in all meshes, carries half of the opposite force.
-
-    Args:
-        case: case of the boom.
-        parts: ratios of the edge lengths to the default ones, descending.
+    same in all meshes, carries half of the opposite force. ``parts`` are ratios of the edge lengths
+    to the default ones, descending.
     """
     from shell_model.boom_shell import assemble_segments
     from shell_model.contact.local_compliance import shell_compliance

@@ -150,12 +150,9 @@ def run(name: str) -> tuple[Study, float]:
 
 
 def survey(names: Sequence[str], folder: Path, console: Console) -> list[Study]:
-    """Run studies in parallel, print their tables, and write them to a folder.
+    """Run some of ``STUDIES`` in parallel, print their tables, and write them to a folder.
 
-    Args:
-        names: names of ``STUDIES``.
-        folder: folder for ``convergence.json`` and ``.md``, ``verification.md``, ``report.html``.
-        console: console for the tables.
+    The files are ``convergence.json`` and ``.md``, ``verification.md`` and ``report.html``.
     """
     studies = []
     # FEniCSx does not survive a fork, and the end of a process frees its memory.

@@ -79,11 +79,7 @@ class Run(NamedTuple):
 def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress) -> list[Run]:
     """Return motions of the reduced shell, of one with more coordinates, and of the full shell.
 
-    Args:
-        case: planar case with prescribed normal forces and a model ``shell``.
-        steps: steps of the full shell in s, descending.
-        sizes: parameters of the study.
-        progress: reports the progress.
+    The case is planar, with prescribed normal forces. ``steps`` of the full shell in s descend.
     """
     from shell_model.boom_shell import ShellOptions, assemble_boom
     from shell_model.reduced_shell import reduce_boom
@@ -131,11 +127,7 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress
 def compare(runs: Sequence[Run], name: str, where: str, sizes: Sizes) -> Iterator[Piece]:
     """Compare the motions of the full shell with those of both reduced shells.
 
-    Args:
-        runs: results of :func:`runs_of`.
-        name: name of the table and the figures.
-        where: type of contact, and load.
-        sizes: parameters of the study.
+    ``runs`` are results of :func:`runs_of`; ``where`` is the type of contact, and the load.
     """
     from studies.reference_models.unreduced import LOSS_BOUND
 

@@ -63,10 +63,7 @@ COPIED = {
 
 
 def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
-    """Yield the name and the image of each picture.
-
-    Args:
-        runs: folder with the folders of runs.
+    """Yield the name and the image of each picture, from a folder with the folders of runs.
 
     Raises:
         BadInput: a run or one of its pictures is missing.

@@ -90,9 +90,7 @@ class Interpretation:
     def case(self, paper: Case, change: float = 0.0) -> Case:
         """Return the paper's case in this interpretation, with the beam models only.
 
-        Args:
-            paper: case of the file.
-            change: relative change of all loads.
+        ``change`` is the relative change of all loads.
         """
         law: dict[str, Any] = {
             "play": self.play,
@@ -172,10 +170,7 @@ def survey(
 ) -> list[JudgedInterpretation]:
     """Return interpretations with their findings; two groups of runs are computed in parallel.
 
-    Args:
-        interpretations: interpretations. Neighbours that differ only in the base of the series
-            share the motions of beam elements.
-        members: number of runs of each.
+    Neighbours that differ only in the base of the series share the motions of beam elements.
     """
     paper = case_file.load(str(PAPER))
 

@@ -41,7 +41,7 @@ class Sizes(NamedTuple):
 
 @define_study("mesh", "Meshes of the paper's boom")
 def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
-    """Compare frequencies, compliances and tip peaks of the paper's boom on several meshes."""
+    """Compare frequencies and tip peaks of the paper's boom on several meshes."""
     sizes = sizes or Sizes()
     case = set_duration(friction_case(), sizes.duration)
     results = []
@@ -74,15 +74,8 @@ def _quantities(
     system: GapSystem, motion: Trajectory, sizes: Sizes
 ) -> dict[tuple[str, str], float]:
     """Return the values of one mesh by quantity and unit."""
-    from shell_model.contact.local_compliance import compliance, local_compliance
-
     elastic = system.frequencies[system.frequencies > 0.0][: sizes.frequencies]
     found = {(f"natural frequency {i}", "Hz"): float(f) for i, f in enumerate(elastic, start=1)}
-    whole = compliance(system.omega2, system.rows)
-    local = local_compliance(whole, system.laws, system.station_of_row.tolist())
-    for station, x in enumerate(system.stations):
-        row = int(np.argmax(system.station_of_row == station))
-        found[f"local compliance at {x:g} m", "m/N"] = float(local[row])
     for i, height in enumerate(peak_heights(motion)[: sizes.peaks], start=1):
         found[f"tip peak {i}", "mm"] = 1.0e3 * height
     return found

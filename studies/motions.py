@@ -40,9 +40,6 @@ STEP = 2.0e-5
 _Task = TypeVar("_Task")
 _Found = TypeVar("_Found")
 
-# Frequency in Hz for the compliance of a station: below all elastic modes, above rigid motions.
-SLOW = 5.0
-
 
 def friction_case() -> Case:
     """Return the paper's example with friction, with series, beam elements and a shell."""

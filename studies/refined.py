@@ -36,6 +36,19 @@ class Refined:
     values: Sequence[float]  #: value on each mesh
     reference: Reference | None = None  #: reference of the finest, if known
 
+    @classmethod
+    def by_edges(
+        cls,
+        what: str,
+        unit: str,
+        edges: Sequence[int],
+        values: Sequence[float],
+        reference: Reference,
+    ) -> Refined:
+        """Return the values on meshes with numbers of edges, with sizes over the finest one's."""
+        sizes = [edges[-1] / n for n in edges]
+        return cls(f"{what}, {edges[-1]} edges", unit, sizes, values, reference)
+
     @property
     def order(self) -> float:
         """Observed order on the three finest meshes; NaN without monotonic convergence."""
@@ -86,13 +99,9 @@ class Refined:
         )
 
     def against_limit(self, what: str, size: float, finest: str, allowed: float) -> Verification:
-        """Return the verification of a mesh against the limit of refinement.
+        """Return the verification of a mesh of a size against the limit of refinement.
 
-        Args:
-            what: the quantity.
-            size: size of the mesh.
-            finest: name of the finest mesh, the reference if there is no limit.
-            allowed: permitted relative error.
+        If there is no limit, the reference is the finest mesh, with the name ``finest``.
 
         Raises:
             ValueError: the values do not converge.
@@ -118,10 +127,8 @@ def refined_table(
 ) -> Table:
     """Return a table with one row per quantity: its values, order, limit and index.
 
-    Args:
-        name, title, notes: name, title and notes of the table.
-        found: quantities, with values on all sizes or only on the finest.
-        mesh: format of the name of a mesh size, such as "edges × {:g}".
+    Quantities have values on all sizes or only on the finest. ``mesh`` is the format of the name of
+    a mesh size, such as "edges × {:g}".
     """
     sizes = max((one.sizes for one in found), key=len)
     columns = {

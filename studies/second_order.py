@@ -98,13 +98,9 @@ MODELS: Mapping[str, Model] = {
 def column(
     supports: tuple[Support, ...], force: float, gravity: float = 0.0, point: float | None = None
 ) -> Boom:
-    """Create a column under a uniform load of 1 N/m, or 1 N at a place.
+    """Create a column under a uniform load of 1 N/m, or 1 N at ``point`` in m.
 
-    Args:
-        supports: supports of both ends.
-        force: axial force at the tip in N.
-        gravity: axial acceleration in m/s².
-        point: x in m of the load.
+    ``force`` in N acts along the axis at the tip, ``gravity`` in m/s² along the axis.
     """
     alone = Segment.of_section("column", 0.0, LENGTH, STEEL, BOX, supports=supports)
     if point is None:

@@ -128,11 +128,7 @@ def ring_of_bars(section: Section, length: float) -> float:
     """Return the compliance in m/N between top and bottom of a ring under forces on its corners.
 
     Plates are rigidly joined bars with axial and bending stiffness, without shear (Przemieniecki
-    1968).
-
-    Args:
-        section: section with a flat top and bottom.
-        length: length of the ring in m.
+    1968). Top and bottom are flat; the length of the ring is in m.
     """
     count = len(section.plates)
     stiffness = np.zeros((3 * count, 3 * count))

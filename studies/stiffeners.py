@@ -132,13 +132,9 @@ def racking(outline: SectionNodes) -> Row:
 def racking_stiffness(
     section: BoxSection, material: Material, thickness: float, size: float
 ) -> float:
-    """Return the racking stiffness in N·m/rad that a diaphragm adds to a box.
+    """Return the racking stiffness in N·m/rad that a diaphragm in the middle adds to a box of 1 m.
 
-    Args:
-        section: section of a box of length 1 m, with the diaphragm in the middle.
-        material: material of box and diaphragm.
-        thickness: thickness of the plate in m.
-        size: size of the mesh in m.
+    ``thickness`` of the diaphragm and ``size`` of the mesh are in m.
     """
     stiffness = []
     for plates in ((), (Diaphragm(0.5, thickness),)):
@@ -151,11 +147,8 @@ def racking_stiffness(
 def ring_flexibility(section: BoxSection, young: float, collar: float, size: float) -> float:
     """Return the compliance in m²/N of a ring of a box under opposite forces on its flanges.
 
-    Args:
-        section: section of a ring whose length is a twentieth of its perimeter.
-        young: Young's modulus in Pa; Poisson's ratio is 0, so that plates bend like beams.
-        collar: thickness in m of a collar around the ring.
-        size: size of the mesh in m.
+    The length is a twentieth of the perimeter. Poisson's ratio is 0, so that plates bend like
+    beams. ``young`` is in Pa, the thickness of the collar and the size of the mesh in m.
     """
     length = 0.1 * (section.width + section.height)
     collars = (Collar((0.0, length), collar),) if collar else ()

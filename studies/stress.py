@@ -57,12 +57,7 @@ class InnerSegmentState(NamedTuple):
 
     @classmethod
     def on_mesh(cls, boom: Boom, size: float) -> InnerSegmentState:
-        """Create the state from a static solution of the full shell.
-
-        Args:
-            boom: boom with two stations.
-            size: size of the mesh in m.
-        """
+        """Create the state from a static solution of the full shell, on a mesh of a size in m."""
         segment = boom.segments[INNER]
         shell = shell_alone(segment, size, boom.stations_of(INNER))
         force = segment.load * shell.unit_loads["z"]
@@ -78,12 +73,7 @@ class InnerSegmentState(NamedTuple):
 
     @classmethod
     def reduced(cls, boom: Boom, size: float) -> InnerSegmentState:
-        """Create the same state from the reduced coordinates of a run.
-
-        Args:
-            boom: boom with two stations.
-            size: size of the mesh in m.
-        """
+        """Create the same state from the reduced coordinates of a run, for a mesh size in m."""
         shell = reduce_boom(boom, ShellOptions(size), MPI.COMM_SELF)
         system, fields = shell.system, shell.fields
         assert fields is not None

@@ -48,21 +48,14 @@ class Sizes(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class LoadedPlate:
-    """Simply supported plate, 1 m wide, under membrane forces that are constant along its length.
-
-    Args:
-        name: label in tables.
-        aspect: length over width.
-        forces: N_x, N_s, N_xs over π² D/b² at the lower and at the upper edge, linear in between.
-        factor: buckling coefficient k of the source.
-        source: author and year.
-    """
+    """Simply supported plate, 1 m wide, under membrane forces constant along its length."""
 
     name: str
-    aspect: float
+    aspect: float  #: length over width
+    #: N_x, N_s, N_xs over π² D/b² at the lower and at the upper edge, linear in between.
     forces: tuple[tuple[float, float, float], tuple[float, float, float]]
-    factor: float
-    source: str
+    factor: float  #: buckling coefficient k of the source
+    source: str  #: author and year
 
     def shell(self, n: int, count: int = 1) -> Array:
         """Return the lowest buckling coefficients (count,) by a shell with n edges across."""
@@ -91,21 +84,13 @@ PLATES = (
 
 
 class LoadedBox(NamedTuple):
-    """Box under axial stresses, on supports that keep the shape of its ends.
-
-    Args:
-        name: label in tables.
-        section: section of the box.
-        length: length in m.
-        bending: bending stress in Pa at z = 1 m, positive in tension.
-        compression: uniform compressive stress in Pa.
-    """
+    """Box under axial stresses, on supports that keep the shape of its ends."""
 
     name: str
     section: Section
-    length: float
-    bending: float = 0.0
-    compression: float = 0.0
+    length: float  #: length in m
+    bending: float = 0.0  #: bending stress in Pa at z = 1 m, positive in tension
+    compression: float = 0.0  #: uniform compressive stress in Pa
 
     def stress(self, y: Array, z: Array) -> Array:
         """Return the axial stress (num_places,) in Pa at y and z (num_places,) in m."""
@@ -144,17 +129,11 @@ class LoadedBox(NamedTuple):
 
 
 class PressedBox(NamedTuple):
-    """Box on the supports of :class:`LoadedBox`, under patch loads at midspan on both webs.
+    """Box on the supports of :class:`LoadedBox`, under patch loads at midspan on both webs."""
 
-    Args:
-        section: section of the box, with thick flanges.
-        length: length a of the box in m.
-        patch: length of the load in m.
-    """
-
-    section: BoxSection
-    length: float
-    patch: float
+    section: BoxSection  #: section with thick flanges
+    length: float  #: length a of the box in m
+    patch: float  #: length of the load in m
 
     def shell(self, n: int) -> float:
         """Return k_F = F h/(π² D) of a web by a shell with n edges over its height.
@@ -232,12 +211,12 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     for plate in PLATES:
         values = [float(plate.shell(n)[0]) for n in sizes.plate]
         reference = Reference(plate.factor, "analytic", plate.source, 0.01)
-        found.append(_refined(plate.name, sizes.plate, values, reference))
+        found.append(Refined.by_edges(plate.name, "", sizes.plate, values, reference))
     for box, edges in (*((box, sizes.box) for box in BOXES), (COLUMN, sizes.column)):
         progress(box.name)
         values = [float(box.shell(n)[1].factors[0]) for n in edges]
         reference = Reference(box.strips(), "other code", "finite strips, Cheung 1976", 0.01)
-        found.append(_refined(box.name, edges, values, reference))
+        found.append(Refined.by_edges(box.name, "", edges, values, reference))
     source = "CalculiX 2.20, S6 elements on the same mesh"
     for box, known in CALCULIX:
         edges = sizes.column if box is COLUMN else sizes.box
@@ -245,20 +224,15 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
         states = [box.pressed(n) for n in edges]
         values = [float(buckling_modes(shell, forces, 1).factors[0]) for shell, _, forces in states]
         reference = Reference(known[edges[-1]], "external", source, 0.01)
-        found.append(_refined(f"{box.name}, loads at its ends", edges, values, reference))
+        found.append(
+            Refined.by_edges(f"{box.name}, loads at its ends", "", edges, values, reference)
+        )
     for pressed in PRESSED:
         progress(f"patch load on {pressed.length:g} m")
         values = [pressed.shell(n) for n in sizes.box]
         reference = Reference(pressed.fitted, "external", "EN 1993-1-5, 6.4, a fit", 0.15)
         what = f"k_F of a patch load, a/h = {pressed.length / pressed.section.height:g}"
-        found.append(_refined(what, sizes.box, values, reference))
+        found.append(Refined.by_edges(what, "", sizes.box, values, reference))
     yield from (one.verification for one in found)
     title = "Walls of shells that buckle, against known factors"
     yield refined_table("wall-buckling", title, found, "edges × {:g}", NOTES)
-
-
-def _refined(
-    what: str, edges: Sequence[int], values: Sequence[float], reference: Reference
-) -> Refined:
-    sizes = [edges[-1] / n for n in edges]
-    return Refined(f"{what}, {edges[-1]} edges", "", sizes, values, reference)

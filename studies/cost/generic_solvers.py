@@ -100,10 +100,6 @@ def match_tolerance(error: Callable[[float], float], target: float) -> tuple[flo
 
     The bisection assumes that the error decreases with the tolerance. If no tolerance suffices, the
     result is None and the smallest error.
-
-    Args:
-        error: function that returns the error of a tolerance.
-        target: permitted error.
     """
     found: dict[int, float] = {}
 

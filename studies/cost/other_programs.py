@@ -170,9 +170,7 @@ PROBLEMS = {"telescoped beams": telescoped_beams, "ball on a beam": ball_on_beam
 def other_programs(most: int, budget: float, problems: Sequence[str] = tuple(PROBLEMS)) -> Table:
     """Return the table of the largest step of each program for each permitted error, with costs.
 
-    Args:
-        most, budget: repetitions of runs, as in :func:`studies.cost.timing.time_in_turns`.
-        problems: names of the motions.
+    ``most`` and ``budget`` limit repetitions, as in :func:`studies.cost.timing.time_in_turns`.
     """
     rows: list[Sequence[Cell]] = []
     notes = [

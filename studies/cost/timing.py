@@ -24,12 +24,9 @@ NOISE = (
 def time_in_turns(
     runs: Sequence[Callable[[], object]], most: int, budget: float
 ) -> list[list[float]]:
-    """Return the wall times in s of each run; the runs take turns.
+    """Return the wall times in s of each run; the runs take turns, ``most`` times at most.
 
-    Args:
-        runs: functions to time.
-        most: largest number of repetitions of each run.
-        budget: wall time in s of all repetitions of a run, after which no repetition starts.
+    After a wall time of ``budget`` in s of a run, no repetition of it starts.
     """
     seconds: list[list[float]] = [[] for _ in runs]
     for _ in range(most):
@@ -57,16 +54,7 @@ def write_tables(
     tables: Iterable[Table],
     console: Console,
 ) -> None:
-    """Print tables one by one, and write them as NAME.json and NAME.md.
-
-    Args:
-        folder: created if missing.
-        name: name of the files.
-        title: heading of the Markdown file.
-        data: additional data for the JSON file.
-        tables: tables of measurements.
-        console: console for the tables.
-    """
+    """Print tables one by one, and write them as NAME.json, with further data, and NAME.md."""
     shown = []
     for table in tables:
         table.show(console)

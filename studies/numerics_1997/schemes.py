@@ -75,12 +75,9 @@ def lowest(system: GapSystem, modes: int) -> GapSystem:
 
 
 def integrate(motion: Motion, scheme: Scheme, iterated: bool) -> SchemeRun:
-    """Integrate a system by a scheme, in one step for each output.
+    """Integrate a system under constant loads without damping, in one step for each output.
 
-    Args:
-        motion: motion of a system under constant loads without damping.
-        scheme: scheme of the family.
-        iterated: True for forces at the end of the step, False for forces of the previous step.
+    Iterated forces are those at the end of the step, others those of the previous step.
     """
     system = motion.system
     n, h = motion.outputs, motion.output_step

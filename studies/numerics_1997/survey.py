@@ -47,14 +47,10 @@ class Solved(NamedTuple):
 
 
 def solve(system: GapSystem, duration: float, method: str, tolerance: float, most: int) -> Solved:
-    """Integrate a system from rest until ``duration`` in s, with a limited number of steps.
+    """Integrate a system from rest until ``duration`` in s, with ``most`` steps at most.
 
-    Args:
-        system: gap system under constant loads, without damping.
-        duration: duration in s.
-        method: one of ``METHODS``.
-        tolerance: relative tolerance, also the absolute one in the units of a and ȧ.
-        most: maximum number of steps.
+    Loads are constant, without damping. The tolerance is relative, and absolute in the units of a
+    and ȧ.
     """
     start = np.zeros(2 * system.num_modes)
     within = {"rtol": tolerance, "atol": tolerance}

@@ -28,18 +28,12 @@ _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(5)
 
 
 class Strips(NamedTuple):
-    """Finite strips of a closed section.
+    """Finite strips of a closed section."""
 
-    Args:
-        first, last: (num_strips, 2) positions (y, z) of the edges in m; the last edge of a strip is
-            the first edge of the next strip.
-        thickness: (num_strips,) in m.
-        material: isotropic.
-    """
-
+    #: (num_strips, 2) positions (y, z) of the edges in m; the last edge is the next strip's first.
     first: Array
     last: Array
-    thickness: Array
+    thickness: Array  #: (num_strips,) in m
     material: Material
 
     @classmethod

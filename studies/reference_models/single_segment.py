@@ -59,14 +59,10 @@ def compliances(shell: SegmentShell, *rows: Row) -> list[float]:
 
 
 def natural_frequencies(shell: Shell, count: int) -> Array:
-    """Return the lowest natural frequencies in Hz, ascending, with rigid motions. Collective.
+    """Return the lowest natural frequencies (count,) in Hz, with rigid motions. Collective.
 
     The method is shift-and-invert with a negative shift σ, so that K − σ M is positive definite for
     a free segment, too. Fixed degrees of freedom have infinite frequencies.
-
-    Args:
-        shell: the full model.
-        count: number of frequencies.
 
     Raises:
         NumericsError: fewer frequencies converge.

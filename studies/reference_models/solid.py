@@ -36,19 +36,12 @@ _GROWTH_AROUND = 4.0
 
 @dataclass(frozen=True, slots=True)
 class SolidMesh:
-    """Hexahedra of a quarter of one segment, on a lattice of planes.
+    """Hexahedra of a quarter of one segment, on a lattice of planes."""
 
-    Args:
-        points: (num_points, 3) in m, x along the boom, the axis at y = z = 0.
-        hexahedra: (num_hexahedra, 8) point numbers, in each cell along x first, then y, then z.
-        planes: ascending coordinates in m of the lattice planes normal to x, y and z.
-        layers: layers of hexahedra through each wall, an even number.
-    """
-
-    points: Array
-    hexahedra: Indices
-    planes: tuple[Array, Array, Array]
-    layers: int
+    points: Array  #: (num_points, 3) in m, x along the boom, the axis at y = z = 0
+    hexahedra: Indices  #: (num_hexahedra, 8) points, in each cell along x first, then y, then z
+    planes: tuple[Array, Array, Array]  #: ascending coordinates in m of planes normal to x, y, z
+    layers: int  #: layers of hexahedra through each wall, an even number
 
 
 def mesh_quarter(
@@ -70,22 +63,8 @@ def mesh_quarter(
             is the wall thickness.
         splits: number of parts of each edge around the section, to refine the mesh evenly.
         layers: layers of hexahedra through a wall, an even number.
-
-    Raises:
-        ValueError: the lengths are not positive and ascending, the number of parts is not a whole
-            number, the number of layers is odd, or there are no two distinct places.
     """
-    if not 0.0 < along[0] <= along[1] < np.inf:
-        raise ValueError(f"the lengths along x must be positive numbers of m, rising, got {along}")
-    if not 0.0 < around < np.inf:
-        raise ValueError(f"the length around must be a positive number of m, got {around}")
-    if splits < 1:
-        raise ValueError(f"an edge must be split into 1 or more, got {splits}")
-    if layers < 2 or layers % 2:
-        raise ValueError(f"the layers must be an even number from 2 on, got {layers}")
     ends = np.unique(places)
-    if ends.size < 2:
-        raise ValueError("a segment needs two distinct places at least, its ends")
     spans = []
     for length in np.diff(ends):
         half = _growing(0.5 * length, *along, _GROWTH_ALONG)
@@ -148,18 +127,12 @@ class SolidFamily(Shell):
     """Solid model of a quarter of a segment: stiffness and mass, on one process.
 
     Energies are those of the whole segment. A solid has no rotations.
-
-    Args:
-        fixed: (num_fixed,) constrained degrees of freedom.
-        section: section of the segment.
-        midpoints: positions (num_midpoints, 3) on the mid-surfaces of the whole segment in m.
-        means: rows (3 num_midpoints, num_dofs) of the mean displacements over the thickness there.
     """
 
-    fixed: Indices
+    fixed: Indices  #: (num_fixed,) constrained degrees of freedom
     section: BoxSection
-    midpoints: Array
-    means: csr_matrix
+    midpoints: Array  #: positions (num_midpoints, 3) on the mid-surfaces of the whole segment in m
+    means: csr_matrix  #: rows (3 num_midpoints, num_dofs) of the mean displacements there
 
     @cached_property
     def free(self) -> Mask:

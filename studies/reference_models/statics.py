@@ -14,11 +14,9 @@ from geometry.shear_flow import ShearFlow
 
 
 def static_response(system: GapSystem, force: Array) -> Array:
-    """Return the static position (num_modes,) of a system under a modal force, without contact.
+    """Return the static position (num_modes,) of a system without contact.
 
-    Args:
-        system: the system.
-        force: modal force (num_modes,) in N/√kg.
+    The modal force (num_modes,) is in N/√kg.
 
     Raises:
         ValueError: the system has rigid modes.

@@ -25,7 +25,6 @@ opens or closes. Any number of ranks may share the shells.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -46,27 +45,14 @@ from studies.reference_models.resisting_rows import ResistingRows
 _START = 1.0e-12
 
 
-@dataclass(frozen=True, slots=True)
-class GeneralisedAlpha:
+class GeneralisedAlpha(NamedTuple):
     """Parameters of one step, (17) and (25) of Chung and Hulbert (1993).
 
-    Args:
-        step: h in s, positive.
-        radius: ρ∞, amplitude ratio of the fastest modes per step, from 0 to 1. For 1 the
-            method is the midpoint rule, which conserves energy.
-
-    Raises:
-        ValueError: an argument is out of its range.
+    For ρ∞ = 1 the method is the midpoint rule, which conserves energy.
     """
 
-    step: float
-    radius: float
-
-    def __post_init__(self) -> None:
-        if not 0.0 < self.step < np.inf:
-            raise ValueError(f"step must be finite and positive, got {self.step} s")
-        if not 0.0 <= self.radius <= 1.0:
-            raise ValueError(f"radius must be from 0 to 1, got {self.radius}")
+    step: float  #: h in s
+    radius: float  #: ρ∞, amplitude ratio of the fastest modes per step, from 0 to 1
 
     @property
     def mass_shift(self) -> float:
@@ -202,25 +188,17 @@ _CHECKS = 20
 class DirectMotion(NamedTuple):
     """Motion of the unreduced shells.
 
-    Args:
-        time: (num_times,) in s.
-        observed: outputs (num_times,) by name.
-        contact_forces: (num_times, num_contacts) in N, means over the output interval that ends at
-            the time, positive if the inner segment presses upwards.
-        friction_forces: (num_times, num_frictions) in N, likewise, positive if they push the inner
-            segment along its row.
-        slides: displacements (num_times, num_frictions) of the friction rows in m.
-        energies: (num_times, 7), the columns of ``ENERGIES`` in J.
-        step: step in s.
+    Forces are means over the output interval that ends at the time. They are positive if the inner
+    segment presses upwards, and if friction pushes it along its row.
     """
 
-    time: Array
-    observed: Mapping[str, Array]
-    contact_forces: Array
-    friction_forces: Array
-    slides: Array
-    energies: Array
-    step: float
+    time: Array  #: (num_times,) in s
+    observed: Mapping[str, Array]  #: outputs (num_times,) by name
+    contact_forces: Array  #: (num_times, num_contacts) in N
+    friction_forces: Array  #: (num_times, num_frictions) in N
+    slides: Array  #: displacements (num_times, num_frictions) of the friction rows in m
+    energies: Array  #: (num_times, 7), the columns of ``ENERGIES`` in J
+    step: float  #: step in s
 
     @property
     def energy_residual(self) -> float:

@@ -29,7 +29,7 @@ from shell_model.reduction.krylov import KrylovOptions
 from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.resisting_rows import ResistingRows, resist
-from studies.reference_models.unreduced import GeneralisedAlpha, integrate_directly
+from studies.reference_models.unreduced import integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
 from tests.shell_model.conftest import box_shell
 from tests.touching import touching
@@ -207,18 +207,6 @@ def test_unsupported_booms_are_refused(boom: Boom, law: PowerContact, message: s
     full = assemble_boom(touching(boom, law, law), ShellOptions(2.0), MPI.COMM_SELF)
     with pytest.raises(BoomError, match=message):
         integrate_directly(full, 1.0e-3, 1.0e-3)
-
-
-@pytest.mark.parametrize(
-    ("step", "radius", "message"),
-    [
-        (0.0, 0.8, "^step must be finite and positive, got 0.0 s$"),
-        (1.0e-3, 1.1, "^radius must be from 0 to 1, got 1.1$"),
-    ],
-)
-def test_bad_steps_are_refused(step: float, radius: float, message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        GeneralisedAlpha(step, radius)
 
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
