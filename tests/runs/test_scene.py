@@ -313,7 +313,7 @@ def test_unequal_walls_are_labelled() -> None:
         texts = [text.get_text() for axes in drawn(name).axes for text in axes.texts]
         return [text for text in texts if " × " in text]
 
-    boxes = ["300 × 220\nweb 5\nflange 6", "256 × 180\nweb 4\nflange 5", "218 × 146\n4"]
+    boxes = ["300 × 220\nweb 5\nflange 6", "256 × 180\nweb 4\nflange 5", "218 × 146\nwalls 4"]
     assert sizes("lift") == boxes
     assert sizes("crane")[0] == "940 × 680\nweb 6\nflanges\n8, 10"
 
