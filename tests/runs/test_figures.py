@@ -201,7 +201,7 @@ def test_close_up_marks_first_contacts_and_peaks(results: Results, drawn: Drawn)
     assert drawn(close_up, results) == []
 
 
-@pytest.mark.usefixtures("drawn")
+@pytest.mark.usefixtures("drawn", "unprinted")
 def test_draws_a_play_free_boom_alone(results: Results, tmp_path: Path) -> None:
     bonded = ["beam-fe-bonded"]
     summary = results.summary.model_copy(
