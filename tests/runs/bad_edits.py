@@ -1,10 +1,329 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Errors in a case file: text of the coarse case, its replacement, and the expected message."""
 
-from tests.runs.bad_booms import NUMBERS
-from tests.runs.bad_contacts import CONTACTS
-from tests.runs.bad_forms import FORMS
-from tests.runs.coarse_case import adding, replacing
+from tests.runs.coarse_case import CONTACT, FROM_EXPONENT, adding, replacing
+
+# Keys and types, and missing keys.
+BOX = "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }"
+
+FORMS = [
+    *replacing("duration = 0.6", {
+        "colour = 1":
+            "time.colour: unknown key; known ones are duration, output_step, step, tolerance",
+        "duration = 0.6\nangle = 45.0": "time.angle: unknown key; use gravity.angle",
+        "step_output = 0.6": "time.step_output: unknown key; the nearest known one is output_step",
+        "duration = true": "time.duration: must be a number, got true",
+        'duration = "0.6"': "time.duration: must be a number, got '0.6'",
+        '"\\u001b[31m" = 1':
+            "time.\\x1b[31m: unknown key; known ones are duration, output_step, step, tolerance",
+    }),
+    *replacing("terms = [2, 3]", {
+        "terms = [2, 2.5]": "model[2].terms[2]: must be a whole number, got 2.5",
+    }),
+    *replacing("[material]", {
+        "[material]\nE = 2.1e11":
+            "material.E: unknown key; use youngs_modulus, Young's modulus E in Pa",
+        "[[axial]]\nforce = 1e3\nramp = 0.5\n\n[material]":
+            "axial[1].ramp: an axial force is constant; give it at its largest, or one "
+            "[[load_case]] per value",
+    }),
+    *replacing("height_to_width = 1.5", {
+        "section = { shape = 'star', height = 0.49 }":
+            "segment[1].section.shape: must be 'box', 'unequal box', 'polygon', 'hexagon', "
+            "'octagon' or 'U', got 'star'",
+        "section = { shape = 'octagon', height = 0.5, width = 0.3, chamfer = 0.1, top = 0.01, "
+        "bottom = 0.01, web = 0.01, radius = 0.1 }":
+            "segment[1].section.radius: unknown key; known ones are shape, height, width, top, "
+            "bottom, web, chamfer",
+        "head_section = { height = 0.4, width = 0.3, flange = 0.0065, web = 0.0065 }":
+            "segment[1].section: missing; a segment with a head_section tapers from it",
+        "section = { shape = 'U', height = 0.5, width = 0.3, radius = 0.1, facets = 21, top = "
+        "0.01, bottom = 0.01, web = 0.01 }":
+            "segment[1].section.facets: must be a number not greater than 20, got 21",
+        "section = { shape = 'unequal box', height = 0.5, width = 0.3, top = 0.01, web = 0.01 }":
+            "segment[1].section.bottom: missing; it is the thickness of the lower flange in m",
+    }),
+    ("supports = [0.0, 2.0]", 'supports = [0.0, "2 m"]',
+     "segment[1].supports[2].x: must be a number of m, 'tail', 'head' or a distance in m from "
+     "one of them such as { tail = 0.2 }, got '2 m'"),
+    ("density = 7850.0\n", "",
+     "material.density: missing; it is the density in kg/m^3"),
+    ("mass_per_length = 55.07\n", "",
+     "segment[2].mass_per_length: missing; it is the mass per length in kg/m; follows from the "
+     "section unless given"),
+    ('kind = "shell"\n', "",
+     "model[6].kind: missing; give 'kantorovich', 'finite-element', 'shell' or 'rigid'"),
+    ("height_to_width = 1.5\n", "",
+     "segment[1].section: missing, and 'timoshenko' needs it; give section or height_to_width, "
+     "or theory = 'euler-bernoulli' in the model"),
+    ("bonded = true", "bonded = 1",
+     "model[5].bonded: must be true or false, got 1"),
+    *replacing("title = \"The paper's boom, coarse and short\"", {
+        "title = 3": "title: must be a text, got 3",
+        'title = "red \\u001b[31m"':
+            "title: must be a line of printable characters, got 'red \\x1b[31m'",
+    }),
+    *replacing("span = [9.0, 19.0]", {
+        "span = 9.0": "segment[2].span: must be a list, got 9.0",
+        "span = [9.0, 14.0, 19.0]":
+            "segment[2].span: must be a list of two numbers, got [9.0, 14.0, 19.0]",
+    }),
+    ("[[joint]]", "[joint]",
+     "joint: must be an array of tables, each headed [[joint]], got {'outer': 'outer', 'inner': "
+     "'inner', 'stations': [9.0, 10..."),
+    ('kind = "shell"', 'kind = "plate"',
+     "model[6].kind: must be 'kantorovich', 'finite-element', 'shell' or 'rigid', got 'plate'"),
+    *replacing("[time]", {
+        'demand = ["S1", "S12"]\n[time]':
+            "demand[2]: must be 'S1', 'S2', 'S3', 'S4', 'S5', 'S6', 'S7', 'S8', 'S9', 'S10' or "
+            "'S11', got 'S12'",
+        "[time":
+            "line 8: not TOML: Expected ']' at the end of a table declaration (column 6); see "
+            "https://toml.io",
+    }),
+    ('name = "beam-fe"', 'name = "beam/fe"',
+     "model[3].name: must be made of letters, digits, blanks and . _ + -, starting with one of "
+     "the first, got 'beam/fe'"),
+    ("play = 0.014", "play = 0,014",
+     "line 39: not TOML: 0,014 has a decimal comma; give 0.014"),
+    ("height_to_width = 1.5",
+     f"{BOX}\nhead_section = {{ height = 0.4, width = 0.3, flange = 0.0065, web = 0.0065 }}",
+     "segment[2].section: missing, and none is inferred within 'outer', which tapers; give it"),
+    ('name = "beam-fe"',
+     f'name = "{"b" * 61}"',
+     "model[3].name: too long; give 60 characters at most"),
+    ("duration = 0.6",
+     f"{'k' * 5000} = 1",
+     "time.kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk ... "
+     "kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk: unknown key; known ones are "
+     "duration, output_step, step, tolerance"),
+    ("supports = [0.0, 2.0]",
+     f"supports = {[0.0] * 20_000}",
+     "segment[1].supports: too many; give 100 at most"),
+    ("[[joint]]",
+     '[[stop]]\nsegment = "inner"\nx = 10.0\nplay = 1.0\nstiffness = 1e7\n' * 2000 + "[[joint]]",
+     "stop: too many; give 50 at most"),
+    ("density = 7850.0",
+     f"density = {'7' * 5000}",
+     "file: a whole number has more than 64 bits; give fewer digits, or a number as 1.0e20"),
+    ("terms = [2, 3]",
+     f"terms = [2, 0x{'f' * 5000}]",
+     "model[2].terms[2]: has more than 64 bits; give fewer digits, or a number as 1.0e20"),
+]  # fmt: skip
+
+# Numbers and booms.
+NUMBERS = [
+    *replacing("supports = [0.0, 2.0]", {
+        'supports = [0.0, { x = 2.0, kind = "welded" }]':
+            "segment[1].supports[2].kind: must be 'pinned', 'hinged' or 'clamped', got 'welded'",
+        'supports = [0.0, { x = 2.0, kind = "clamped" }]':
+            "model[1].base: 'outer' has clamped or elastic supports, for which the functions "
+            "'as printed' have no form; use base = 'complete'",
+    }),
+    *adding("load = 55.07", {
+        "lateral_load = 20.0":
+            "segment[2].lateral_load: the boom is flat, and nothing moves along 'y'; give the "
+            "joints lateral_play",
+        "viscous_damping = 10.0":
+            "segment[2].viscous_damping: the shell 'shell' has none; leave it out, or run beams "
+            "alone",
+    }),
+    *replacing("load = 55.07\n\n[[joint]]", {
+        'load = 55.07\n\n[[load]]\nsegment = "jib"\nmagnitude = 1.0\n\n[[joint]]':
+            "load[1].segment: 'jib' is no segment; give 'outer' or 'inner'",
+        'load = 55.07\n\n[[stop]]\nsegment = "inner"\nx = 3.0\nplay = 0.1\nstiffness = '
+        "1e7\n\n[[joint]]":
+            "stop[1].x: 3 m lies outside 'inner'; it must be between 9 and 19 m",
+    }),
+    ("stiffness = 1e13", "stiffness = 0.0",
+     "joint[1].stiffness: must be a number greater than 0, got 0.0"),
+    *replacing("play = 0.014", {
+        "play = -0.014": "joint[1].play: must be a number not less than 0, got -0.014",
+        "play = 0.028":
+            "segment[2].section: no uniform-wall box with A = 0.00701529 m² and J = 0.00021829 "
+            "m⁴ closes a clearance of 0.014 m in a room of 0.482373 m x 0.319415 m; give the "
+            "section explicitly: pads then take up the difference to the stated clearance",
+        "play = 1e300":
+            "segment: numbers out of proportion (Numerical result out of range); give them in "
+            "SI units",
+    }),
+    *replacing("span = [9.0, 19.0]", {
+        "span = [19.0, 9.0]":
+            "segment[2].span: must run from a smaller to a larger x, got [19, 9] m",
+        "span = [9.9999999, 19.0]":
+            "joint[1]: 'inner' overlaps 'outer' by 1e-07 m; it must be at least 0.0009 m, usual "
+            "is a tenth of its length",
+    }),
+    ("youngs_modulus = 2.1e11", "youngs_modulus = nan",
+     "material.youngs_modulus: must be a finite number, got nan"),
+    ("poissons_ratio = 0.3", "poissons_ratio = 0.5",
+     "material.poissons_ratio: must be a number less than 0.5, got 0.5"),
+    *replacing("exponent = 2.0", {
+        "exponent = 2e9":
+            "joint[1].exponent: must be a number not greater than 10, got 2000000000.0",
+    }),
+    *replacing("terms = [2, 3]", {
+        "terms = [2, 3, 1]":
+            "model[2].terms: must have one number for each of the 2 segments, got [2, 3, 1]",
+        "terms = [2, 61]":
+            "model[2].terms: must not be above 60, where the polynomials lose their digits, got "
+            "[2, 61]; use finite elements",
+    }),
+    ('name = "kantorovich-5"', 'name = "kantorovich-4"',
+     "model[2].name: 'kantorovich-4' is the name of model[1] already; give each its own"),
+    ('name = "inner"', 'name = "outer"',
+     "segment[2].name: 'outer' is the name of segment[1] already; give each its own"),
+    *replacing('inner = "inner"', {
+        'inner = "innner"': "joint[1].inner: 'innner' is no segment; give 'outer' or 'inner'",
+    }),
+    *replacing("stations = [9.0, 10.0]", {
+        "stations = []": "joint[1].stations: empty; give at least one",
+    }),
+    *replacing("height_to_width = 1.5", {
+        "section = { height = 0.49, width = 0.33, flange = 0.0075, web = 0.0065 }":
+            "segment[1].mass_per_length: 83.16 is not the section's own 88.862, and beams and "
+            "shell would be different booms; leave it out, or change the section",
+    }),
+    *replacing("duration = 0.6", {
+        "duration = 0.6005":
+            "time.duration: must be a whole number of output steps of 0.001 s, such as 0.6 s, "
+            "got 0.6005 s",
+        "duration = 1e9":
+            "time.output_step: 0.001 s makes 1e+12 outputs of 1e+09 s; it must be at least 100 s",
+    }),
+    ("duration = 0.6", "duration = 0.6\nstep = 0.01",
+     "time.step: must not be above the output step of 0.001 s, got 0.01 s"),
+    ("element_length = 0.5", "element_length = 1e-9",
+     "model[3].element_length: 1e-09 m makes more than 5000 elements of a segment; it must be "
+     "at least 0.002 m"),
+    *adding("mesh_size = 0.25", {
+        'modes = "many"': "model[6].modes: must be a whole number above 0, or 'auto', got 'many'",
+    }),
+    *replacing('contact_tolerance = "any"', {
+        "contact_tolerance = 1e-4":
+            "model[6].contact_tolerance: must be a number from 0.001 to below 1, or 'any', got "
+            "0.0001",
+    }),
+    ("mesh_size = 0.25", "mesh_size = 1e-9",
+     "model[6].mesh_size: 1e-09 m makes more than 2e+07 triangles; it must be at least 0.00176 m"),
+    ("[[model]]",
+     '[[joint]]\nouter = "inner"\ninner = "outer"\nstations = [9.5]\nplay = 0.014\nstiffness = '
+     "1e13\n\n[[model]]",
+     "joint[2]: 'inner' and 'outer' are joined by joint[1] already; give all their stations "
+     "there"),
+    ("height_to_width = 1.5",
+     "height_to_width = 1.5\nsection = { height = 0.49, width = 0.33, flange = 0.0065, web = "
+     "0.0065 }",
+     "segment[1].height_to_width: the section is given; leave one of them out"),
+    ("bonded = true",
+     f"bonded = true\n{CONTACT}",
+     "model[5].contact: a bonded model has no contact; leave it out"),
+]  # fmt: skip
+
+# Contacts and friction.
+CONTACTS = [
+    *adding("exponent = 2.0", {
+        "lateral_play = 0.01\nlateral_exponent = 1.5":
+            "joint[1].lateral_stiffness: missing; it is the lateral contact stiffness in "
+            "N/m^n; the same unless given",
+        "restitution = { coefficient = 1.2, speed = 0.1 }":
+            "joint[1].restitution.coefficient: must be a number not greater than 1, got 1.2",
+        "bonded = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]":
+            "joint[1].friction: the joint is bonded, and nothing slides; leave it out",
+        "bonded = true\ncontact_length = 0.1":
+            "joint[1].contact_length: the joint is bonded, and nothing touches; leave it out",
+        "pad = { length = 1.5, width = 0.06 }":
+            "joint[1].pad.length: must be above 0 and not above the overlap of 1 m, got 1.5 m",
+        "pad = { length = 0.1, width = 0.06, offset = 0.01, bears = 'corner' }":
+            "joint[1].pad.offset: the pad bears on the corner; leave offset out, or bears = "
+            "'corner'",
+        "pad = { length = 0.1, width = 0.06, bears = 'web' }":
+            "joint[1].pad.bears: must be 'wall' or 'corner', got 'web'",
+        "pad = { length = 0.1, width = 0.2 }":
+            "joint[1].pad.width: must be above 0 and not above half a wall of the inner "
+            "segment, 0.135298 m, got 0.2 m",
+        "pad = { length = 0.1, width = 0.1, offset = 0.05 }":
+            "joint[1].pad.width: must be above 0 and not above half a wall of the inner "
+            "segment, 0.135298 m less the offset of 0.05 m, got 0.1 m",
+        "play_above = 0.02": "joint[1].play_above: must be a part of play, got 0.02 m",
+        "interference = 0.001": "joint[1].interference: shims leave no play; give play = 0",
+        "lateral_play_right = 0.002":
+            "joint[1].lateral_play_right: must be a part of lateral_play, got 0.002 m",
+        "pad = { length = 0.1 }":
+            "joint[1].pad.width: missing; it is the width from the corner inwards in m",
+        "bonded = true\npad = { length = 0.1, width = 0.06 }":
+            "joint[1].pad: the joint is bonded, and nothing touches; leave it out",
+        "contact_length = 1.5":
+            "joint[1].contact_length: must be above 0 and not above the overlap's 1 m, got 1.5 m",
+    }),
+    *replacing("stiffness = 1e13\nexponent = 2.0", {
+        "pad = { length = 0.1, width = 0.06 }":
+            "joint[1].pad: has no thickness; give the thickness in m, from which the joint's "
+            "stiffness follows, or the joint's stiffness",
+        "pads = [{ length = 0.1, width = 0.06, thickness = 0.02 }]":
+            "joint[1].pads[1].side: missing; it is the wall of the inner segment with the pad; "
+            "right is at positive y",
+        "pads = [{ side = 'below', length = 0.1, width = 0.06, thickness = 0.02 }]":
+            "joint[1].pads: none is above; give each side one at least",
+        "pads = [{ side = 'left', length = 0.1, width = 0.06, thickness = 0.02 }]":
+            "joint[1].pads[1].side: the boom is flat, and nothing presses laterally; leave "
+            "the pad out, or give the joints lateral_play",
+        "pads = [{ side = 'above', length = 0.1, width = 0.06, thickness = 0.02 }, { side = "
+        "'above', length = 0.1, width = 0.06, thickness = 0.02, offset = 0.04 }, { side = "
+        "'below', length = 0.1, width = 0.06, thickness = 0.02 }]":
+            "joint[1].pads: two lie on one another above, 0.04 m from the corner; give the "
+            "outer one a width of at most 0.04 m",
+        "pad = { length = 0.1, width = 0.06 }\npads = [{ side = 'below', length = 0.1, width = "
+        "0.06, thickness = 0.02 }]":
+            "joint[1].pad: pads is given; leave one of them out",
+    }),
+    *replacing("exponent = 2.0", {
+        "pad = { length = 0.1, width = 0.06, thickness = 0.02 }":
+            "joint[1].stiffness: pad.thickness is given; leave one of them out",
+    }),
+    ("play = 0.014\nstiffness = 1e13", "play = 0.0\ninterference = 0.001\nstiffness = 1e13",
+     "joint[1].interference: contact on both sides of a joint at once needs a law of the "
+     "exponent 1, and model 'kantorovich-4' has another; give it one, or leave interference out"),
+    ('contact_line = "near webs"', 'contact_line = "near webs"\nsurface_stiffness = 1e10',
+     "model[6].surface_stiffness: the segments touch at their stations, 'near webs'; leave it "
+     "out, or give contact_line = 'surface'"),
+    *replacing('contact_line = "near webs"', {
+        "surface_points = [8, 4]":
+            "model[6].surface_points: the segments touch at their stations, 'near webs'; leave "
+            "it out, or give contact_line = 'surface'",
+        'contact_line = "surface"\nsurface_points = [100, 4]':
+            "model[6].surface_points: 100 times 4 points on half a wall are more than 256, "
+            "which a reduced model can bear; give fewer",
+    }),
+    (FROM_EXPONENT,
+     FROM_EXPONENT.replace(
+         "exponent = 2.0\n", "exponent = 2.0\npad = { length = 0.1, width = 0.06 }\n"
+     ).replace('"near webs"', '"across"'),
+     "model[6].contact_line: 'across' leaves no place to the pads of joint[1]; give 'near "
+     "webs', or leave pad out"),
+    (FROM_EXPONENT,
+     FROM_EXPONENT.replace("exponent = 2.0\n", "exponent = 2.0\nlateral_play = 0.01\n").replace(
+         '"near webs"', '"across"'
+     ),
+     "model[6].contact_line: 'across' is for a flat boom; in space the segments touch 'near "
+     "webs' or by 'surface'"),
+    (FROM_EXPONENT,
+     FROM_EXPONENT.replace(
+         "exponent",
+         "lateral_play = 0.01\nlateral_stiffness = 1e11\nlateral_exponent = 1.5\nexponent",
+         1,
+     )
+     .replace('"near webs"', '"surface"\nsurface_stiffness = 1e14')
+     .replace(CONTACT, "", 3),
+     "model[6].surface_stiffness: its unit depends on the exponent, and the joints have 1.5 and "
+     "2; leave it out, or give the model its own contact"),
+    ("stiffness = 1e13\n" + FROM_EXPONENT,
+     FROM_EXPONENT.replace("exponent = 2.0", "force_table = [[1e-3, 1e4], [2e-3, 4e4]]")
+     .replace('"near webs"', '"surface"\nsurface_stiffness = 1e14')
+     .replace(CONTACT, "", 3),
+     "model[6].surface_stiffness: is one number, and a force_table has as many as lines; leave "
+     "it out, or give the model its own contact"),
+]  # fmt: skip
 
 # Beams that nothing can calibrate.
 CALIBRATIONS = [

@@ -19,7 +19,7 @@ from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.shell import Shell
 from runs.case.reading import load, select
-from runs.case.schema import Case, case_schema
+from runs.case.schema import Case, EnsembleTable, case_schema
 from tests.runs.bad_edits import BAD_EDITS
 from tests.runs.case_texts import joint, read_case, refusal, refused, shipped, table
 from tests.runs.coarse_case import COARSE
@@ -131,6 +131,7 @@ def test_selection_changes_the_members_of_ensembles() -> None:
     some = select(coarse, "coarse.toml", members=7).ensemble
     assert (some.members, some.relative, some.seed, some.vary) == (7, 1e-9, 1, "load")
     paper = shipped("paper")
+    assert paper.ensemble == EnsembleTable(members=32, relative=1e-9, seed=1, vary="load")
     changed = select(paper, "paper.toml", members=3).ensemble
     assert changed.model_dump() == {**paper.ensemble.model_dump(), "members": 3}
     assert select(paper, "paper.toml", members=0).ensemble is None
