@@ -8,6 +8,7 @@ import pytest
 
 from dynamics.excitation import PiecewiseLinear, Ramp, Sine, Step
 from protractile.cases import run_case
+from runs.case import toml
 from runs.case.build import build_boom
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
@@ -124,13 +125,18 @@ def test_histories_follow_the_case(tmp_path: Path) -> None:
     (tmp_path / "gust.csv").write_text("0, 0\n0.5, 1\n2, -0.25\n", encoding="utf-8")
     given = {}, {"ramp": 0.3}, {"frequency": 2.0}, {"table": [[0, 1], [1, 2]]}, {"file": "gust.csv"}
     text = "".join(load(magnitude=1.0, **history) for history in given)
-    boom = build_boom(read_case(tmp_path, CANTILEVER + text + ELEMENTS))
-    assert [load.history for load in boom.loads] == [
+    text += load(magnitude=1.0, moment=True, x=6.0) + load(
+        magnitude=1.0, **{"from": 3.0, "to": 7.0}
+    )
+    case = read_case(tmp_path, CANTILEVER + text + ELEMENTS)
+    assert read_case(tmp_path, toml.dumps(case)) == case
+    assert [load.history for load in build_boom(case).loads] == [
         Step(),
         Ramp(0.3),
         Sine(2.0),
         PiecewiseLinear((0.0, 1.0), (1.0, 2.0)),
         PiecewiseLinear((0.0, 0.5, 2.0), (0.0, 1.0, -0.25)),
+        *(Step(), Step()),
     ]
 
 

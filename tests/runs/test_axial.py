@@ -166,10 +166,7 @@ PRESSED = table("[[axial]]", force=3e5) + elements("beam", theory="euler-bernoul
 
 
 def test_tapered_boom_has_the_largest_stress_at_the_extension(tmp_path: Path) -> None:
-    """Reference: by hand, 300 kN on four walls. The tail moves from 5 m, with walls of 9 mm, to 9
-    m. There the taper from 12 to 6 mm and from 0.7 to 0.5 m is at nine tenths, with walls of 6.6
-    mm.
-    """
+    """Reference: by hand, 300 kN on four walls, at 9 m of 6.6 mm, nine tenths of the taper."""
     head, outer, inner, *_ = (CASES / "drawn-out.toml").read_text("utf-8").split("[[segment]]\n")
     numbers = outer[outer.index("mass_per_length") : outer.index("load")]
     box = "section = { height = 0.45, width = 0.25, flange = 0.006, web = 0.006 }\n"

@@ -24,10 +24,7 @@ UNIT = np.sqrt(2.1e11 * SECOND_MOMENT / MASS) / LENGTH**2
 
 
 def turning_beam(frame: FrameMotion, tip: float = 0.0) -> tuple[GapSystem, GapSystem]:
-    """Return the system of a clamped beam with a mass in kg at its tip in a frame.
-
-    The second system also has axial forces and centrifugal terms.
-    """
+    """Return a clamped beam with a tip mass in kg in a frame, without and with axial forces."""
     beam = Segment(
         "beam", 0.0, LENGTH, Material(2.1e11, 0.3, 7850.0), MASS, SECOND_MOMENT, 0.0,
         supports=(Support(0.0, "clamped"),), masses=(PointMass(LENGTH, tip),) if tip else (),
@@ -46,9 +43,7 @@ def turning_beam(frame: FrameMotion, tip: float = 0.0) -> tuple[GapSystem, GapSy
 )
 @pytest.mark.parametrize("key", ["slew", "luff"])
 def test_frequency_of_a_rotating_cantilever(key: str, speed: float, flapping: float) -> None:
-    """Reference: published, Wright, Smith, Thresher and Wang (1982), in √(E J/m̄)/L². In the plane
-    of rotation, the square of the frequency is smaller by the square of the speed.
-    """
+    """Reference: published, Wright et al. (1982), in √(E J/m̄)/L²; f² less speed² in the plane."""
     rate = np.rad2deg(speed * UNIT)
     system, moving = turning_beam(FrameMotion(**{key: Stroke(20.0 * rate, rate, 1.0)}))
     found = np.sqrt(moving.at_time(10.0).in_own_modes().omega2.min()) / UNIT

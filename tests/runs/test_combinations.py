@@ -10,7 +10,7 @@ import pytest
 from runs.case.conversion import convert_to_si
 from runs.pipeline.combinations import combination_results, combination_tables
 from runs.pipeline.largest_loads import StaticExtreme
-from tests.runs.case_texts import read_case, refusal
+from tests.runs.case_texts import HINGED, box, read_case, refusal, table
 from tests.runs.summaries import printed_check
 
 G = 9.80665
@@ -18,6 +18,8 @@ G = 9.80665
 HEIGHT, WIDTH, WALL = 0.30, 0.22, 0.006
 CAGE, PEOPLE, WIND = 150.0, 230.0, 900.0
 LUG, DEPTH, GROUND = 2.4, 0.25, (0.7, -1.1)
+ENDS = {"stations": ["tail", "head"]}
+PAD = {"length": 0.1, "width": 0.05, "thickness": 0.012, "bears": "corner"}
 LIFT = f"""
 title = "A lift of two boxes"
 time = {{ duration = 1.0 }}
@@ -29,49 +31,20 @@ cylinder = [
 material = {{ youngs_modulus = 9e11, poissons_ratio = 0.3, density = 7850.0 }}
 model = [{{ name = "beam", kind = "finite-element", theory = "timoshenko" }}]
 load = [{{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }}]
-
-[[segment]]
-name = "base"
-length = 6.0
-supports = [{{ x = 0.0, kind = "hinged" }}]
-section = {{ height = {HEIGHT}, width = {WIDTH}, flange = {WALL}, web = {WALL} }}
-
-[[segment]]
-name = "fly"
-length = 5.0
-section = {{ height = 0.25, width = 0.18, flange = {WALL}, web = {WALL} }}
-
-[[joint]]
-outer = "base"
-inner = "fly"
-extension = 4.0
-stations = ["tail", "head"]
-play = 0.003
-pad = {{ length = 0.1, width = 0.05, thickness = 0.012, bears = "corner" }}
+{box("base", 6.0, (HEIGHT, WIDTH, WALL, WALL), HINGED)}
+{box("fly", 5.0, (0.25, 0.18, WALL, WALL))}
+{table("[[joint]]", outer="base", inner="fly", extension=4.0, **ENDS, play=0.003, pad=PAD)}
 """
-CASES = f"""
-[[load_case]]
-name = "raised"
-payload = {PEOPLE}
-load = []
-
-[[load_case]]
-name = "level"
-angle = 0.0
-extension = {{ fly = 2.0 }}
-payload = {PEOPLE}
-load = [{{ segment = "fly", x = "head", magnitude = -{WIND}, group = "wind" }}]
-"""
-FACTORS = """
-[[combination]]
-name = "A"
-factors = { dead = [1.2, 1.1], payload = 1.34, wind = 0.0 }
-
-[[combination]]
-name = "B"
-load_cases = ["level"]
-factors = { dead = 0.0, payload = 1.1, wind = 1.22 }
-"""
+CASES = table("[[load_case]]", name="raised", payload=PEOPLE, load=[]) + table(
+    "[[load_case]]", name="level", angle=0.0, extension={"fly": 2.0}, payload=PEOPLE,
+    load=[{"segment": "fly", "x": "head", "magnitude": -WIND, "group": "wind"}],
+)  # fmt: skip
+FACTORS = table(
+    "[[combination]]", name="A", factors={"dead": [1.2, 1.1], "payload": 1.34, "wind": 0.0}
+) + table(
+    "[[combination]]", name="B", load_cases=["level"],
+    factors={"dead": 0.0, "payload": 1.1, "wind": 1.22},
+)  # fmt: skip
 
 
 def results(folder: Path, text: str) -> dict[str, Mapping[str, StaticExtreme]]:

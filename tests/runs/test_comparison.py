@@ -12,12 +12,7 @@ from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.trajectory import PointwiseDifferences
 from runs.paper.run_query import final_differences, peak_distances
-from runs.pipeline.comparison import (
-    Comparison,
-    Distributions,
-    PeakDifferences,
-    compare,
-)
+from runs.pipeline.comparison import Comparison, Distributions, PeakDifferences, compare
 from runs.pipeline.low_pass import SlowPeaks, filter_low_pass, slow_peaks
 from tests.dynamics.two_stops import CHAOTIC
 
@@ -29,7 +24,7 @@ def ensemble(delay: float = 0.0, height: float = 1.0, growth: float = 0.0) -> xr
     """Return vibrations of period 1 s; phases of members differ by ±1e-4 exp(growth t) in s."""
     parting = np.linspace(-1e-4, 1e-4, 9)[:, None] * np.exp(growth * TIME)
     parting = np.clip(np.vstack([np.zeros(TIME.size), parting]), -0.2, 0.2)
-    tip = height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay - parting)))
+    tip = swing(delay + parting, height)
     return xr.Dataset({"tip": (("member", "time"), tip)}, coords={"time": TIME})
 
 
@@ -44,9 +39,7 @@ def test_pointwise_differences_by_hand() -> None:
 
 
 def test_divergence_levels_of_two_models() -> None:
-    """Reference: analytic. The spread π·1e-4·exp(t) exceeds 1 % at 3.5 s and 20 % at 6.5 s, within
-    a quarter period. Until then, a model with a delay of 50 ms differs by sin(0.05 π).
-    """
+    """Reference: analytic, a spread of π·1e-4·exp(t), and sin(0.05 π) by a delay of 50 ms."""
     found = compare(ensemble(growth=1.0), ensemble(delay=0.05, growth=1.0), CUTOFF)
     assert found.pointwise.until == pytest.approx(np.log(100.0 / np.pi), abs=0.25)
     assert found.pointwise.largest == pytest.approx(np.sin(0.05 * np.pi), rel=1e-2)
@@ -88,9 +81,7 @@ def test_predictable_models_have_no_distribution() -> None:
 
 
 def test_a_chaotic_system_is_like_itself() -> None:
-    """Reference: the same system with other changes. Differences are below 1 % up to the horizon;
-    then both have the same distribution.
-    """
+    """Reference: the same system with other changes, up to the horizon and beyond."""
     one, other = (
         integrate_ensemble(Motion(CHAOTIC, 60.0, 1e-2), 16, 1e-6, seed, "load") for seed in (1, 2)
     )
@@ -114,7 +105,7 @@ def test_every_level_has_a_description() -> None:
     assert list(Comparison.__slots__) == ["pointwise", "peaks", "distributions"]
 
 
-def swing(delay: float = 0.0, height: float = 1.0) -> np.ndarray:
+def swing(delay: float | np.ndarray = 0.0, height: float = 1.0) -> np.ndarray:
     """Return a vibration with peaks of ``height`` at 0.5, 1.5, … s plus ``delay``."""
     return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay)))
 
@@ -156,11 +147,6 @@ def test_peak_near_the_end_is_not_missing() -> None:
     assert first.size == 9
 
 
-def test_motions_without_peaks_have_no_distance() -> None:
-    first, apart = peak_distances(np.array([TIME, TIME]), TIME, CUTOFF)
-    assert (first.size, apart.size) == (0, 0)
-
-
 def test_gain_equals_two_filter_passes() -> None:
     """Reference: analytic, 1 / (1 + (f/f_c)⁸) for two passes of a Butterworth filter of order 4."""
     middle = slice(3000, 7000)
@@ -172,9 +158,7 @@ def test_gain_equals_two_filter_passes() -> None:
 
 
 def test_known_peaks_under_a_ripple() -> None:
-    """Reference: analytic. The slow motion has peaks at 0.5, 1.5, … s. A ripple of 7 Hz moves the
-    peaks of the signal by up to 70 ms and increases them by a tenth.
-    """
+    """Reference: analytic, peaks at 0.5, 1.5, … s; a ripple of 7 Hz moves peaks by up to 70 ms."""
     ripple = 0.1 * np.cos(2.0 * np.pi * 7.0 * TIME + 1.0)
     times, heights = slow_peaks(swing() + ripple, TIME, CUTOFF)
     np.testing.assert_allclose(times[1:-1], np.arange(1, 9) + 0.5, atol=2e-3)
@@ -207,7 +191,8 @@ def test_peaks_are_counted_up_to_the_first_missing_peak() -> None:
     assert SlowPeaks.of(np.array([swing(), drifting]), TIME, CUTOFF).time.size == 6
 
 
-def test_a_motion_without_peaks_has_no_period() -> None:
+def test_a_motion_without_peaks_has_no_distance_and_no_period() -> None:
+    assert [one.size for one in peak_distances(np.array([TIME, TIME]), TIME, CUTOFF)] == [0, 0]
     found = SlowPeaks.of(np.array([TIME, 2.0 * TIME]), TIME, CUTOFF)
     assert found.time.size == 0
     assert np.isnan([found.period, found.period_spread]).all()

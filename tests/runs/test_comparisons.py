@@ -21,6 +21,7 @@ from runs.report.model_tables import law_table, model_table, step_table
 from runs.report.pages import Addition
 from runs.report.predictability import comparison_tables, predictability_tables
 from tests.runs.case_texts import shipped
+from tests.runs.paper_curves import members
 from tests.runs.summaries import model_summary, steps_for_peaks, summary_of
 
 PRESSED = 4500.0, 5000.0
@@ -49,13 +50,6 @@ def trajectories(**tips: np.ndarray) -> xr.Dataset:
     )
 
 
-def ensembles(members: dict[str, list[np.ndarray]]) -> xr.Dataset:
-    return xr.Dataset(
-        {"tip": (("model", "member", "time"), np.array(list(members.values())))},
-        coords={"model": list(members), "time": TIME},
-    )
-
-
 @pytest.mark.parametrize(
     ("models", "expected"),
     [
@@ -69,22 +63,19 @@ def test_the_reference_is_most_complicated_model(models: list[str], expected: st
 
 
 def test_late_and_low_model_differs_at_each_level() -> None:
-    """Reference: analytic. The model has half the height and a delay of 50 ms. Its spread is within
-    1 % up to 4 s; then members differ by a quarter period. The distance of the distributions of a
-    cosine and half of it follows from arccos.
-    """
+    """Reference: analytic, half the height, 50 ms late; members apart by 1/4 period from 4 s on."""
     late = np.where(TIME < 4.0, 0.0, 0.25)
-    members = {
-        name: [swing(scale, shift), swing(scale, shift + late)]
+    tips = {
+        name: np.array([swing(scale, shift), swing(scale, shift + late)])
         for name, scale, shift in (("kantorovich-4", 0.5, 0.05), ("kantorovich-5", 1.0, 0.0))
     }
-    data = trajectories(kantorovich_4=members["kantorovich-4"][0], kantorovich_5=swing())
-    found = compare_models(case_of(*SERIES), data, ensembles(members), CUTOFF)
+    data = trajectories(kantorovich_4=tips["kantorovich-4"][0], kantorovich_5=swing())
+    found = compare_models(case_of(*SERIES), data, members(tips), CUTOFF)
     assert found.reference == "kantorovich-5"
     assert not found.whole
     (level,) = found.ensembles.values()
     assert level.pointwise.until == pytest.approx(4.0, abs=2e-3)
-    apart = np.abs(members["kantorovich-4"][0] - swing())[TIME <= 4.0]
+    apart = np.abs(tips["kantorovich-4"][0] - swing())[TIME <= 4.0]
     assert level.pointwise.largest == pytest.approx(apart.max(), rel=1e-6)
     assert level.pointwise.rms == pytest.approx(np.sqrt(np.mean(apart**2)), rel=1e-3)
     # The filter leans on the jump at 4 s: the first two peaks are far from it.
@@ -100,10 +91,10 @@ def test_late_and_low_model_differs_at_each_level() -> None:
 
 
 def test_without_a_slow_motion_ensembles_are_not_compared() -> None:
-    members = ensembles({name: [swing(), swing()] for name in SERIES})
+    ensembles = members({name: np.array([swing(), swing()]) for name in SERIES})
     data = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
     case = case_of(*SERIES)
-    assert compare_models(case, data, members, None) is None
+    assert compare_models(case, data, ensembles, None) is None
     assert compare_models(case, data, None, None) is None
 
 
@@ -150,24 +141,21 @@ def test_a_short_run_with_friction_is_compared_to_its_end_alone() -> None:
 
 
 def test_a_model_alone_is_compared_with_nothing() -> None:
-    members = ensembles({"kantorovich-4": [swing(), swing()]})
+    alone = members({"kantorovich-4": np.array([swing(), swing()])})
     data = trajectories(kantorovich_4=swing())
     case = case_of("kantorovich-4", friction=0.2)
-    assert compare_models(case, data, members, CUTOFF) is None
+    assert compare_models(case, data, alone, CUTOFF) is None
 
 
-MODELS = ("kantorovich-4", "kantorovich-5", "beam-fe-bonded")
+MODELS = (*SERIES, "beam-fe-bonded")
 
 
 def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
     """Return 10 s of two models with play and one without; ``changes`` apply to the first."""
-    case = case_file.select(shipped("coarse"), "", MODELS, None)
-    rubbing = {"friction": friction, "normal_forces": (4500.0, 5000.0)}
-    joints = tuple(replace(joint, **rubbing) for joint in case.joints)
     models = {name: model_summary() for name in MODELS} | {MODELS[0]: model_summary(**changes)}
     asked = {"members": 32, "relative": 1e-9, "seed": 1, "vary": "load", "slow_below": 1.67}
     summary = summary_of(models, ensemble=asked, comparisons=comparisons)
-    case = change(case.model_copy(update={"joints": joints}), **{"time.duration": 10.0})
+    case = change(case_of(*MODELS, friction=friction), **{"time.duration": 10.0})
     return Results(case, xr.Dataset(), summary)
 
 

@@ -14,6 +14,7 @@ from runs.case.toml import dumps
 from tests.runs.case_texts import REST, STEEL, box, elements, joint, read_case, table
 from tests.runs.summaries import printed_check
 
+JACK = {"depth": 0.5, "ground": [1.2, -2.4], "stiffness": 6e7, "dashpot": 2e4}
 LUFFED = f"""
 title = "A boom on its cylinder"
 time = {{ duration = 0.05, output_step = 1e-3 }}
@@ -24,13 +25,7 @@ payload = {{ mass = 1000.0 }}
 supports = [{{ x = 0.0, kind = "hinged", depth = 0.2 }}]
 {box("fly", (7.5, 15.0), (0.56, 0.36, 0.008, 0.006))}
 {joint("fly", "base", 0.004, (7.5, 9.0), "dashpot = 500.0")}
-[[cylinder]]
-segment = "base"
-x = 3.0
-depth = 0.5
-ground = [1.2, -2.4]
-stiffness = 6e7
-dashpot = 2e4
+{table("[[cylinder]]", segment="base", x=3.0, **JACK)}
 {elements("elements", element_length=1.5)}
 {table("[[model]]", name="series", kind="kantorovich", terms=[10, 8], base="complete")}
 {table("[[model]]", name="rigid", kind="rigid")}

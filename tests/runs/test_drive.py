@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Drives of a case: keys, errors in them, and results of a run."""
 
-from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 from matplotlib import rc_context
 
 from dynamics.equilibrium import equilibrium
@@ -18,10 +16,9 @@ from runs.case.drive import resolving_times
 from runs.case.elastic_drive import elastic_drives
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.models import build
-from runs.pipeline.results import Results
 from runs.report import theme
 from runs.report.boom_drawing import boom_sheet
-from runs.report.figure_context import Figure, extension_note
+from runs.report.figure_context import extension_note
 from runs.report.figures import draw
 from runs.report.result_tables import drive_table, record_tables, rest_tables
 from runs.report.summary_table import summary_table
@@ -72,30 +69,19 @@ def test_a_drive_has_a_history(
 def test_a_drive_in_other_units(tmp_path: Path) -> None:
     """Reference: analytic, 4000 mm are 4 m, 2e2 N/mm are 2e5 N/m, 0.5 N s/mm are 500 N s/m."""
     text = DRAWN.split("[[segment]]")[0].replace("[time]", 'units = "mm-t-s"\n\n[time]')
-    boom = """
-[[segment]]
-name = "arm"
-length = 10000.0
-supports = [{ x = 0.0, kind = "clamped" }]
-mass_per_length = 8.316e-5
-second_moment_of_area = 3.7986e8
-
-[[segment]]
-name = "fly"
-length = 10000.0
-mass_per_length = 5.507e-5
-second_moment_of_area = 2.1829e8
-
-[[joint]]
-outer = "arm"
-inner = "fly"
-extension = 5000.0
-drive = { travel = 4000.0, speed = 1000.0, least_overlap = 900.0, stiffness = 2e2, dashpot = 0.5 }
-stations = ["tail", "head"]
-play = 14.0
-stiffness = 1e6
-exponent = 1.0
-"""
+    arm, fly, law = (
+        {"mass_per_length": 8.316e-5, "second_moment_of_area": 3.7986e8},
+        {"mass_per_length": 5.507e-5, "second_moment_of_area": 2.1829e8},
+        {"stations": ["tail", "head"], "play": 14.0, "stiffness": 1e6, "exponent": 1.0},
+    )
+    way = {"travel": 4000.0, "speed": 1000.0, "least_overlap": 900.0}
+    way |= {"stiffness": 2e2, "dashpot": 0.5}
+    clamp = [{"x": 0.0, "kind": "clamped"}]
+    boom = (
+        table("[[segment]]", name="arm", length=10000.0, supports=clamp, **arm)
+        + table("[[segment]]", name="fly", length=10000.0, **fly)
+        + table("[[joint]]", outer="arm", inner="fly", extension=5000.0, drive=way, **law)
+    )
     text = text.replace("2.1e11", "2.1e5").replace("7850.0", "7.85e-9")
     case = read_case(tmp_path, text + boom + elements("beam", theory="euler-bernoulli"))
     drive, (pulled,) = (
@@ -203,34 +189,6 @@ def test_run_reports_its_drive(tmp_path: Path) -> None:
     assert data["drive_friction"].values == pytest.approx(np.where(moving, force, 0.0))
     assert float(data["drive_friction"].max()) > 100.0
     assert results.summary.models["kantorovich-5"].energy_residual < 1.0e-4
-    _check_table(results, data)
-    _check_rests(results)
-    _check_swings(results)
-    _check_figures(draw(results, tmp_path))
-
-
-def test_friction_of_a_drive_in_a_flat_boom_acts_along_it_alone(tmp_path: Path) -> None:
-    """Reference: the same joint with lateral normal forces of 0."""
-    text = edited(("friction = 0.2 ", "normal_forces = [0.0, 0.0]\nfriction = 0.2 "))
-    boom = build_boom(shipped("drawn-out"))
-    assert boom.joints[0].friction == 0.2
-    assert boom.joints == build_boom(read_case(tmp_path, text)).joints
-
-
-def test_drive_works_against_axial_forces(tmp_path: Path) -> None:
-    """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m."""
-    text = edited(SHORT, FAST, ("friction = 0.2 ", "locked_at = 1.0\nfriction = 0.2 "))
-    works = []
-    for pressed in ("", "[gravity]\nacceleration = 10.0\nangle = 30.0\n[[axial]]\nforce = 2e4\n"):
-        data = run_case(read_case(tmp_path, text + pressed), models=["kantorovich-5"]).trajectories
-        power = data["drive_power"].sel(model="kantorovich-5").values
-        works.append(float(power[1:].sum()) * 1.0e-3)
-    assert works[1] - works[0] == pytest.approx(4.0 * (0.5 * 5507.0 + 2.0e4), rel=0.1)
-    assert abs(works[0]) < 0.1 * works[1]
-
-
-def _check_table(results: Results, data: xr.Dataset) -> None:
-    """Check the table of drives. Reference: analytic, means and sums of trajectories."""
     table = drive_table(results)
     cells = {column.heading: [*column.cells] for column in table.columns}
     force, power = data["drive_friction"].values, data["drive_power"].values
@@ -240,16 +198,9 @@ def _check_table(results: Results, data: xr.Dataset) -> None:
     assert cells["at most\nkN"] == [pytest.approx(force.max())]
     assert cells["power, at most\nkW"] == [pytest.approx(power.max())]
     assert cells["work\nkJ"] == [pytest.approx(1.0e-3 * power.sum())]
-
-
-def _check_rests(results: Results) -> None:
-    """Check the static states.
-
-    Reference: by hand. With 1 m of overlap play of 14 mm turns by 14 mrad, which lifts the tip,
-    10 m on, by 133 mm; the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm.
-    """
-    answers, table = results.summary.design, summary_table(results)
-    own = answers.models["kantorovich-5"]
+    # With 1 m of overlap 14 mm of play turn by 14 mrad, which lifts the tip, 10 m on, by 133 mm;
+    # the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm.
+    own, table = results.summary.design.models["kantorovich-5"], summary_table(results)
     (begun,), (ended,) = own.static, own.static_extended
     assert (begun.time, ended.time) == pytest.approx((0.0, 0.2))
     assert ended.tilts[0].rotation == pytest.approx(0.014 + 4.956e-6, abs=1e-8)
@@ -270,20 +221,10 @@ def _check_rests(results: Results) -> None:
     # Both stand for too short to swing farther than they start.
     standing = ["(without telescoping", f"{1e3 * begun.tip:.1f}, {1e3 * ended.tip:.1f})"]
     assert str(cells["Residual vibration of the tip, mm"]).splitlines()[1:] == standing
-
-
-def _check_swings(results: Results) -> None:
-    """Check the residual vibrations. Reference: content of the summary."""
-    answers, (table,) = results.summary.design, record_tables(results)
-    swing = answers.models["kantorovich-5"].residual_vibration
-    cells = [column.cells for column in table.columns]
-    own = swing.tip, swing.time, swing.initial, swing.final
-    assert cells == [["kantorovich-5"], *([value] for value in own)]
-
-
-def _check_figures(figures: Sequence[Figure]) -> None:
-    """Check the figures of drives. Reference: figures of a run with a drive."""
-    drawn = {figure.path.stem: figure for figure in figures}
+    (table,), swing = record_tables(results), own.residual_vibration
+    told = swing.tip, swing.time, swing.initial, swing.final
+    assert [c.cells for c in table.columns] == [["kantorovich-5"], *([value] for value in told)]
+    drawn = {figure.path.stem: figure for figure in draw(results, tmp_path)}
     # By hand, the play's lever, and elements: 7 mm of bending.
     assert drawn["at-rest"].title == "Static deflection under the maximum load: the tip at 140.4 mm"
     assert "Extension as at 0.2 s." in drawn["at-rest"].caption
@@ -292,6 +233,26 @@ def _check_figures(figures: Sequence[Figure]) -> None:
     residual = drawn["energy-residual"].title
     assert residual.startswith("Energy residual: up to ")
     assert " × 10⁻¹" in residual
+
+
+def test_friction_of_a_drive_in_a_flat_boom_acts_along_it_alone(tmp_path: Path) -> None:
+    """Reference: the same joint with lateral normal forces of 0."""
+    text = edited(("friction = 0.2 ", "normal_forces = [0.0, 0.0]\nfriction = 0.2 "))
+    boom = build_boom(shipped("drawn-out"))
+    assert boom.joints[0].friction == 0.2
+    assert boom.joints == build_boom(read_case(tmp_path, text)).joints
+
+
+def test_drive_works_against_axial_forces(tmp_path: Path) -> None:
+    """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m."""
+    text = edited(SHORT, FAST, ("friction = 0.2 ", "locked_at = 1.0\nfriction = 0.2 "))
+    works = []
+    for pressed in ("", "[gravity]\nacceleration = 10.0\nangle = 30.0\n[[axial]]\nforce = 2e4\n"):
+        data = run_case(read_case(tmp_path, text + pressed), models=["kantorovich-5"]).trajectories
+        power = data["drive_power"].sel(model="kantorovich-5").values
+        works.append(float(power[1:].sum()) * 1.0e-3)
+    assert works[1] - works[0] == pytest.approx(4.0 * (0.5 * 5507.0 + 2.0e4), rel=0.1)
+    assert abs(works[0]) < 0.1 * works[1]
 
 
 @pytest.mark.parametrize(("time", "extension"), [(0.0, 5.4), (8.0, 9.4)])

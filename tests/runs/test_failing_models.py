@@ -139,9 +139,7 @@ def test_another_case_is_another_motion(moved: list[int]) -> None:
 
 
 def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
-    """Reference: by hand. The main thread makes the shell, as PETSc requires, and another thread
-    runs the beams. The failure of a beam is reported in its turn.
-    """
+    """Reference: by hand. The main thread makes the shell, as PETSc requires."""
     beam, lost, shell = (
         SimpleNamespace(name=name, needs_shell=name == "shell")
         for name in ("beam", "lost", "shell")

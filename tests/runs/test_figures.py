@@ -166,9 +166,8 @@ def test_constant_contact_force_is_drawn_in_full(results: Results, drawn: Drawn)
     pressed["contact_force"][:] = 1000.0
     for stretch in (pressed, pressed.isel(time=slice(0, 5))):
         drawn(first_contacts, replace(results, trajectories=stretch))
-        for line in (
-            line for axes in drawn.sheets["contact-first"].axes for line in axes.get_lines()
-        ):
+        panels = drawn.sheets["contact-first"].axes
+        for line in (line for axes in panels for line in axes.get_lines()):
             assert line.get_ydata() == pytest.approx(1.0, rel=1e-12)
 
 
@@ -204,20 +203,15 @@ def test_close_up_marks_first_contacts_and_peaks(results: Results, drawn: Drawn)
 @pytest.mark.usefixtures("drawn", "unprinted")
 def test_draws_a_play_free_boom_alone(results: Results, tmp_path: Path) -> None:
     bonded = ["beam-fe-bonded"]
-    summary = results.summary.model_copy(
-        update={"models": {bonded[0]: results.summary.models[bonded[0]]}}
+    models = {name: results.summary.models[name] for name in bonded}
+    alone = replace(
+        results,
+        case=case_file.select(results.case, "", bonded),
+        trajectories=results.trajectories.sel(model=bonded),
+        summary=results.summary.model_copy(update={"models": models}),
     )
-    figures = draw(
-        replace(
-            results,
-            case=case_file.select(results.case, "", bonded, None),
-            trajectories=results.trajectories.sel(model=bonded),
-            summary=summary,
-        ),
-        tmp_path,
-    )
-    stems = [figure.path.stem for figure in figures]
-    assert stems == [
+    figures = draw(alone, tmp_path)
+    assert [figure.path.stem for figure in figures] == [
         "boom", "tip", "tip-close-up", "head", "at-rest", "envelopes", "modes", "energies",
         "energy-residual",
     ]  # fmt: skip
@@ -261,9 +255,8 @@ def test_initial_contact_is_no_first_contact(results: Results, drawn: Drawn) -> 
     assert figure.title.startswith("Tip, first ")
     assert "touch" not in figure.title + figure.caption
     assert "verdicts" not in figure.caption
-    assert not any(
-        line.get_marker() == "o" for line in drawn.sheets["tip-close-up"].axes[0].get_lines()
-    )
+    lines = drawn.sheets["tip-close-up"].axes[0].get_lines()
+    assert not any(line.get_marker() == "o" for line in lines)
     (figure,) = drawn(first_contacts, still)
     assert "impacts" not in figure.caption
     assert "impacts" in drawn(first_contacts, results)[0].caption
@@ -275,10 +268,9 @@ def test_energies_start_with_the_initial_energy(results: Results, drawn: Drawn) 
     """Reference: by hand, an initial strain energy of 5 J."""
     loaded = results.trajectories.assign(strain_energy=results.trajectories["strain_energy"] + 5.0)
     line = {}
-    for name, run in {
-        "from zero": results,
-        "loaded": replace(results, trajectories=loaded),
-    }.items():
+    for name, run in (
+        ("from zero", results), ("loaded", replace(results, trajectories=loaded))
+    ):  # fmt: skip
         (figure,) = drawn(energies, run)
         (work,) = drawn.sheets["energies"].axes[0].get_lines()
         line[name] = np.asarray(work.get_ydata(), dtype=float)

@@ -25,9 +25,7 @@ def test_a_curve_has_the_points_of_the_code() -> None:
 
 
 def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
-    """Reference: by hand, 10/2e6 (115/71)³ for a run, 20 000 times as much for a life, and the
-    equivalent range 10^⅓ 100 MPa.
-    """
+    """Reference: by hand, 10/2e6 (115/71)³ for a run, and the equivalent range 10^⅓ 100 MPa."""
     time = np.linspace(0.0, 10.0, 10 * 400 + 1)
     stress = 50e6 * np.cos(2.0 * np.pi * time)
     table = LifeTable(detail_category=71.0, partial_factor=1.15, repeats=20_000)

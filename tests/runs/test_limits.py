@@ -6,10 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from matplotlib.figure import Figure as Sheet
-from rich.console import Console
 
 from protractile.cases import run_case
-from runs import cli
 from runs.case import reading
 from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case
@@ -18,16 +16,10 @@ from runs.pipeline.quantities import case_limits, check_limits, decay_time, meas
 from runs.report.summary_table import limit_faults, limit_table
 from runs.sweep import output
 from runs.sweep.points import plan
-from tests.runs.cantilever import (
-    CANTILEVER,
-    LENGTH,
-    LOAD,
-    MASS,
-    SECOND,
-    YOUNG,
-    static_tip,
-)
+from tests.runs.cantilever import CANTILEVER, LENGTH, LOAD, MASS, SECOND, YOUNG, static_tip
+from tests.runs.summaries import printed
 from tests.runs.sweeping import run
+from tests.system.run_folder import protractile
 
 pytestmark = pytest.mark.usefixtures("here")
 
@@ -44,11 +36,8 @@ def test_limits_decide_by_the_numbers_of_a_run() -> None:
     results = run_case(case)
     checks = {check.limit.quantity.name: check for check in check_limits(results)}
     # A load that is suddenly there deflects twice as far.
-    assert {name: check.holds for name, check in checks.items()} == {
-        "tip_at_rest": True,
-        "tip": False,
-        "first_frequency": True,
-    }
+    held = {name: check.holds for name, check in checks.items()}
+    assert held == {"tip_at_rest": True, "tip": False, "first_frequency": True}
     assert checks["tip_at_rest"].values["beam"] == pytest.approx(tip, rel=1e-6)
     frequency = 1.875104**2 * np.sqrt(2.0e5 / 20.0) / (2.0 * np.pi * 16.0)
     assert checks["first_frequency"].values["beam"] == pytest.approx(frequency, rel=1e-4)
@@ -72,10 +61,8 @@ def test_limits_are_in_the_units_of_the_case() -> None:
         assert f"= {given}" in text
         text = text.replace(f"= {given}", f"= {converted}")
     case = reading.load(write("tip = 900\nstress = 160.0", text))
-    assert {limit.quantity.name: limit.permitted for limit in case_limits(case.limits)} == {
-        "tip": 0.9,
-        "stress": 160.0e6,
-    }
+    found = {limit.quantity.name: limit.permitted for limit in case_limits(case.limits)}
+    assert found == {"tip": 0.9, "stress": 160.0e6}
 
 
 def test_check_compares_limits_with_the_tip_at_rest() -> None:
@@ -104,10 +91,8 @@ def test_the_exit_status_is_1_beyond_a_limit(capsys: pytest.CaptureFixture[str])
     """A limit of a quantity without values is not met, either."""
     write("tip = 0.001\npad_pressure = 1e6\ndecay_time = 10.0")
     for command in (["run", "case.toml", "--out", "out"], ["report", "out"]):
-        with pytest.raises(SystemExit) as ended:
-            cli.main(command)
+        assert protractile(*command) == 1
         out, err = capsys.readouterr()
-        assert ended.value.code == 1
         first, second = err.splitlines()
         name = command[1]
         assert first.startswith(f"protractile: {name}: limits.tip: ")
@@ -115,9 +100,7 @@ def test_the_exit_status_is_1_beyond_a_limit(capsys: pytest.CaptureFixture[str])
         assert "Limits of the case" in out
     assert "Limits of the case" in Path("out/report.html").read_text(encoding="utf-8")
     write("tip = 1.0")
-    with pytest.raises(SystemExit) as ended:
-        cli.main(["run", "case.toml", "--out", "out"])
-    assert ended.value.code == 0
+    assert protractile("run", "case.toml", "--out", "out") == 0
 
 
 def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
@@ -127,11 +110,8 @@ def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
     assert all(point.case.limits is None for point in planned.points)
     data = output.write(planned, run(planned), Path("out"))
     assert data["tip_at_rest"].attrs["permitted"] == limit
-    console = Console(width=80, legacy_windows=False)
-    with console.capture() as captured:
-        output.print_ranges(data, planned, console)
     shown = f"beam: static tip deflection (maximum load) ≤ {1e3 * limit:.4g} mm at 2 of 4 points"
-    assert shown in captured.get().splitlines()
+    assert shown in printed(output.print_ranges, data, planned, width=80).splitlines()
     (axes,) = (axes for axes in sheets[0].axes if "dotted: limit" in axes.get_title(loc="left"))
     line = axes.lines[-1]
     assert np.asarray(line.get_ydata()) == pytest.approx(1e3 * limit)

@@ -8,8 +8,6 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.excitation import Sine
-from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.case.schema import Case
@@ -66,13 +64,6 @@ def test_a_shell_rests_near_a_beam_with_shear(
     beams = tip_at_rest(read_case(tmp_path, beam + load + elements))
     shell = tip_at_rest(read_case(tmp_path, beam + load + SHELL))
     assert shell == pytest.approx(beams, rel=5e-3)
-
-
-def test_they_have_histories_and_are_written_again(tmp_path: Path) -> None:
-    case = read_case(tmp_path, CANTILEVER + PART + "frequency = 2.0\n" + MOMENT + ELEMENTS)
-    loads = build_boom(case).loads
-    assert [load.history == Sine(2.0) for load in loads] == [True, False]
-    assert read_case(tmp_path, toml.dumps(case)) == case
 
 
 @pytest.mark.parametrize(

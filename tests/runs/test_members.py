@@ -54,10 +54,14 @@ def run(case: Case, told: list[tuple[str, str, float]]) -> Run:
 
 
 def test_member_0_is_the_trajectory(run: Run) -> None:
-    """Reference: the run of the model, in single precision."""
+    """Reference: the run of the model, in single precision, with its names and units."""
     ensembles = run.results.ensembles
     assert ensembles["model"].values.tolist() == SERIES
     assert ensembles["tip"].dims == ("model", "member", "time")
+    assert ensembles.attrs["Conventions"] == "CF-1.8"
+    for name, values in ensembles.data_vars.items():
+        assert values.attrs == run.results.trajectories[name].attrs
+        assert set(values.attrs) == {"units", "long_name"}
     for place in ("tip", "head"):
         assert ensembles[place].dtype == np.float32
         for name in SERIES:
@@ -101,15 +105,6 @@ def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
     segments = heavy.model_copy(update={"height_to_width": None}), *case.segments[1:]
     changed = case.model_copy(update={"segments": segments, "models": case.models[:1]})
     assert slow_cutoff(build_boom(changed), case.time) is None
-
-
-def test_ensemble_data_have_names_and_units(run: Run) -> None:
-    """They equal those of the trajectories of the same points."""
-    ensembles = run.results.ensembles
-    assert ensembles.attrs["Conventions"] == "CF-1.8"
-    for name, values in ensembles.data_vars.items():
-        assert values.attrs == run.results.trajectories[name].attrs
-        assert set(values.attrs) == {"units", "long_name"}
 
 
 @pytest.mark.usefixtures("unprinted")
@@ -216,12 +211,6 @@ def test_a_bad_table_is_one_line(table: str, line: str, tmp_path: Path) -> None:
     assert refusal(tmp_path, text) == f"ensemble.{line}"
 
 
-def test_the_paper_s_case_asks_for_ensembles() -> None:
-    table = shipped("paper").ensemble
-    assert table == EnsembleTable(members=32, relative=1e-9, seed=1, vary="load")
-    assert shipped("coarse").ensemble is None
-
-
 @pytest.fixture(scope="module")
 def five_terms() -> tuple[GapSystem, float]:
     """Return the five-term series, and the cut-off of its slow motion in Hz."""
@@ -267,9 +256,5 @@ def test_missing_peaks_are_kept_by_no_step(five_terms: tuple[GapSystem, float]) 
     peaks = replace(peaks, height=1.05 * peaks.height)
     found = steps_for_peaks(Motion(system, 4.0, STEP), peaks, cutoff)
     assert found.fewest is None
-
-
-def test_too_few_peaks_are_not_asked_for(five_terms: tuple[GapSystem, float]) -> None:
-    system, cutoff = five_terms
-    two = SlowPeaks(*np.ones((4, PEAKS - 1)), period=1.0, period_spread=0.0)
-    assert steps_for_peaks(Motion(system, 4.0, STEP), two, cutoff) is None
+    too_few = SlowPeaks(*np.ones((4, PEAKS - 1)), period=1.0, period_spread=0.0)
+    assert steps_for_peaks(Motion(system, 4.0, STEP), too_few, cutoff) is None

@@ -13,35 +13,24 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
-from tests.runs.case_texts import read_case, refusal
+from tests.runs.case_texts import read_case, refusal, table
 from tests.runs.coarse_case import COARSE
 
 
-def observe(name: str, x: float, quantity: str = "", segment: str = "inner") -> str:
-    """Return a table of a case; a deflection unless another quantity is given."""
-    text = f'\n[[observe]]\nname = "{name}"\nsegment = "{segment}"\nx = {x}\n'
-    return f'{text}quantity = "{quantity}"\n' if quantity else text
+def observe(name: str, x: float, quantity: str = "deflection", segment: str = "inner") -> str:
+    return table("[[observe]]", name=name, segment=segment, x=x, quantity=quantity)
 
 
-TURNED = "".join(
-    [
-        "[start]\nvelocity = { inner = { z = 0.01, turn = 0.02, x = 9.0 } }\n",
-        observe("seat", 14.2),
-        observe("seat rate", 14.2, "velocity"),
-        observe("seat_push", 14.2, "acceleration"),
-        observe("seat_slope", 14.2, "rotation"),
-    ]
-)
-SIDEWAYS = "".join(
-    [
-        "[start.velocity]\n",
-        "inner = { z = 0.03, y = -0.02, turn = 0.004, lateral_turn = 0.005, x = 12.0 }\n",
-        "outer = -0.01\n",
-        observe("sideways", 14.0, "lateral"),
-        observe("roll", 14.0, "twist"),
-        observe("slope", 14.0, "rotation"),
-    ]
-)
+TURNED = "[start]\nvelocity = { inner = { z = 0.01, turn = 0.02, x = 9.0 } }\n"
+TURNED += observe("seat", 14.2)
+TURNED += observe("seat rate", 14.2, "velocity") + observe("seat_push", 14.2, "acceleration")
+TURNED += observe("seat_slope", 14.2, "rotation")
+SIDEWAYS = """[start.velocity]
+inner = { z = 0.03, y = -0.02, turn = 0.004, lateral_turn = 0.005, x = 12.0 }
+outer = -0.01
+"""
+SIDEWAYS += observe("sideways", 14.0, "lateral") + observe("roll", 14.0, "twist")
+SIDEWAYS += observe("slope", 14.0, "rotation")
 UNLOADED = (
     COARSE.replace("load = 83.16\n", "").replace("load = 55.07\n", "").replace("0.6", "0.2", 1)
 )

@@ -26,6 +26,7 @@ from runs.pipeline.static_results import (
     station_loads,
 )
 from runs.pipeline.statics import boom_with_play
+from tests.runs import case_texts
 from tests.runs.case_texts import read_case, shipped
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
@@ -93,17 +94,12 @@ def test_check_names_buckling_walls(tmp_path: Path) -> None:
     sheared = 2.0e5 / (2.0 * 0.4 * 0.008)
     case = read_case(
         tmp_path,
-        """
+        f"""
 title = "Thin"
-time = { duration = 1.0 }
-material = { youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850.0 }
-model = [{ name = "beam", kind = "finite-element" }]
-load = [{ segment = "arm", x = "head", magnitude = -2e5 }]
-[[segment]]
-name = "arm"
-length = 6.0
-supports = [{ x = 0.0, kind = "clamped" }]
-section = { height = 0.4, width = 0.3, flange = 0.003, web = 0.008 }
+time = {{ duration = 1.0 }}
+model = [{{ name = "beam", kind = "finite-element" }}]
+load = [{{ segment = "arm", x = "head", magnitude = -2e5 }}]
+{case_texts.STEEL}{case_texts.box("arm", 6.0, (0.4, 0.3, 0.003, 0.008), case_texts.CLAMPED)}
 """,
     )
     found = check_case(CheckedCase(case))

@@ -55,9 +55,7 @@ def test_characteristic_instants_are_those_of_the_motion(shell: Scene) -> None:
 
 
 def test_an_instant_is_shown_once(shell: Scene) -> None:
-    """Reference: by hand. With initial contact there is no first contact. A largest force within 2
-    % of the run from the first peak has no second picture.
-    """
+    """Reference: by hand. Instants within 2 % of the run are one; initial contact is no first."""
     motion = shell.motion.copy(deep=True)
     motion["contact_force_peak"][:] = 1.0e3
     assert characteristic_instants(motion) == pytest.approx(

@@ -75,9 +75,7 @@ def test_fixed_boom_vibrates_with_its_initial_amplitude() -> None:
 
 
 def test_a_slow_drive_swings_about_the_rest_of_each_place() -> None:
-    """Reference: analytic, from 1/4 m to 1 / (1 + 3/4) m, within 1 % in 60 s. A sudden motion
-    vibrates by the whole difference.
-    """
+    """Reference: analytic, from 1/4 to 1/(1 + 3/4) m; a sudden motion vibrates by all of it."""
     way = 1.0 / 1.75 - 0.25
     slow, fast = (
         farthest_from_rest(system, simulate(system, duration, position=[0.25]))[0]
@@ -103,9 +101,7 @@ WAVE = PiecewiseLinear(np.arange(0.0, 10.0, 0.1).tolist(), [0.0, 1.0, 1.0, 0.0] 
 
 @pytest.mark.parametrize("load", [Sine(5.0), Ramp(0.2), WAVE])
 def test_quasi_static_motion_has_no_residual_vibration(load: History) -> None:
-    """Reference: analytic, F/(1 + 3 r²) with springs of 1 and 3 N/m and a row r. There is no
-    vibration, although the load moves the tip by at least 0.5 m.
-    """
+    """Reference: analytic, F/(1 + 3 r²); the load moves the tip by at least 0.5 m."""
     assert of_follower(load) < 0.01 * 0.5
 
 

@@ -108,18 +108,11 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
 
 def test_tables_of_rest_name_their_loads(results: Results) -> None:
     """Reference: by hand. The moment of a hinge is round-off, compared with 5 kN m of a clamp."""
-    bears = [
-        Reaction("outer", 0.0, 1e3, 5e3, None),
-        Reaction("outer", 3.0, 2e3, 1.6e-7, None),
-    ]
+    bears = [Reaction("outer", x, 1e3, m, None) for x, m in ((0.0, 5e3), (3.0, 1.6e-7))]
     tables = rest_tables(answering(results, reactions=bears))
-    assert [table.title.partition(":")[0] for table in tables] == [
-        "Static state under the maximum load",
-        "Static state under the maximum load",
-        "Static state at t = 0",
-    ]
-    moments = [row[2] for row in tables[-1].rows]
-    assert moments == ["5", "0"]
+    titles = 2 * ["Static state under the maximum load"] + ["Static state at t = 0"]
+    assert [table.title.partition(":")[0] for table in tables] == titles
+    assert [row[2] for row in tables[-1].rows] == ["5", "0"]
 
 
 def with_stress(results: Results, stress: float) -> Results:
@@ -134,20 +127,15 @@ def with_stress(results: Results, stress: float) -> Results:
 def test_stresses_near_the_yield_strength_are_marked(results: Results) -> None:
     """Reference: by hand, 300 and 330 MPa, then 340 and 374 MPa of 355 MPa."""
     fibre, wall = (
-        "Bending stress, maximum (utilisation), MPa",
-        "Local plate stress, maximum (utilisation), MPa",
+        f"{what} stress, maximum (utilisation), MPa" for what in ("Bending", "Local plate")
     )
-    near = summary_table(with_stress(results, 300e6))
-    found = cells(near)
-    assert found[fibre][PLAYED] == "300, 84.5 %\nouter, x = 2.0 m"
-    assert found[wall][PLAYED] == "330, 93 %\nouter, x = 10.0 m"
-    assert found[wall][BONDED] == "–"
-    assert list(near.strong) == [found[wall][PLAYED]]
-    beyond = summary_table(with_stress(results, 340e6))
-    found = cells(beyond)
-    assert found[fibre][PLAYED] == "340, 95.8 %\nouter, x = 2.0 m"
-    assert found[wall][PLAYED] == "374, 105 %\nbeyond yield\nouter, x = 10.0 m"
-    assert set(beyond.strong) == {found[fibre][PLAYED], found[wall][PLAYED]}
+    near, beyond = (summary_table(with_stress(results, stress)) for stress in (300e6, 340e6))
+    low, high = "330, 93 %\nouter, x = 10.0 m", "374, 105 %\nbeyond yield\nouter, x = 10.0 m"
+    bent = "340, 95.8 %\nouter, x = 2.0 m"
+    assert cells(near)[fibre][PLAYED] == "300, 84.5 %\nouter, x = 2.0 m"
+    assert (cells(near)[wall][PLAYED], cells(near)[wall][BONDED]) == (low, "–")
+    assert (cells(beyond)[fibre][PLAYED], cells(beyond)[wall][PLAYED]) == (bent, high)
+    assert (list(near.strong), set(beyond.strong)) == ([low], {bent, high})
 
 
 def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> None:
@@ -167,19 +155,12 @@ def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
     steel = change(results.case, **{"material.yield_strength": 355e6})
     told = with_stress(replace(results, case=steel), 300e6)
     unpressed, known = replace(pad, force=0.0, pressure=0.0), replace(pad, utilisation=1.35)
+    plate, factor = "Utilisation 93 % by local plate stress", "No safety factor is included."
+    where = "(inner segment, x = 10 m): exceeds the allowable pressure"
     for one, start, end in (
-        (
-            pad,
-            "Utilisation 93 % by local plate stress",
-            "No allowable pressure is given of pads of inner.",
-        ),
-        (unpressed, "Utilisation 93 % by local plate stress", "No safety factor is included."),
-        (
-            known,
-            "Utilisation 135 % by pad pressure (inner segment, x = 10 m): exceeds the allowable "
-            "pressure",
-            "No safety factor is included.",
-        ),
+        (pad, plate, "No allowable pressure is given of pads of inner."),
+        (unpressed, plate, factor),
+        (known, f"Utilisation 135 % by pad pressure {where}", factor),
     ):
         found = replace(told, summary=told.summary.model_copy(update={"pads": [one]}))
         assert utilisation_verdict(found).startswith(start)

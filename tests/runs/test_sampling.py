@@ -8,11 +8,11 @@ import pandas as pd
 import pytest
 from scipy.stats import norm
 
-from runs import cli
 from runs.case import reading
 from runs.case.messages import BadInput
 from runs.sweep.sampling import QUANTILES, normal_points
 from tests.runs.cantilever import CANTILEVER, LOAD, MASS, static_tip
+from tests.system.run_folder import protractile
 
 SD = 5.0
 SPREAD = f"{{ mean = {LOAD}, sd = {SD} }}"
@@ -22,12 +22,6 @@ SCATTERED = CANTILEVER.replace(f"load = {LOAD}", f"load = {SPREAD}")
 @pytest.fixture(autouse=True)
 def _folder(here: Path, in_this_process: None) -> None:
     Path("case.toml").write_text(SCATTERED, encoding="utf-8")
-
-
-def protractile(*arguments: str) -> int | str | None:
-    with pytest.raises(SystemExit) as ended:
-        cli.main([*arguments])
-    return ended.value.code
 
 
 @pytest.mark.parametrize("dimensions", [1, 3, 12])

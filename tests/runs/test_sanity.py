@@ -23,6 +23,8 @@ from tests.runs.case_texts import (
 )
 from tests.runs.summaries import printed_check
 
+PAD = {"length": 0.12, "width": 0.05, "thickness": 0.012}
+SMALL = {"length": 0.01, "width": 0.004, "thickness": 0.0006}
 LIFT = f"""
 title = "A lift"
 time = {{ duration = 3.0 }}
@@ -34,12 +36,7 @@ cylinder = [{{ segment = "base", x = 2.4, depth = 0.25, ground = [0.7, -1.1], st
 {STEEL}
 {box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005), HINGED)}
 {box("fly", (5.3, 11.3), (0.256, 0.180, 0.005, 0.004))}
-[[joint]]
-outer = "base"
-inner = "fly"
-stations = ["tail", "head"]
-play = 0.003
-pad = {{ length = 0.12, width = 0.05, thickness = 0.012 }}
+{table("[[joint]]", outer="base", inner="fly", stations=["tail", "head"], play=0.003, pad=PAD)}
 {elements("beam", theory="euler-bernoulli")}
 """
 PLAY = "play = 0.003\npad = { length = 0.12, width = 0.05, thickness = 0.012 }\n"
@@ -247,19 +244,10 @@ title = "A boom on a table"
 time = {{ duration = 2.0 }}
 gravity = {{ angle = 10.0 }}
 payload = {{ mass = 0.2 }}
-[material]
-youngs_modulus = 7e10
-poissons_ratio = 0.33
-density = 2700.0
-yield_strength = 2e8
+{table("[material]", youngs_modulus=7e10, poissons_ratio=0.33, density=2700.0, yield_strength=2e8)}
 {box("outer", (0.0, 0.6), (0.020, 0.015, 0.0012, 0.001), CLAMPED)}
 {box("inner", (0.5, 1.0), (0.017, 0.0125, 0.001, 0.001))}
-[[joint]]
-outer = "outer"
-inner = "inner"
-stations = [0.5, 0.6]
-play = 0.0002
-pad = {{ length = 0.01, width = 0.004, thickness = 0.0006 }}
+{table("[[joint]]", outer="outer", inner="inner", stations=[0.5, 0.6], play=0.0002, pad=SMALL)}
 {elements("beam", element_length=0.05)}
 """
 

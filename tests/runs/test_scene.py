@@ -99,9 +99,7 @@ def test_change_of_shape_excludes_the_rigid_motion(shell: Scene) -> None:
 
 @pytest.mark.parametrize(("scale", "section"), [(1.0, 1.0), (5.0, 1.0), (20.0, 2.0)])
 def test_contact_in_run_is_contact_in_picture(shell: Scene, scale: float, section: float) -> None:
-    """Reference: analytic. In contact the distance of the mid-surfaces is a wall thickness. On the
-    opposite side it is larger by twice the clearance.
-    """
+    """Reference: analytic, a wall between mid-surfaces; opposite, twice the clearance more."""
     (overlap,) = shell.overlaps
     assert overlap == (0, 1, [0, 1], [9.0, 10.0], CLEARANCE)
     moved = np.zeros_like(shell.points)
@@ -180,9 +178,7 @@ def test_scale_is_round_and_fits(largest: float, scale: float) -> None:
 
 
 def test_rigid_motion_of_an_overlap_is_subtracted(shell: Scene) -> None:
-    """Reference: analytic, a parabola w = c x² over 1 m. Without its rigid motion, at most w″/12 ·
-    (1/2)² remains in the middle. The relative displacement of the inner segment is preserved.
-    """
+    """Reference: analytic, a parabola w = c x² over 1 m leaves at most w″/12 · (1/2)²."""
     whole, left = shell.displacement(0.5), shell.relative_displacements(0.5, 0, (9.0, 10.0))
     x, _, z = shell.points.T
     flange = shell.flange_in_plane(0, 1)
@@ -200,9 +196,7 @@ def test_rigid_motion_of_an_overlap_is_subtracted(shell: Scene) -> None:
 
 
 def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
-    """Reference: analytic. A uniform stress of a wall stays uniform up to its folds. A linear field
-    along x is the mean of the triangles around a point.
-    """
+    """Reference: analytic, a stress per wall stays so up to the folds; a linear field is a mean."""
     stress = shell.stress
     walls = stress.wall.astype(float) + 10.0 * shell.segment
     smooth = smooth_corners(stress, shell.triangles, walls)
@@ -232,9 +226,7 @@ def bent(boom: Boom) -> BeamOutput:
 
 
 def test_sections_stay_plane_and_follow_their_axis(paper_boom: Boom) -> None:
-    """Reference: analytic. At the end of the boom w = 3.61 m and w′ = 0.38, and points at z move by
-    −z w′ along x.
-    """
+    """Reference: analytic, w = 3.61 m and w′ = 0.38 at the tip, and −z w′ along x."""
     scene, _ = still(paper_boom, bent(paper_boom))
     ends = scene.points[:, 0] == paper_boom.tip
     moved = scene.displacement(1.0)[ends]
@@ -350,9 +342,7 @@ def test_sections_are_as_large_as_the_case_says(name: str) -> None:
 
 
 def test_a_force_down_points_down() -> None:
-    """Reference: the head of an arrow is at the loaded point. On an upright boom, forces across it
-    come from the left, and a payload still hangs down.
-    """
+    """Reference: the loaded point; on an upright boom forces come from the left, loads hang."""
     case = shipped("crane")
     acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
     load_across = acts["24.52 kN down, perpendicular to the boom, ramp of 0.5 s"]
@@ -402,9 +392,7 @@ def test_a_page_shows_the_drawn_places_and_stresses(shown: View) -> None:
 
 
 def test_drives_move_segments_in_the_viewer(shown: View) -> None:
-    """Reference: analytic. The inner segment moves inwards by 2 m per second. Both segments bend as
-    without a drive.
-    """
+    """Reference: analytic, 2 m/s inwards for the inner segment; both bend as without a drive."""
     out = Drive(SCurve(travel=-4.0, duration=2.0), carriers=("inner", "outer"))
     boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
     motion = moving_scene(extension=-2.0 * TIME).motion
@@ -422,9 +410,7 @@ def test_drives_move_segments_in_the_viewer(shown: View) -> None:
 
 
 def test_symbols_follow_the_boom_and_its_supports_stay(shown: View) -> None:
-    """Reference: analytic. Heads of arrows are at the lower edge of the loaded segment, in its
-    plane of symmetry. Hinges are at 0 and 2 m.
-    """
+    """Reference: analytic, arrow heads at lower edges in mid-plane; hinges at 0 and 2 m."""
     scene = shown.scene
     scale = pack_view(shown, 0.0)["magnified"]
     rest = scene.magnify(np.zeros_like(scene.points), scale)

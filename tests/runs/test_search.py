@@ -1,17 +1,19 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Values of a key at a bound, and changes of results by those of each number."""
 
+from functools import partial
 from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from runs import cli
 from runs.case.reading import load
 from runs.sweep.search import rigid_wall_cautions
 from tests.docs.conftest import toml_blocks
 from tests.runs.cantilever import CANTILEVER, static_tip
+from tests.system.run_folder import protractile
 
+sweep = partial(protractile, "sweep", "case.toml")
 LENGTHS = "segment[1].length=3:5:3"
 ONE = "give one of --vary, --sensitivity and --samples"
 
@@ -21,17 +23,11 @@ def _folder(here: Path, in_this_process: None) -> None:
     Path("case.toml").write_text(CANTILEVER, encoding="utf-8")
 
 
-def protractile(*arguments: str) -> int | str | None:
-    with pytest.raises(SystemExit) as ended:
-        cli.main(["sweep", "case.toml", *arguments])
-    return ended.value.code
-
-
 @pytest.mark.usefixtures("unprinted")
 def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, the length at which q L⁴/(8 E J) is that of 4.321 m."""
     bound = f"tip_at_rest<{static_tip(4.321)}"
-    assert protractile("--vary", LENGTHS, "--until", bound, "--out", "out") == 0
+    assert sweep("--vary", LENGTHS, "--until", bound, "--out", "out") == 0
     table = pd.read_csv("out/sweep.csv")
     lengths = table["segment[1].length"]
     low = lengths[table["tip_at_rest"] <= static_tip(4.321)].max()
@@ -42,10 +38,8 @@ def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
     told = capsys.readouterr().out
     title = "Bracket of segment[1].length: static tip deflection (maximum load) ≤ "
     bracket = told[told.index(title) :]
-    assert [row.split()[0] for row in bracket.splitlines() if row.strip().endswith(("✓", "✗"))] == [
-        f"{low:.6g}",
-        f"{high:.6g}",
-    ]
+    rows = [row.split()[0] for row in bracket.splitlines() if row.strip().endswith(("✓", "✗"))]
+    assert rows == [f"{low:.6g}", f"{high:.6g}"]
 
 
 def test_search_with_governing_walls_gives_a_caution() -> None:
@@ -80,13 +74,13 @@ def test_search_with_governing_walls_gives_a_caution() -> None:
 def test_a_search_without_an_aim_is_refused(
     arguments: tuple[str, ...], line: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert protractile(*arguments) == 2
+    assert sweep(*arguments) == 2
     assert capsys.readouterr().err == f"protractile: case.toml: {line}\n"
 
 
 def test_a_bound_on_no_side_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, static tips of lengths of 3 and 5 m."""
-    assert protractile("--vary", LENGTHS, "--until", "tip_at_rest<0.5", "--out", "out") == 2
+    assert sweep("--vary", LENGTHS, "--until", "tip_at_rest<0.5", "--out", "out") == 2
     assert capsys.readouterr().err == (
         "protractile: case.toml: --until: static tip deflection (maximum load) does not pass "
         "500 mm over segment[1].length, "
@@ -97,7 +91,7 @@ def test_a_bound_on_no_side_is_refused(capsys: pytest.CaptureFixture[str]) -> No
 
 def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, powers of the numbers in q L⁴/(8 E J) and √(E J/m)/L²."""
-    assert protractile("--sensitivity", "--out", "out") == 0
+    assert sweep("--sensitivity", "--out", "out") == 0
     table = pd.read_csv("out/sensitivity.csv", index_col="key")
     powers = {
         "segment[1].length": (4.0, -2.0),

@@ -29,7 +29,7 @@ from runs.report.figure_context import FigureContext
 from runs.report.force_figures import stress_history
 from runs.report.model_tables import wall_table
 from studies.telescoping_column import END, LAW, LENGTH, STIFFNESS, column
-from tests.runs.case_texts import STEEL, box, elements, read_case, shipped
+from tests.runs.case_texts import STEEL, box, elements, read_case, shipped, table
 from tests.runs.summaries import answers_of, model_summary, summary_of
 from tests.touching import touching
 
@@ -44,12 +44,7 @@ gravity = {{ acceleration = 10.0, angle = 30.0 }}
 {STEEL}
 {box("arm", (0.0, 10.0), (0.40, 0.30, 0.008, 0.006), "mass_per_length = 100.0")}
 supports = [{{ x = 1.0 }}]
-[[cylinder]]
-segment = "arm"
-x = 4.0
-depth = 0.0
-ground = [0.0, -3.0]
-stiffness = 1e8
+{table("[[cylinder]]", segment="arm", x=4.0, depth=0.0, ground=[0.0, -3.0], stiffness=1e8)}
 {elements("beam", theory="timoshenko", element_length=0.5)}
 """
 

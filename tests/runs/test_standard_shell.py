@@ -37,12 +37,7 @@ RAISED = f"""
 {box("base", (0.0, 10.0), (0.6, 0.4, 0.025, 0.025), "supports = [{ x = 0.0, depth = 0.35 }]")}
 {table("[payload]", mass=400.0)}
 {table("[[load]]", segment="base", x=8.0, magnitude=-3000.0)}
-[[cylinder]]
-segment = "base"
-x = 2.6
-depth = 0.3
-ground = [0.9, -1.3]
-stiffness = 1e9
+{table("[[cylinder]]", segment="base", x=2.6, depth=0.3, ground=[0.9, -1.3], stiffness=1e9)}
 """
 
 

@@ -16,7 +16,6 @@ from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.drives import lag_cautions
 from runs.pipeline.quantities import measure
-from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.report import theme
 from runs.report.figure_context import FigureContext
@@ -111,10 +110,7 @@ def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
 
 
 def test_check_predicts_stick_slip(tmp_path: Path) -> None:
-    """Reference: by hand. With an overlap of 1 m, the lever rule gives pad forces of 27 and 21.6
-    kN. 550.7 kg on 200 kN/m have 3.03 Hz and the damping ratio 500/2√(k m). The critical speed
-    follows from the formula.
-    """
+    """Reference: by hand, pads of 27 and 21.6 kN, 550.7 kg on 200 kN/m; the formula's speed."""
     shown = printed_check(drawn_by(tmp_path, ROPE), 300)
     assert (
         "The drive of 'inner' moves 550.7 kg, with a frequency of 3.03 Hz and a damping ratio of "
@@ -145,15 +141,17 @@ def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
 
 @pytest.mark.slow
 def test_run_reports_stick_slip(tmp_path: Path) -> None:
-    """Reference: analytic. During slip the drive force is friction plus m Δṡ/Δt. The extension is
-    the command less the lag. Other results are those of a stiff drive.
-    """
+    """Reference: analytic, friction plus m Δṡ/Δt in slip; the extension is command less lag."""
     short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.3"}
     case = drawn_by(tmp_path, ROPE.replace("2e5", "2e6"), **short)
     results = run_case(case, models=["kantorovich-5"])
     data = results.trajectories.sel(model="kantorovich-5")
     own = results.summary.models["kantorovich-5"].stick_slip["drive_force"]
-    _check_motion(data)
+    time, speed = data["time"].values, data["extension_speed"].values
+    assert 300 < _checked_slips(data) < 1250
+    come = (data["extension"] - data["drive_lag"]).values
+    summed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
+    assert come == pytest.approx(summed, abs=1e-4)
     assert own.energy_residual < 1e-12
     assert own.sticks >= 1
     assert own.peak >= float(np.abs(data["drive_force"]).max())
@@ -162,7 +160,20 @@ def test_run_reports_stick_slip(tmp_path: Path) -> None:
     assert own.behind == float(data["drive_lag"][-1])
     moving = np.diff(data["extension"], prepend=0.0) != 0.0
     assert own.mean == pytest.approx(float(np.abs(data["drive_force"])[moving].mean()))
-    _check_shown(results, tmp_path)
+    read = Summary.model_validate_json(str(results.summary))
+    assert read.models["kantorovich-5"].stick_slip["drive_force"] == own
+    table = stick_slip_table(results)
+    assert [column.cells[0] for column in table.columns] == [
+        "kantorovich-5", "inner", own.mean, own.peak, own.sticks, own.slip, own.behind, own.speed,
+        own.acceleration,
+    ]  # fmt: skip
+    assert table.title in [one.title for one in result_tables(results)]
+    measured = measure(results, "kantorovich-5")
+    assert (measured["drive_force"], measured["drive_slip"]) == (own.peak, own.slip)
+    with rc_context(theme.RC):
+        _, figure = drives(FigureContext(results, tmp_path))
+    assert figure.path.name == "stick-slip.png"
+    assert figure.title.startswith(f"Drive of inner: sticks {own.sticks} times, slips by up to ")
     stiff = run_case(drawn_by(tmp_path, "least_overlap = 1.0 }", **short), models=["kantorovich-5"])
     for name, values in stiff.trajectories.data_vars.items():
         assert np.array_equal(values, results.trajectories[name])
@@ -193,9 +204,7 @@ def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
 
 
 def test_a_stiff_rope_pulls_as_a_stiff_drive(tmp_path: Path) -> None:
-    """Reference: analytic. With 1e10 N/m, the force is friction plus the inertia force of 550.7 kg
-    on the S-curve, within 0.1 % of the maximum.
-    """
+    """Reference: analytic, friction plus the inertia of 550.7 kg on the S-curve."""
     short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.2"}
     rope = "least_overlap = 1.0, stiffness = 1e10, dashpot = 2e6 }"
     results = run_case(drawn_by(tmp_path, rope, **short), models=["kantorovich-5"])
@@ -208,14 +217,6 @@ def test_a_stiff_rope_pulls_as_a_stiff_drive(tmp_path: Path) -> None:
     assert np.abs(force - asked)[10:-10].max() < 1e-3 * force.max()
 
 
-def _check_motion(data: xr.Dataset) -> None:
-    time, speed = data["time"].values, data["extension_speed"].values
-    assert 300 < _checked_slips(data) < 1250
-    come = (data["extension"] - data["drive_lag"]).values
-    summed = np.concatenate([[0.0], np.cumsum(0.5 * (speed[1:] + speed[:-1]) * np.diff(time))])
-    assert come == pytest.approx(summed, abs=1e-4)
-
-
 def _checked_slips(data: xr.Dataset) -> int:
     """Return the outputs with slip; drive force less friction accelerates 550.7 kg."""
     time, speed = data["time"].values, data["extension_speed"].values
@@ -224,25 +225,6 @@ def _checked_slips(data: xr.Dataset) -> int:
     left = (data["drive_force"].values - friction)[1:] - 550.7 * np.diff(speed) / np.diff(time)
     assert np.abs(left[slips]).max() < 1e-9 * friction.max()
     return int(slips.sum())
-
-
-def _check_shown(results: Results, folder: Path) -> None:
-    """Check the summary. Reference: its content, written and read again."""
-    own = results.summary.models["kantorovich-5"].stick_slip["drive_force"]
-    read = Summary.model_validate_json(str(results.summary))
-    assert read.models["kantorovich-5"].stick_slip["drive_force"] == own
-    table = stick_slip_table(results)
-    assert [column.cells[0] for column in table.columns] == [
-        "kantorovich-5", "inner", own.mean, own.peak, own.sticks, own.slip, own.behind, own.speed,
-        own.acceleration,
-    ]  # fmt: skip
-    assert table.title in [one.title for one in result_tables(results)]
-    measured = measure(results, "kantorovich-5")
-    assert (measured["drive_force"], measured["drive_slip"]) == (own.peak, own.slip)
-    with rc_context(theme.RC):
-        _, figure = drives(FigureContext(results, folder))
-    assert figure.path.name == "stick-slip.png"
-    assert figure.title.startswith(f"Drive of inner: sticks {own.sticks} times, slips by up to ")
 
 
 def test_lag_is_in_the_units_of_the_case(tmp_path: Path) -> None:

@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 from geometry.boom import Boom, BoomError, Collar, Diaphragm
-from runs import cli
 from runs.case.build import build_boom
 from runs.case.reading import load
 from tests.runs.coarse_case import COARSE
 from tests.shell_model.booms import three_segments
+from tests.system.run_folder import protractile
 
 STIFFENED = COARSE.replace(
     "supports = [0.0, 2.0]",
@@ -42,9 +42,7 @@ def test_stiffeners_change_no_number_of_the_beams(stiffened: str) -> None:
 
 def test_check_prints_them(stiffened: str, capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic masses, of 2 (0.4889 + 0.3259) x 0.3 x 0.01 m³ and of the outlines'."""
-    with pytest.raises(SystemExit) as ended:
-        cli.main(("check", stiffened))
-    assert ended.value.code == 0
+    assert protractile("check", stiffened) == 0
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert ["collar", "outer", "9.7–10", "10", "38.4"] in rows
     assert ["diaphragm", "outer", "0", "6", "7.5"] in rows

@@ -12,9 +12,8 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import Gap, PowerContact
 from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep, FixedStep
+from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Segment, Support
 from geometry.section import BoxSection
 from tests.shell_model.booms import flat_boom
@@ -122,8 +121,18 @@ def _shell(line: str) -> Callable[[Boom, PowerContact], GapSystem]:
     return shell
 
 
-def agree(si: Trajectory, mm: Trajectory) -> None:
+def agree(
+    model: Callable[[Boom, PowerContact], GapSystem],
+    boom: Boom,
+    law: PowerContact,
+    integrator: Integrator,
+    duration: float,
+) -> None:
     """Check that motions agree: tip within 1e-9 of its range, gaps and energies within 1e-8."""
+    si, mm = (
+        integrator(Motion(model(*data), duration))
+        for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
+    )
     assert mm.first_contact == pytest.approx(si.first_contact, rel=1.0e-6)
     assert mm.first_contact < 0.5
     assert mm.energy_residual == pytest.approx(si.energy_residual, rel=0.01, abs=1.0e-9)
@@ -140,23 +149,12 @@ def test_beams_do_not_know_the_units(
     model: Callable[[Boom, PowerContact], GapSystem], law: PowerContact
 ) -> None:
     """Reference: the model in SI units within 1e-9, with friction and contacts."""
-    boom = flat_boom(friction=0.2)
-    runs = [
-        FixedStep(1.0e-4)(Motion(model(*data), 1.0))
-        for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
-    ]
-    agree(*runs)
+    agree(model, flat_boom(friction=0.2), law, FixedStep(1.0e-4), 1.0)
 
 
 def test_steps_by_tolerance_do_not_know_the_units() -> None:
     """Reference: the same model in SI units, without play or without friction, until chaos."""
-    boom = flat_boom()
-    law = LINEAR.law.with_clearance(0.0)
-    runs = [
-        AdaptiveStep()(Motion(series(*data), 0.3))
-        for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
-    ]
-    agree(*runs)
+    agree(series, flat_boom(), LINEAR.law.with_clearance(0.0), AdaptiveStep(), 0.3)
 
 
 @pytest.mark.parametrize("line", ["near webs", "pads", "surface"])
@@ -165,8 +163,4 @@ def test_shells_do_not_know_the_units(line: str) -> None:
     boom = flat_boom(friction=0.2)
     if line == "pads":
         boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))
-    runs = [
-        FixedStep(1.0e-4)(Motion(_shell(line)(*data), 0.6))
-        for data in ((boom, LINEAR), (boom_in_mm(boom), law_in_mm(LINEAR)))
-    ]
-    agree(*runs)
+    agree(_shell(line), boom, LINEAR, FixedStep(1.0e-4), 0.6)
