@@ -159,7 +159,7 @@ class PiecewiseLinear:
 
     @property
     def kinks(self) -> Sequence[float]:
-        """The times of the points in s."""
+        """The times of the table in s."""
         return self.times
 
     def __call__(self, time: Array) -> Array:

@@ -154,7 +154,7 @@ class HangingLoad:
         tip, lateral = (np.pad(row, (0, dimensions)) for row in (tip, lateral))
 
         def stretches(time: float) -> Array:
-            """Return rows (dimensions, num_modes + dimensions) of the tip less the load."""
+            """Return rows (dimensions, num_modes + dimensions) of tip displacement minus load's."""
             if self.pendulum is None:
                 return np.asarray(self.cosine * tip[None] - coordinates)
             return np.asarray(self.pendulum.read(time, tip, lateral)[:dimensions] - coordinates)

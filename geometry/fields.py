@@ -44,7 +44,7 @@ class In:
 
 
 def fields_of(table: type) -> dict[str, FieldInfo]:
-    """Return the fields of a part or of a table of a case, by name, with their descriptions.
+    """Return the fields of a part of the boom or of a table of a case, with their descriptions.
 
     Pydantic finds the descriptions of inherited fields only in the base class.
     """

@@ -38,7 +38,7 @@ class TelescopingStations:
 
     @property
     def suffix(self) -> str | None:
-        """The suffix of result names; None for a stop on a segment that several joints move."""
+        """The suffix of result names; None if several joints move the stop's segment."""
         if len(self.joints) > 1:
             return None
         return "" if self.joints[0] == 0 else f"-{self.joints[0] + 1}"
@@ -77,7 +77,7 @@ def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
 
 
 def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
-    """Return the indices of joints with a drive between a segment and the ground, from the base."""
+    """Return the indices of the driven joints between the base and a segment, base first."""
     for number, joint in enumerate(joints):
         if joint.inner == segment:
             drive = () if joint.drive is None else (number,)

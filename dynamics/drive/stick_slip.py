@@ -114,9 +114,10 @@ def move_segment(
 ) -> DriveMotion:
     """Return the motion of the segment from rest under the axial load.
 
-    The solution is exact for s_c and f_d that are linear within steps, at least 63 per period. The
-    accelerations in f_d are second differences. Histories of other drives are mirrored at t = 0, so
-    that an initial jump of their speed gives its whole impulse within the first step.
+    Within each step, the extension s_c of the drive and the inertia force f_d of other drives are
+    linear; each period has at least 63 steps. Accelerations in f_d are second differences.
+    Histories of other drives are mirrored at t = 0, so that an initial jump of their speed gives
+    its whole impulse within the first step.
 
     Args:
         drive: elastic drive of the segment.

@@ -30,7 +30,7 @@ class _SignalProofPool(ProcessPoolExecutor):
     """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *positional: Any, **named: Any) -> Future[Any]:
-        """Submit work to processes that block signals and have the variables of workers."""
+        """Submit work; processes start with blocked signals and the environment of workers."""
         with _worker_environment():
             return super().submit(work, *positional, **named)
 

@@ -101,7 +101,7 @@ class Scene:
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
         """Return the scenes of a shell: from the side, and for a boom in space also from above.
 
-        For the view from above the boom is rotated about x, so that y points up.
+        For the view from above, the boom is rotated about x, so that y points up.
 
         Args:
             fields: dataset of ``shell_model.stress.fields``, with ``state`` (time, mode).
@@ -288,7 +288,7 @@ class Scene:
         return max(0.5 * float(np.ptp(self.edges(segment, end))) for end in ends)
 
     def flange_in_plane(self, segment: int, side: int) -> Numbers:
-        """Return point numbers (num_points,) of a flange in the plane of bending, base to tip.
+        """Return the numbers (num_points,) of the points where the plane of bending cuts a flange.
 
         ``side`` is 1 for the top flange, -1 for the bottom flange.
         """

@@ -38,7 +38,7 @@ POINTS = "points"
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """Results of a point by model name."""
+    """Results at a point of a sweep, by model name."""
 
     models: dict[str, Quantities]  #: quantities of the completed models
     failures: dict[str, str]  #: reasons why other models failed

@@ -93,7 +93,7 @@ def run_until(
 
 
 def numbers(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> list[float]:
-    """Return the quantity of the bound at each point, in SI units.
+    """Return the limited quantity at each point of the sweep, in SI units.
 
     Raises:
         BadInput: a point has no value.

@@ -100,7 +100,7 @@ class Wall:
 
 
 class _Candidate(NamedTuple):
-    """Coordinates (6,) of the corners of a triangle in m, and the row of a point in it."""
+    """Corners (6,) of a triangle in m, and the row of the displacement at a point in it."""
 
     corners: tuple[float, ...]
     row: Row

@@ -226,7 +226,7 @@ class _Basis:
         return compliance, transfer
 
     def compliance_error(self, full: Sequence[_FullResponse], parts: Array) -> Array:
-        """Return the largest error (num_inputs,) of the compliance of inputs in m/N.
+        """Return the largest error (num_inputs,) of each input's compliance in m/N.
 
         Args:
             full: responses of the full model.

@@ -59,10 +59,10 @@ def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> P
 
 
 def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
-    """Return ω² (num_springs,) and rows (num_extensions, num_rows, num_springs) of springs.
+    """Return springs that replace a residual compliance: ω² and rows.
 
-    ω² is in rad²/s², rows in 1/√kg. ``residual`` Γ (num_extensions, num_rows, num_rows) is in m/N,
-    ``inertia`` Γ′ in m s²/N.
+    ω² (num_springs,) is in rad²/s², rows (num_extensions, num_rows, num_springs) are in 1/√kg.
+    ``residual`` Γ (num_extensions, num_rows, num_rows) is in m/N, ``inertia`` Γ′ in m s²/N.
     """
     sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
     scale = np.outer(sizes, sizes)

@@ -34,7 +34,7 @@ class SegmentShell(Shell):
 
     @cached_property
     def unit_loads(self) -> Mapping[Direction, Array]:
-        """The load vectors (num_owned,) of 1 N/m in each direction. Collective.
+        """The load vectors (num_owned,) of 1 N/m in each direction. All MPI ranks must call it.
 
         Loads act on the walls, not on collars and diaphragms, and are zero in fixed rows.
         """

@@ -194,7 +194,7 @@ def dirichlet_condition(
 def assemble_plates(
     comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None, copies: float = 1.0
 ) -> Plates:
-    """Return the plates of a segment, or of one of ``copies`` congruent parts. Collective."""
+    """Return the plates of a segment, or of one of its ``copies`` equal parts. Collective."""
     points, triangles, of_cells = np.zeros((0, 3)), np.zeros((0, 3), dtype=np.int64), None
     if mesh is not None:
         # Collars do not carry the axial force, so that it is the same in all sections.

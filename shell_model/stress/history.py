@@ -157,7 +157,7 @@ def stress_near_places(
 
 
 def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
-    """Return the largest triangle and patch stresses of a run, with wall forces."""
+    """Return the largest stresses of a triangle and of a patch in a run, with wall forces."""
     names = [str(name) for name in history["segment"].values]
     places = [float(x) for x in history["place"].values]
     worst = _largest(shell, history)

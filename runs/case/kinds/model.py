@@ -41,7 +41,7 @@ class BeamSegments:
 
     @cached_property
     def segments(self) -> list[SegmentModel]:
-        """The segments in the coordinates of the model."""
+        """The segments of the model, with rows in its generalised coordinates."""
         return self.model.segments(self.boom)
 
     @cached_property
