@@ -357,8 +357,8 @@ STIFFENERS = [
         "0.02 }]":
             "segment[1].collars: two lie on one another from 9.5 m on; give one of the "
             "thickness of both there",
-        "diaphragms = [{ x = 0.0, thickness = 0.008 }, { x = 9.5, thickness = 0.008 }]":
-            "segment[1].diaphragms[2].x: 'inner' slides inside 'outer' at 9.5 m, and no plate "
+        "diaphragms = [{ x = 0.0, thickness = 0.008 }, { x = 9.0, thickness = 0.008 }]":
+            "segment[1].diaphragms[2].x: 'inner' slides inside 'outer' at 9 m, and no plate "
             "can close the box there; it must be below 9 m",
     }),
     *adding("span = [9.0, 19.0]", {

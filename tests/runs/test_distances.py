@@ -2,6 +2,7 @@
 """Distances of models from the reference of a sweep, as numbers, tables and charts."""
 
 import csv
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from matplotlib.figure import Figure as Sheet
 
 from dynamics.predictability.horizon import measure_horizons
 from protractile.cases import change, run_case
+from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.messages import BadInput
@@ -18,6 +20,7 @@ from runs.folder.cache import Cache
 from runs.pipeline.low_pass import mean_period
 from runs.pipeline.models import MotionPlan, build
 from runs.sweep import output
+from runs.sweep import run as sweep_run
 from runs.sweep.distances import (
     AVERAGING_TIME,
     CHANGE,
@@ -234,3 +237,31 @@ def test_shell_reference_is_limited_by_its_horizon(tmp_path: Path) -> None:
     off = outcome.differences["timoshenko"]["tip_off"]
     assert off is not None
     assert 0.0 < off < 0.2
+
+
+@pytest.mark.slow
+def test_better_beams_are_nearer_to_the_shell(here: Path) -> None:
+    """Reference: other code, the shell. Each beam includes an effect the previous one lacks."""
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+    text = (
+        (CASES / "beam-or-shell.toml")
+        .read_text(encoding="utf-8")
+        .replace("duration = 5.0", "duration = 1.0")
+    )
+    assert text.count("acceleration = 1.0") == 1
+    text = text.replace("acceleration = 1.0", "acceleration = 10.0")
+    Path("case.toml").write_text(text, encoding="utf-8")
+    keys = ["joint.play=0.004,0.014"]
+    sweeping = plan("case.toml", keys, None, 0.4, "shell")
+    cache, out = Cache(here / "cache"), here / "out"
+    sweep_run.prepare(out, "case.toml")
+    with ThreadPoolExecutor(2) as pool:
+        outcomes = sweep_run.run_points(sweeping, out, pool, lambda *_: None, cache)
+    # One shell for all points, and for the beams that it calibrates.
+    assert len(list(cache.folder.glob("*.record"))) == 1
+    data = output.gather(sweeping, outcomes)
+    for distance in ("tip_off", "first_peak_off"):
+        worst = data[distance].max("joint.play")
+        euler, plain, sprung, fielded, _ = worst.values
+        assert euler > 1.5 * plain > 3.0 * sprung > 3.0 * fielded, worst
+        assert fielded < 0.01

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Refusal of special and oversized files, without waiting."""
+"""CSV files from other programs, and refusal of special and oversized files, without waiting."""
 
 import os
 from collections.abc import Callable
@@ -7,8 +7,12 @@ from pathlib import Path
 
 import pytest
 
+from runs.case import reading
+from runs.case.actions import series_notes
 from runs.case.messages import BadInput
 from runs.case.reading import load
+from runs.case.schema import Case
+from runs.case.units import Unit
 from runs.case.user_files import MAX_BYTES, check_not_working_folder
 from runs.folder.files import MANIFEST
 from runs.pipeline.results import prepare
@@ -21,7 +25,7 @@ GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'
 pytestmark = pytest.mark.usefixtures("here")
 
 
-def complaint(file: str) -> str:
+def refusal_of(file: str) -> str:
     with pytest.raises(BadInput) as error:
         load(file)
     return str(error.value)
@@ -41,7 +45,7 @@ def test_special_and_oversized_files_are_refused(
 ) -> None:
     """Reading a pipe would wait for its writer, and a device has no end."""
     make(file)
-    assert complaint(file) == f"{file}: file: cannot be read ({why}); give a case file that can"
+    assert refusal_of(file) == f"{file}: file: cannot be read ({why}); give a case file that can"
 
 
 @pytest.mark.parametrize(
@@ -59,13 +63,13 @@ def test_special_and_oversized_files_are_refused(
 def test_a_history_s_file_is_read_with_same_care(make: Callable[[str], object], what: str) -> None:
     make("gust.csv")
     Path("case.toml").write_text(COARSE.replace("[[model]]", GUST, 1), encoding="utf-8")
-    assert complaint("case.toml").startswith(f"case.toml: base[1].file: {what}")
+    assert refusal_of("case.toml").startswith(f"case.toml: base[1].file: {what}")
 
 
 def test_a_history_s_file_is_a_printable_path() -> None:
     text = COARSE.replace("[[model]]", GUST.replace("gust", "a\\u0000b"), 1)
     Path("case.toml").write_text(text, encoding="utf-8")
-    assert complaint("case.toml") == (
+    assert refusal_of("case.toml") == (
         "case.toml: base[1].file: must be a line of printable characters, got 'a\\x00b.csv'"
     )
 
@@ -86,3 +90,189 @@ def test_nobody_s_folder_is_replaced_around_them(
         "folder"
     ):
         prepare(str(folder), "case.toml")
+
+
+LOAD = '[[load]]\nsegment = "inner"\n{keys}\nfile = "gust.csv"\n\n[[model]]'
+TABLE = ((0.0, 0.5), (0.25, -1500.0))
+
+
+def case_of(csv: str, keys: str, key: str = "load") -> Case:
+    Path("gust.csv").write_text(csv, encoding="utf-8")
+    table = LOAD.replace("load", key)
+    text = COARSE.replace("[[model]]", table.format(keys=keys), 1)
+    if key == "base":
+        text = text.replace('[[base]]\nsegment = "inner"\n', "[[base]]\n")
+    Path("case.toml").write_text(text, encoding="utf-8")
+    return reading.load("case.toml")
+
+
+@pytest.mark.parametrize(
+    ("csv", "keys"),
+    [
+        ("0, 0.5\n0.25, -1500\n", "x = 19.0\nmagnitude = 1.0"),
+        ("0;0,5\n0,25;-1500\n", "x = 19.0\nmagnitude = 1.0"),
+        ("sep=;\n0;0,5;\n0,25;-1.5e3;\n", "x = 19.0\nmagnitude = 1.0"),
+        ('# of a sensor\n"time","factor"\n"0","0,5"\n"0,25","-1500"\n', "magnitude = 1.0"),
+        ("t [ms]\tF [kN]\n0\t0.0005\n250\t-1.5\n", "x = 19.0"),
+        ("Zeit (ms);Kraft (kN)\n0;0,0005\n250;-1,5\n", "x = 19.0"),
+        ("t / s;F / kN\n0;0,0005\n0,25;-1,5\n", "x = 19.0"),
+        ("time in s;wind load in N/mm\n0;0,0005\n0,25;-1,5\n", ""),
+        ("t;M\nms;kNm\n0;0,0005\n250;-1,5\n", "x = 19.0\nmoment = true"),
+        ("0 0.5\n0.25 -1500\n", "x = 19.0\nmagnitude = 1.0"),
+        ("t  [ms]   F [kN] # of a logger\n  0   0,0005\n250  -1,5\n", "x = 19.0"),
+        ("t / s  F / kN\n0 5e-4\n0.25 -1.5\n", "x = 19.0"),
+        ("t F v\ns kN m/s\n0 0.0005 30\n0.25 -1.5 31\n", 'x = 19.0\ncolumns = ["t", "F"]'),
+        ("t [s],gust [%]\n0,50\n0.25,-150000\n", "magnitude = 1.0"),
+        ("no,F (N),speed (km/h),t (s)\n1,0.5,30,0\n2,-1500,31,0.25\n",
+         'x = 19.0\ncolumns = ["t", "F (N)"]'),
+    ],
+)  # fmt: skip
+def test_columns_are_read_in_their_units(csv: str, keys: str) -> None:
+    """Reference: analytic, the same pairs in SI units."""
+    (load,) = case_of(csv, keys).loads
+    assert (load.file, load.columns, load.magnitude) == (None, None, 1.0)
+    for pair, expected in zip(load.table, TABLE, strict=True):
+        assert pair == pytest.approx(expected, rel=1e-15)
+
+
+@pytest.mark.parametrize("encoding", ["utf-8-sig", "utf-16", "cp1252"])
+def test_files_are_read_as_spreadsheets_save_them(encoding: str) -> None:
+    """Reference: analytic, the same pairs; the names and the unit have letters beyond ASCII."""
+    csv = "Zeit (s);Erregung für Süd (m/s²)\r\n0;0,5\r\n0,25;-1500\r\n"
+    keys = 'columns = ["Zeit", "Erregung für Süd"]'
+    case_of("0,0\n1,1\n", "acceleration = 1.0", "base")
+    text = Path("case.toml").read_text(encoding="utf-8").replace("acceleration = 1.0", keys)
+    Path("case.toml").write_text(text, encoding="utf-8")
+    Path("gust.csv").write_bytes(csv.encode(encoding))
+    assert reading.load("case.toml").base[0].table == TABLE
+
+
+@pytest.mark.parametrize(
+    ("unit", "factor"), [("g", 9.80665), ("cm/s2", 0.01), ("mm/s²", 0.001), ("m/s^2", 1.0)]
+)
+def test_a_measured_quake_needs_no_acceleration(unit: str, factor: float) -> None:
+    """Reference: analytic, the standard gravity 9.80665 m/s², times a given factor."""
+    csv = f"t (s),a ({unit})\n0,0\n0.5,0.3\n"
+    for keys, times in (("", 1.0), ("acceleration = -2.0", -2.0)):
+        (base,) = case_of(csv, keys, "base").base
+        assert base.acceleration * base.table[1][1] == pytest.approx(times * 0.3 * factor)
+
+
+def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
+    """Reference: analytic, the same pairs in SI units."""
+    Path("pad.csv").write_text("F [kN];depth [mm]\n1,5;0,1\n4;0,2\n", encoding="utf-8")
+    law = 'force_file = "pad.csv"\nforce_columns = ["depth", "F"]\n'
+    text = COARSE.replace("stiffness = 1e13\nexponent = 2.0\n", law, 1)
+    Path("case.toml").write_text(text, encoding="utf-8")
+    (joint,) = reading.load("case.toml").joints
+    assert joint.force_table == ((1.0e-4, 1500.0), (2.0e-4, 4000.0))
+    assert joint.force_columns is None
+
+
+PAIRS = "give a CSV file of two columns, time in s and factor; a heading may say other units"
+OF_THREE = "t;F;v\n0;1;2\n1;1;2\n"
+
+
+@pytest.mark.parametrize(
+    ("csv", "columns", "line"),
+    [
+        (OF_THREE, "", "'gust.csv' has 3 columns in line 1; name two of them"),
+        (OF_THREE, '["t", "G"]',
+         "'gust.csv' has 0 columns 'G' in line 1; name columns that it has once"),
+        (OF_THREE.replace("v", "F"), '["t", "F"]',
+         "'gust.csv' has 2 columns 'F' in line 1; name columns that it has once"),
+        ("0;1\n1;1\n", '["t", "F"]',
+         "'gust.csv' has no heading; leave the names of columns out"),
+        ("t (s);F\n0;1,5\n1;1.234,5\n", "",
+         f"'gust.csv' has no finite number in line 3, column 2; {PAIRS}"),
+        ("t (s);F\n0;1,5\n1\n", "", f"'gust.csv' has 1 column in line 3; {PAIRS}"),
+        ("root:*:1:0:99\nsecret:$y$j9T$Xa:1:0:99\n", "",
+         f"'gust.csv' has 1 column in line 1; {PAIRS}"),
+        ("0,5,1,2\n0,6,1,3\n", "", f"'gust.csv' has 4 columns in line 1; {PAIRS}"),
+        ("t,F\n", "", f"'gust.csv' has fewer than two lines of numbers; {PAIRS}"),
+    ],
+)  # fmt: skip
+def test_bad_columns_are_refused(csv: str, columns: str, line: str) -> None:
+    keys = f"magnitude = 1.0\ncolumns = {columns}" if columns else "magnitude = 1.0"
+    assert complaint(csv, keys) == f"file: {line}"
+
+
+@pytest.mark.parametrize(
+    ("heading", "column", "unit", "wrong"),
+    [
+        ("t (s);F (V)", 2, "N/m", "no unit that is known"),
+        ("t (s);F (kN)", 2, "N/m", "another quantity"),
+    ],
+)
+def test_other_units_are_refused(heading: str, column: int, unit: str, wrong: str) -> None:
+    assert complaint(f"{heading}\n0;1\n1;1\n", "") == (
+        f"file: 'gust.csv' has a unit in line 1, column {column} that is {wrong}; give {unit} or "
+        "another unit of the kind"
+    )
+
+
+def test_factors_need_a_magnitude_and_columns_are_two() -> None:
+    assert complaint("t (s);F\n0;1\n1;1\n", "") == (
+        "magnitude: missing; it is the load across the boom in N at x, or in N/m along the "
+        "segment, or the moment in N m; a factor, 1 unless given, if the heading of its file has "
+        "such a unit"
+    )
+    one = 'magnitude = 1.0\ncolumns = ["t"]'
+    assert complaint("0;1\n1;1\n", one) == "columns: must be a list of two names, got ['t']"
+
+
+def complaint(csv: str, keys: str) -> str:
+    """Return the message about the load with which a case is refused."""
+    with pytest.raises(BadInput) as error:
+        case_of(csv, keys)
+    return str(error.value).removeprefix("case.toml: load[1].")
+
+
+def test_columns_of_no_file_are_refused() -> None:
+    text = '[[load]]\nsegment = "inner"\nmagnitude = 1.0\ncolumns = ["t", "F"]\n\n[[model]]'
+    Path("case.toml").write_text(COARSE.replace("[[model]]", text, 1), encoding="utf-8")
+    with refused(
+        "case.toml: load[1].columns: there is no file whose columns these are; leave it out"
+    ):
+        reading.load("case.toml")
+
+
+@pytest.mark.parametrize(
+    ("times", "note"),
+    [
+        ((0.0, 0.6), None),
+        ((0.1, 0.5), "lasts from 0.1 to 0.5 s, the run 0.6 s: its first value, 1, is held before; "
+         "its last value, 2, is held afterwards"),
+        ((-1.0, 60.0), "lasts from -1 to 60 s, the run 0.6 s: what is before t = 0 is left out; "
+         "what comes after the run is left out"),
+    ],
+)  # fmt: skip
+def test_end_of_a_series_gives_a_caution(times: tuple[float, float], note: str | None) -> None:
+    """The coarse case lasts 0.6 s."""
+    case = case_of(f"{times[0]},1\n{times[1]},2\n", "magnitude = 1.0")
+    assert case.time.duration == 0.6
+    expected = [] if note is None else [f"note: the series of load[1] {note}"]
+    assert series_notes(case) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "factor", "dimension"),
+    [
+        ("N/m^1.5", 1.0, (-0.5, 1.0, -2.0)), ("N/mm^2", 1.0e6, (-1.0, 1.0, -2.0)),
+        ("t/mm^3", 1.0e12, (-3.0, 1.0, 0.0)), ("N s/m²", 1.0, (-1.0, 1.0, -1.0)),
+        ("kN·m", 1.0e3, (2.0, 1.0, -2.0)), ("1/s", 1.0, (0.0, 0.0, -1.0)),
+        ("mm s⁻²", 1.0e-3, (1.0, 0.0, -2.0)), ("m/s**2", 1.0, (1.0, 0.0, -2.0)),
+        ("-", 1.0, (0.0, 0.0, 0.0)), ("μm", 1.0e-6, (1.0, 0.0, 0.0)),
+    ],
+)  # fmt: skip
+def test_units_are_products_of_powers(
+    text: str, factor: float, dimension: tuple[float, float, float]
+) -> None:
+    """Reference: analytic, the definitions of the SI."""
+    assert Unit.of(text) == Unit(factor, dimension)
+
+
+@pytest.mark.parametrize("text", ["", "V", "kN/", "m/s^", "m^^2", "2m", "m^-", "N//m", "m^12345"])
+def test_unknown_units_are_refused(text: str) -> None:
+    with pytest.raises(ValueError, match="no unit"):
+        Unit.of(text)
