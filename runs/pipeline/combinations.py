@@ -15,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from dynamics.failure import NUMERICAL_ERRORS
+from geometry.typography import join_words
 from runs.case.build import build_boom
 from runs.case.combinations import CombinedCase, combined_cases
 from runs.case.schema import Case
@@ -43,10 +44,10 @@ _KINDS = {
     "pad": "pad\npressure",
     "contact": "contact\nforce",
     "cylinder force": "cylinder\nforce",
-    "foot": "foot pin\nreaction",
+    "foot": "foot\nreaction",
 }
 # Titles of kinds in the envelope, other than their names.
-_TITLES = {"stress": "bending stress", "foot": "foot pin reaction"}
+_TITLES = {"stress": "bending stress", "foot": "foot reaction"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +124,7 @@ def combination_tables(
     if not any(one.extremes for one in results):
         return
     results = _without_round_off(results)
-    columns = [Column("combination", [one.name for one in results])]
+    columns = [Column("combination,\nload case", [one.name for one in results])]
     for kind, heading in _KINDS.items():
         values = [one.largest(kind) for one in results]
         most = max((abs(one.largest) for one in values if one), default=0.0)
@@ -131,9 +132,13 @@ def combination_tables(
             cells = [_marked(one, most, system) if one else None for one in values]
             columns.append(Column(heading, cells))
     notes = [f"{_GOVERNS} is the largest of its column."]
+    limited = [one.name for one in case.combinations if "deflection" in one.proofs]
+    if limited and case.limits is not None and (limit := case.limits.tip_at_rest) is not None:
+        text = in_units(limit, "m", system)
+        notes.append(f"The limit of the static tip, {text}, applies to {join_words(limited)} only.")
     moving = [one.name for one in case.combinations if one.motion]
     if moving:
-        notes.append(f"In prove and reports {', '.join(moving)}: extremes of the motion.")
+        notes.append(f"In `prove` and reports, {join_words(moving)}: extremes of the motion.")
     if shell:
         notes.append(f"By {shell}, with the axial forces of each combination.")
     else:

@@ -185,7 +185,7 @@ class BeamStates(NamedTuple):
             along = parts.pop() if "normal" in line.rows else np.zeros(len(self.rests))
             whole = np.linalg.norm([*parts, thrust + along], axis=0)
             name = f"foot, {segment.name}"
-            what = f"foot pin reaction at {system.text(x, 'm', 5)}"
+            what = f"foot reaction at {system.text(x, 'm', 5)}"
             yield _static_extreme(name, what, "N", self.rests, whole.tolist())
 
     def _at_stations(self, system: System) -> Iterator[StaticExtreme]:

@@ -29,24 +29,29 @@ from runs.pipeline.panels import (
     stress_ratio,
 )
 from runs.report.tables import Column, Table
+from shell_model.stress.history import BAND
 
 # Definition of a proof, for the notes of tables.
-DEFINITION = "A proof compares the design effect with the limit design value (EN 13001-3-1)."
+DEFINITION = (
+    "A proof compares the design effect, the left side below, with the limit design value, the "
+    "right side (EN 13001-3-1)."
+)
+# Note if no shell proves the local plate stress.
+_NO_SHELL = "Local plate stress is not proved: use a shell (protractile prove --shell)."
 
 
 class Kind(NamedTuple):
     """Kind of proof."""
 
-    name: str  #: name in tables and sentences
-    proof: str  #: full name of the proof
+    name: str  #: name in tables, notes and sentences
     formula: str  #: formula and source
     remedy: str  #: remedy if a proof fails
+    effect: str = ""  #: name of the design effect in sentences; empty where the unit suffices
 
 
 # Kinds of proofs by their keys in results.
 KINDS: Mapping[str, Kind] = {
     "yield": Kind(
-        "static strength",
         "static strength",
         "√(σ² + 3 τ²) ≤ f_y(t)/γ; σ of outer fibres, τ mean of the wall of thickness t "
         "(EN 1993-1-1, 6.2.1)",
@@ -54,57 +59,49 @@ KINDS: Mapping[str, Kind] = {
     ),
     "patch": Kind(
         "local plate stress",
-        "static strength, local plate stress",
-        "σ_v ≤ f_y/γ; von Mises stress of the shell, mean over half a wall near a station or "
-        "support",
+        "σ_v ≤ f_y/γ; mean von Mises stress of the shell over half the width of a wall, within "
+        f"{BAND:g} m of a station or support along x",
         "a collar or thicker walls there, longer pads, or pads nearer the webs",
     ),
     "plate": Kind(
         "plate buckling",
-        "elastic stability, plate buckling",
-        "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ and χ at √(α_ult/α_cr), α_cr by panel formulas "
-        "(EN 1993-1-5, 10)",
+        "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ, χ: reduction factors at the slenderness "
+        "√(α_ult,k/α_cr), α_cr by panel formulas (EN 1993-1-5, 10)",
         "a thicker, narrower or stiffened wall there",
+        "stress over reduction factor ",
     ),
     "buckling": Kind(
         "plate buckling, shell",
-        "elastic stability, plate buckling, shell",
-        "σ_v ≤ ρ f_y/γ; α_cr is the lowest factor of the shell, ρ the lower of ρ and χ at "
-        "√(f_y/(σ_v α_cr)) (EN 1993-1-5, 10)",
+        "σ_v ≤ ρ f_y/γ; ρ: lower reduction factor of compression and shear at the slenderness "
+        "√(f_y/(σ_v α_cr)), α_cr: lowest factor of the shell (EN 1993-1-5, 10)",
         "a thicker, narrower or stiffened wall there, or a collar at the pads",
     ),
     "column": Kind(
         "column buckling",
-        "elastic stability, column buckling",
-        "N ≤ N_cr/γ with closed contacts; stresses and tip include second-order effects of N",
+        "N ≤ N_cr/γ with closed contacts; other proofs include second-order effects of N",
         "larger sections, a smaller extension or less force along the boom",
     ),
     "pad": Kind(
         "pad pressure",
-        "pad pressure",
-        "F/(length · width) ≤ allowable pressure/γ, for one pad of a pair",
+        "F/(length · width) ≤ allowable pressure/γ; F: force of one pad of a pair",
         "longer or wider pads, or a longer overlap",
     ),
     "cylinder": Kind(
-        "cylinder force",
         "cylinder force",
         "F ≤ capacity/γ",
         "a larger cylinder, or a longer lever arm to the foot pin",
     ),
     "pin": Kind(
         "pin shear",
-        "static strength of pins",
-        "F ≤ 0.6 n A f_up/γ, n shear planes (EN 1993-1-8, table 3.10)",
+        "F ≤ 0.6 n A f_up/γ; n: number of shear planes (EN 1993-1-8, table 3.10)",
         "a thicker pin, or more shear planes",
     ),
     "deflection": Kind(
-        "static tip deflection",
         "static tip deflection",
         "deflection under the loads of the combination ≤ limits.tip_at_rest",
         "larger sections, less play or a longer overlap",
     ),
     "fatigue": Kind(
-        "fatigue strength",
         "fatigue strength",
         "Σ n/N ≤ 1, nominal ranges, rainflow and Miner (EN 1993-1-9, 7.1 and A.5)",
         "a better detail, its place at less stress, or fewer repeats",
@@ -158,7 +155,7 @@ class Proof(NamedTuple):
         place = "" if self.place in name else f", {self.place}"
         place += "" if self.x is None else f" at x = {system.text(self.x, 'm')}"
         return (
-            f"{name}{place}: {demand} {relation} {resistance} "
+            f"{name}{place}: {KINDS[self.kind].effect}{demand} {relation} {resistance} "
             f"({100.0 * self.utilisation:.3g} %), {cause} {self.combination!r}"
         )
 
@@ -174,11 +171,11 @@ class Proofs(NamedTuple):
         if not self.proofs:
             return "The case has no numbers for a proof."
         failed, governs = sum(not one.holds for one in self.proofs), self.proofs[0]
-        text = (
-            f"{failed} of {len(self.proofs)} proofs fail"
-            if failed
-            else f"All {len(self.proofs)} proofs are satisfied"
+        what = f"{len(self.proofs)} proofs" + (
+            " of the combinations" if governs.combination else ""
         )
+        text = f"{failed} of {what} fail" if failed else f"All {what} are satisfied"
+        text += "; local plate stress is not proved" if _NO_SHELL in self.notes else ""
         change = f". Remedy: {governs.remedy}" if failed else ""
         return f"{text}. Governing: {governs.text(system)}{change}."
 
@@ -235,8 +232,14 @@ def _wall_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Itera
             ):
                 most = int(stress.argmax())
                 name = wall.segment.name
-                place, x = f"{name} {wall.plate.name}", float(wall.x[most])
+                place, x = f"{name}, {_wall_text(wall.plate.name)}", float(wall.x[most])
                 yield Proof(kind, name, place, x, float(stress[most]), strength / factor, "Pa")
+
+
+def _wall_text(name: str) -> str:
+    """Return the name of a wall as text; walls of one side are numbered upwards."""
+    side, _, number = name.partition("-")
+    return f"{side} wall" + (f" {number} from below" if number else "")
 
 
 def reduced_stress(
@@ -313,7 +316,7 @@ def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
             reduction = float(np.interp(slenderness, *np.transpose(curve)))
         else:
             reduction = float(min(winter(slenderness), shear_reduction(slenderness)))
-        place = f"{one.segment} {one.walls[0]}"
+        place = f"{one.segment}, {_wall_text(one.walls[0])}"
         resistance = reduction * strength / factors.stability
         yield Proof("buckling", one.segment, place, one.x[0], stress, resistance, "Pa")
 
@@ -372,24 +375,24 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     steels = [one.name for one in boom.segments if one.yield_strength is None]
     if steels and requested_proofs & {"yield", "plate"}:
         names = ", ".join(steels)
-        yield f"No proof of static strength and plate buckling of {names}, without yield strength."
+        yield f"Static strength and plate buckling of {names} are not proved: no yield strength."
     if "yield" in requested_proofs and not any(state.walls for state in states):
-        yield "No proof of local plate stress: prove it by a shell (prove --shell)."
+        yield _NO_SHELL
     pressures = any(one.utilisation is not None for one in beam.rests[0].stations)
     if "pad" in requested_proofs and boom.joints and not pressures:
-        yield "No proof of pad pressure, without allowable_pressure."
+        yield "Pad pressure is not proved: no pad has an `allowable_pressure`."
     if "cylinder" in requested_proofs and any(one.capacity is None for one in boom.cylinders):
-        yield "No proof of cylinder force, without capacity."
+        yield "Cylinder force is not proved: a cylinder has no `capacity`."
     pins = [one.foot.pin for one in boom.segments if one.foot is not None]
     pins += [one.pin for one in boom.cylinders]
     if "pin" in requested_proofs and not any(pins):
-        yield "No proof of pin shear, without the table pin."
+        yield "Pin shear is not proved: the case has no table `pin`."
     if not case.spectra:
-        yield "No proof of fatigue strength, without [[spectrum]]."
+        yield "Fatigue strength is not proved: the case has no `[[spectrum]]`."
     if "deflection" not in requested_proofs:
-        yield "No proof of static tip deflection, since no combination lists deflection."
+        yield "Static tip deflection is not proved: no combination lists `deflection`."
     elif case.limits is None or case.limits.tip_at_rest is None:
-        yield "No proof of static tip deflection, without limits.tip_at_rest."
+        yield "Static tip deflection is not proved: the case has no `limits.tip_at_rest`."
 
 
 def proof_table(result: Proofs, case: Case) -> Table:
@@ -405,13 +408,18 @@ def proof_table(result: Proofs, case: Case) -> Table:
     used = [f"{100.0 * one.utilisation:.3g} % {'✓' if one.holds else '✗'}" for one in proofs]
     columns = [
         Column("proof of", [fill(KINDS[one.kind].name, 12) for one in proofs]),
-        Column("place, x", [one.place + x for one, x in zip(proofs, at, strict=True)]),
+        Column("place, x", [_lines(one.place) + x for one, x in zip(proofs, at, strict=True)]),
         Column("design\neffect", shown([one.demand for one in proofs])),
         Column("limit\nvalue", shown([one.resistance for one in proofs])),
         Column("utilis-\nation", used),
-        Column("combination,\nspectrum", [one.combination.replace(", ", ",\n") for one in proofs]),
+        Column("combination,\nspectrum", [_lines(one.combination) for one in proofs]),
     ]
     kinds = dict.fromkeys(one.kind for one in proofs)
-    formulas = [f"Proof of {KINDS[kind].proof}: {KINDS[kind].formula}." for kind in kinds]
+    formulas = [f"{KINDS[kind].name.capitalize()}: {KINDS[kind].formula}." for kind in kinds]
     notes = [DEFINITION, *formulas, *result.notes]
     return Table("Proofs", columns, notes, "proofs", [one for one in used if "✗" in one])
+
+
+def _lines(text: str) -> str:
+    """Return a text with a new line after each comma."""
+    return text.replace(", ", ",\n")

@@ -184,7 +184,7 @@ def times(peak: Peak) -> str:
 _REACTIONS = {
     "reaction": "transverse reaction",
     "reaction along the boom": "axial reaction",
-    "reaction, across and along": "foot pin reaction",
+    "reaction, across and along": "foot reaction",
 }
 
 

@@ -82,9 +82,7 @@ def summary_table(results: Results) -> Table | None:
         Column("Governing pad: force, pressure, utilisation", [pads.get(name) for name in names]),
         Column("Contact force, maximum", stations, unit="kN"),
         Column("Cylinder force, maximum", _each(designs, "cylinder force"), unit="kN"),
-        Column(
-            "Foot pin reaction, maximum", _each(designs, "reaction, across and along"), unit="kN"
-        ),
+        Column("Foot reaction, maximum", _each(designs, "reaction, across and along"), unit="kN"),
         Column("Bending stress, maximum (utilisation)", bending, unit="MPa"),
         Column("Local plate stress, maximum (utilisation)", plates, unit="MPa"),
         Column("Plate buckling factor, lowest (segment)", [_buckling(one) for one in designs]),
