@@ -13,7 +13,6 @@ from runs.case import reading as case_file
 from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.run import run_case
-from runs.pipeline.static_results import Diagram
 from studies.study import Criterion, Progress, Verification, define_study
 
 # Distributed loads in N/m on both segments of the paper's boom.
@@ -94,10 +93,6 @@ def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Verification]:
         (inner, ALONG_INNER, "shear", "kN", INNER * s),
         (inner, ALONG_INNER, "moment", "kN m", -0.5 * INNER * s**2),
     ):
-        found, named = 1e-3 * value_at(diagram, what, place), f"{what} at {place:g} m, {name}"
+        found = 1e-3 * float(np.interp(place, diagram.x, diagram.curves[what]))
+        named = f"{what} at {place:g} m, {name}"
         yield Verification(named, found, 1e-3 * force, unit, "analytic", "by hand", OF_PIECES)
-
-
-def value_at(diagram: Diagram, what: str, place: float) -> float:
-    """Return the value of a curve at x in m."""
-    return float(np.interp(place, diagram.x, diagram.curves[what]))
