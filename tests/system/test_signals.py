@@ -70,8 +70,10 @@ def wait_until(happens: Callable[[subprocess.Popen[str]], bool], it: subprocess.
         time.sleep(0.005)
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("stage", ["importing", "working"])
+@pytest.mark.parametrize(
+    ("stage", "number"),
+    [("importing", signal.SIGINT), ("importing", signal.SIGTERM), ("working", signal.SIGINT)],
+)
 def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: str) -> None:
     process = command(tmp_path, *RUN)
     wait_until(listens if stage == "importing" else works(tmp_path), process)
