@@ -99,6 +99,16 @@ def test_sections_follow_the_order_of_the_studies() -> None:
         assert name in STAND_INS or f'"{title}"' in source
 
 
+def test_facts_that_tests_hold_have_their_tests() -> None:
+    """A test of a fact on the page is part of its verification."""
+    page = (ROOT / "docs" / "verification.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| .* \| `(tests/[a-z0-9_/]+\.py)`: (.*?) \|", page, re.M)
+    assert len(rows) == 21
+    for path, tests in rows:
+        code = (ROOT / path).read_text(encoding="utf-8")
+        assert [name for name in re.findall(r"`(\w+)`", tests) if f"def {name}(" not in code] == []
+
+
 @pytest.mark.parametrize("name", STAND_INS)
 def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: the study, with constants in place of slow computations. Measured values hold."""
