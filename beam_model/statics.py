@@ -22,6 +22,7 @@ from beam_model.finite_element import finite_element_segment, finite_element_seg
 from beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
 from beam_model.wall_compliance import station_compliance, with_wall_springs
 from dynamics.equilibrium import equilibrium_at
+from dynamics.excitation import InitialImpulse, ReleasedLoad
 from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
@@ -190,13 +191,13 @@ def _reactions(
     ]
     load = component.load.copy()
     for applied_load in boom.loads:
-        # The history of a load that ends before t = 0 is not callable.
-        if (
-            applied_load.segment == number
-            and applied_load.direction == "z"
-            and callable(applied_load.history)
-        ):
-            load += applied_load.history(np.array([time]))[0] * applied_load.push(component.beam)
+        history = applied_load.history
+        if isinstance(history, ReleasedLoad):
+            factor = float(time <= 0.0)
+        else:
+            factor = 0.0 if isinstance(history, InitialImpulse) else history(np.array([time]))[0]
+        if applied_load.segment == number and applied_load.direction == "z":
+            load += factor * applied_load.push(component.beam)
     stiffness = component.stiffness - component.geometric_stiffness
     residual = (stiffness @ np.array(displacements) - load).reshape(-1, 2)
     return [

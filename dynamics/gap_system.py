@@ -76,7 +76,7 @@ class GapSystem:
         excitations: loads that change with time.
         station_directions: direction of the relative displacement at each station; "z" for all
             unless given.
-        released_load: modal load (num_modes,) in N/√kg that acts before t = 0 and is then removed;
+        released_load: modal load (num_modes,) in N/√kg that acts up to t = 0 and is then removed;
             zero unless given.
         initial_impulse: modal impulse (num_modes,) in N·s/√kg at t = 0, for the initial velocity of
             a motion; zero unless given.
@@ -205,9 +205,9 @@ class GapSystem:
         return np.asarray(np.sum([np.abs(self.load), *excited], axis=0))
 
     def load_at(self, time: float) -> Array:
-        """Return the modal load (num_modes,) at a time in s, in N/√kg."""
+        """Return the modal load (num_modes,) in N/√kg at a time in s; 0 is before the release."""
         changing = (x.load * x.history(np.array([time]))[0] for x in self.excitations)
-        return sum(changing, self.load.copy())
+        return sum(changing, self.load + (time <= 0.0) * self.released_load)
 
     def gather_loads(self) -> GapSystem:
         """Return the system with all constant loads added to ``load``."""

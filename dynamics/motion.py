@@ -124,4 +124,4 @@ def constant_load_equilibrium(system: GapSystem, at_rest: bool, position: Array)
 
 def _load_before_start(system: GapSystem, at_rest: bool) -> Array:
     """Return the load (num_modes,) in N/√kg that acts before t = 0."""
-    return system.released_load + system.load_at(0.0) if at_rest else system.released_load
+    return system.load_at(0.0) if at_rest else system.released_load

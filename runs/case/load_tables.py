@@ -35,7 +35,8 @@ class LoadTable(HistoryTable):
     moment: Flag = False
     """whether the load is a moment at x, positive where it increases the slope of the segment"""
     released: Flag = False
-    """whether the load acts before t = 0 and is released at t = 0"""
+    """whether the load acts before t = 0 and is released at t = 0; static results at t = 0, and
+    under the maximum load, include it, while modes are those after the release"""
     group: Group = "payload"
     """the group of the load, whose factor combinations give"""
 

@@ -14,7 +14,7 @@ from itertools import count
 
 import numpy as np
 
-from dynamics.excitation import InitialImpulse, ReleasedLoad, Step
+from dynamics.excitation import InitialImpulse, PiecewiseLinear, ReleasedLoad, Step
 from dynamics.failure import NUMERICAL_ERRORS
 from geometry.axial import AxialChange
 from geometry.boom import Boom
@@ -31,6 +31,9 @@ from runs.pipeline.panels import weakest_panels
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.strength import wall_stresses
 from runs.pipeline.wall_buckling import buckle_shell
+
+# History of a released load in static states: 1 at t = 0, then 0.
+_RELEASE = PiecewiseLinear((0.0, 1.0e-6), (1.0, 0.0))
 
 
 def shell_states(case: Case, model: Shell, context: BuildContext) -> list[CombinationState]:
@@ -110,8 +113,10 @@ def _by_kind(boom: Boom) -> dict[str, Load]:
     """Return the loads of a boom at rest; a key is a place, a direction and a running number."""
     loads_by_key: dict[str, Load] = {}
     for load in boom.loads:
-        if isinstance(load.history, ReleasedLoad | InitialImpulse):
+        if isinstance(load.history, InitialImpulse):
             continue
+        if isinstance(load.history, ReleasedLoad):
+            load = replace(load, history=_RELEASE)
         kind = repr(replace(load, magnitude=1.0, history=None))
         loads_by_key[next(key for k in count() if (key := f"{kind}#{k}") not in loads_by_key)] = (
             load

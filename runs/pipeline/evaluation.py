@@ -65,7 +65,10 @@ def results_at_rest(
         [static_result(loaded, time, position) for time, position in positions.items()]
         for positions in (equilibria, extended)
     )
-    first = modes(loaded, equilibria[0.0]) if equilibria else []
+    # The boom vibrates without the load that is released at t = 0.
+    released = loaded.system.released_load.any()
+    after = min((time for time in equilibria if time > 0.0 or not released), default=0.0)
+    first = modes(loaded, equilibria[after]) if equilibria else []
     return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
 

@@ -272,7 +272,9 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
     for name, model in summary.models.items():
         yield from buckling_cautions(name, model.critical_factor)
         advise = partial(_advice, case, boom, name)
-        yield from tip_cautions(f"in {name}", model.static_tip, boom, advise)
+        rests = summary.design.models[name].static if name in summary.design.models else []
+        tip = max((rest.tip for rest in rests), key=abs, default=model.static_tip)
+        yield from tip_cautions(f"in {name}", tip, boom, advise)
     designs = summary.design.models.items()
     slowest = min(
         ((mode.frequency, name) for name, one in designs for mode in one.modes), default=()

@@ -7,7 +7,7 @@ and under the current loads.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated
 
@@ -119,6 +119,7 @@ def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float
         NumericsError: there is no equilibrium, or loads reverse too often.
     """
     time = trajectory.time
+    system = replace(system, released_load=np.zeros(system.num_modes))
     changes = [x.history for x in system.excitations] + [x.history for x in system.travels]
     times = resolving_times(changes, float(time[-1]))
     values = np.array([change(times) for change in changes]).reshape(len(changes), times.size)

@@ -109,12 +109,16 @@ def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
 def instants(system: GapSystem, duration: float) -> list[float]:
     """Return 0 and the times in s at which a load, hoist or axial force has its extreme values.
 
+    At t = 0 a released load still acts; another time is then without it.
+
     Args:
         system: gap system whose ``load`` includes all constant loads.
         duration: duration of the motion in s.
     """
     winches = [travel for travel in system.travels if not travel.telescopes]
     times, values = _sample_histories([*system.excitations, *winches], system, duration)
+    if system.released_load.any():
+        values = np.vstack([values, times <= 0.0])
     return _distinct_times(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
 
 

@@ -229,7 +229,9 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
     ]
     loads = [load.copy() for load in full.own_loads]
     for one, push in full.loads:
-        if not isinstance(one.history, ReleasedLoad | InitialImpulse):
+        if isinstance(one.history, ReleasedLoad):
+            loads[one.segment] += push
+        elif not isinstance(one.history, InitialImpulse):
             loads[one.segment] += float(one.history(np.zeros(1))[0]) * push
     for n, moment in full.pin_moments:
         loads[n] = loads[n] + moment

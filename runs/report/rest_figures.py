@@ -76,9 +76,11 @@ def at_rest(run: FigureContext) -> list[Figure]:
         + initial_position_note(run.case)
         + extension_note(run.case, rests.values())
     )
-    far = max(rests.values(), key=lambda rest: abs(rest.tip)).tip
-    tip = with_minus_signs(f"{TO_MILLI * far:.1f}")
-    title = f"Static deflection under the maximum load: the tip at {tip} mm"
+    far = max(rests.values(), key=lambda rest: abs(rest.tip))
+    tips = [f"{TO_MILLI * far.tip:.1f} mm"]
+    tips += [f"laterally at {TO_MILLI * far.tip_lateral:.1f} mm"] if far.tip_lateral else []
+    tip = with_minus_signs(", ".join(tips))
+    title = f"Static deflection under the maximum load: the tip at {tip}"
     return _draw_panels(run, lines, "at-rest", title, caption)
 
 

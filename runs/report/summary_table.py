@@ -57,7 +57,15 @@ def summary_table(results: Results) -> Table | None:
     at_start, at_most, extended = (
         [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]
         for several in zip(
-            *((one.static[:1], one.static[1:], one.static_extended) for one in designs), strict=True
+            *(
+                (
+                    one.static[:1],
+                    one.static if len(one.static) > 1 else [],
+                    one.static_extended,
+                )
+                for one in designs
+            ),
+            strict=True,
         )
     )
     aside = [

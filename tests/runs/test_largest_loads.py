@@ -25,7 +25,7 @@ from runs.pipeline.largest_loads import (
 )
 from runs.pipeline.load_table import load_table
 from runs.pipeline.section_forces import section_forces
-from runs.pipeline.statics import boom_with_play
+from runs.pipeline.statics import boom_with_play, reactions, statics
 from runs.pipeline.strength import Fibres, outer_corners
 from studies.reference_models.statics import static_response
 from tests.runs.case_texts import CLAMPED, STEEL, box, elements, joint, read_case, table
@@ -116,6 +116,22 @@ def test_overloads_are_cautions(tmp_path: Path) -> None:
         "caution: static utilisation under the loads at t = 0 s: 439 % by pad pressure (fly "
         "segment, x = 8 m): exceeds the allowable pressure",
     ]
+
+
+def test_statics_include_a_released_load_up_to_its_release(tmp_path: Path) -> None:
+    """Reference: other input, the same load by a table that falls to 0 after t = 0; its weight."""
+    weight = '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -500.0\n'
+    load = weight.replace("500", "1500")
+    ways = ("released = true\n", "table = [[0.0, 1.0], [1e-3, 0.0]]\n")
+    texts = [boom_of(weight + load + way) for way in ways]
+    released, fallen = (extremes_of(tmp_path, text) for text in texts)
+    assert released.keys() == fallen.keys()
+    for what, one in released.items():
+        assert (one.initial, one.largest, one.time) == pytest.approx(fallen[what][3:6], rel=1e-9)
+    case = read_case(tmp_path, texts[0])
+    static = statics(case, build_boom(case))
+    assert static is not None
+    assert sum(one.force for one in reactions(static.with_play)) == pytest.approx(2000.0, rel=1e-6)
 
 
 def test_loads_are_listed_with_their_largest_values(tmp_path: Path) -> None:

@@ -28,7 +28,7 @@ from runs.report.summary_table import (
     utilisation_verdict,
 )
 from runs.report.tables import Table
-from runs.report.terminal_tables import print_results
+from runs.report.terminal_tables import print_results, result_table
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import printed
 
@@ -75,6 +75,17 @@ def test_summary_table_equals_the_design_results(results: Results) -> None:
     assert float(said["Contact force, maximum, kN"]) == pytest.approx(hardest / 1e3, rel=6e-3)
     assert found["Contact force, maximum, kN"][BONDED] == "–"
     assert "Fatigue damage (Miner)" not in found
+
+
+def test_all_tables_have_the_same_largest_static_tip(results: Results) -> None:
+    """Reference: by hand, -30 mm at t = 0 is larger than later deflections."""
+    (rest, *_) = results.summary.design.models[PLAYED].static
+    rests = [replace(rest, time=t, tip=tip) for t, tip in ((0.0, -0.03), (0.1, 0.0), (0.2, -0.02))]
+    told = answering(results, own={"static": rests})
+    row = cells(summary_table(told))["Static tip deflection (maximum load), mm"]
+    shown = cells(result_table(told))[PLAYED]
+    (heading,) = (one for one in shown if "max. load" in one)
+    assert row[PLAYED] == shown[heading] == "−30.0"
 
 
 def test_period_is_measured_from_the_motion(results: Results) -> None:

@@ -55,11 +55,13 @@ def test_a_boom_without_loads_is_run_and_reported(
     assert protractile("check", "case.toml") == 0
     assert protractile("run", "case.toml", "--no-pictures", "--out", "out") == 0
     results = Results.load(Path("out"))
-    assert [rest.tip for rest in results.summary.design.models["elements"].static] == [0.0]
+    tips = [rest.tip for rest in results.summary.design.models["elements"].static]
+    assert tips[-1] == 0.0
+    assert any(tips) == (kind == "let go")
     tips = results.trajectories["tip"].values
     assert bool(np.abs(tips).max() > 1e-3) == moves
     assert Path("out/report.html").is_file()
-    assert not Path("out/figures/at-rest.png").exists()
+    assert Path("out/figures/at-rest.png").exists() == (kind == "let go")
     assert Path("out/figures/envelopes.png").exists() == moves
     assert protractile("report", "out") == 0
 
