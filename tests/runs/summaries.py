@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
+from dynamics.equilibrium import equilibrium_at
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
@@ -25,6 +26,7 @@ from runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
 if TYPE_CHECKING:
     from mpi4py.MPI import Intracomm
 
+PRESSED = 4500.0, 5000.0
 _MODEL = {
     "kind": "kantorovich", "degrees_of_freedom": 4, "modes": 4, "frequencies": [1.0],
     "step": 4.2e-6, "steps": 2_380_952, "contact_changes": 2020, "first_contact": 0.11856,
@@ -57,6 +59,13 @@ def changed(results: Results, model: str, **changes: Any) -> Results:
     return replace(results, summary=summary)
 
 
+def rubbing(case: Case, friction: float = 0.2, pressed: tuple[float, ...] = PRESSED) -> Case:
+    """Return a case with friction in its joints under normal forces in N."""
+    rubs = {"friction": friction, "normal_forces": pressed}
+    joints = tuple(replace(joint, **rubs) for joint in case.joints)
+    return case.model_copy(update={"joints": joints})
+
+
 def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
     """Return the text that a function prints to a console, its last argument, of a width."""
     console = Console(file=StringIO(), width=width)
@@ -81,6 +90,12 @@ def answers_of(case: Case, comm: Intracomm | None = None) -> DesignResults:
     """Return the results of a run of a case, as read from a folder."""
     run = finished(case, RunContext(comm))
     return Summary.model_validate_json(str(run.results.summary)).design
+
+
+def static_tip(case: Case, time: float = 0.0) -> float:
+    """Return the tip deflection in m of the case's first model at rest under loads at a time."""
+    system = build(case, build_boom(case), case.models[0]).system.gather_loads()
+    return float(system.observers["tip"].row @ equilibrium_at(system, time))
 
 
 def motion_of(case: Case, number: int = 0) -> Trajectory:

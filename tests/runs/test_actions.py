@@ -43,7 +43,6 @@ def run(folder: Path, text: str) -> Results:
 
 
 def load(**keys: object) -> str:
-    """Return a load on the cantilever."""
     return table("[[load]]", segment="beam", **keys)
 
 

@@ -120,7 +120,6 @@ def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
     ],
 )  # fmt: skip
 def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | None) -> None:
-    """Each error causes its caution, and usual values cause none."""
     case = read_case(tmp_path, (LIFT + text + BONDED).replace("= 0.05", "= 0.5"))
     checked = printed_check(case).splitlines()
     told = run_case(case, models=["bonded"]).summary.cautions

@@ -58,7 +58,6 @@ def test_unsupported_type_is_named(tmp_path: Path) -> None:
 
 
 def test_cache_evicts_the_least_recently_used_entry(tmp_path: Path) -> None:
-    """Other files and the newest entry are kept, whatever their size."""
     cache = Cache(tmp_path)
     (tmp_path / "mine").write_text(200 * "x", encoding="utf-8")
     for name, used in (("a", 10.0), ("b", 20.0)):
@@ -135,13 +134,11 @@ def test_foreign_entry_is_removed(
 
 @pytest.mark.parametrize("make", [os.mkfifo, os.mkdir])
 def test_cache_ignores_pipes_and_folders(tmp_path: Path, make: Callable[[Path], object]) -> None:
-    """Opening a pipe would block until a process writes to it."""
     make(tmp_path / ENTRY)
     assert Cache(tmp_path).load("a", str) is None
 
 
 def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
-    """Equal content has the same key. A change of the last bit changes the key."""
     segment = paper_boom.segments[0]
     same = replace(paper_boom, segments=(replace(segment), paper_boom.segments[1]))
     other = replace(segment, load=float(np.nextafter(segment.load, 0.0)))
@@ -164,7 +161,6 @@ def test_where_it_lies(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
 def test_no_cache_without_a_home_folder(
     monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
-    """As in a container, the user has a number but no name."""
     for name in ("PROTRACTILE_CACHE", "XDG_CACHE_HOME", "HOME"):
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr("os.getuid", lambda: 2**31 - 7)
@@ -201,7 +197,6 @@ Kind = TypeVar("Kind")
 
 
 def again(thing: Any, kind: type[Kind]) -> Kind:
-    """Return a record after writing and reading."""
     file = BytesIO()
     write(thing, file)
     file.seek(0)

@@ -245,7 +245,6 @@ def test_it_is_a_schema() -> None:
 
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
 def test_shipped_cases_are_valid_and_read_back_as_themselves(path: Path) -> None:
-    """Both the shipped files and the files written by a run are valid."""
     case = load(str(path))
     written = toml.dumps(case)
     assert faults(data(path.read_text(encoding="utf-8"))) == faults(data(written)) == []

@@ -132,7 +132,6 @@ def test_distance_of_peaks(delay: float, height: float, expected: float) -> None
 
 
 def test_missing_peaks_have_infinite_distance() -> None:
-    """This concerns all peaks until one and a half periods before the end."""
     still = swing()
     still[TIME > 4.0] = 0.0
     first, apart = peak_distances(np.array([swing(), still]), TIME, CUTOFF)

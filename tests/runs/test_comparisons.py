@@ -22,9 +22,8 @@ from runs.report.pages import Addition
 from runs.report.predictability import comparison_tables, predictability_tables
 from tests.runs.case_texts import shipped
 from tests.runs.paper_curves import members
-from tests.runs.summaries import model_summary, steps_for_peaks, summary_of
+from tests.runs.summaries import PRESSED, model_summary, rubbing, steps_for_peaks, summary_of
 
-PRESSED = 4500.0, 5000.0
 SERIES = ["kantorovich-4", "kantorovich-5"]
 TIME = np.arange(10_001) / 1000
 CUTOFF = 2.0
@@ -32,10 +31,7 @@ CUTOFF = 2.0
 
 def case_of(*names: str, friction: float = 0.0, pressed: tuple[float, ...] = PRESSED) -> Case:
     """Return the coarse case with some of its models, and friction in its joint."""
-    case = case_file.select(shipped("coarse"), "", names, None)
-    rubbing = {"friction": friction, "normal_forces": pressed}
-    joints = tuple(replace(joint, **rubbing) for joint in case.joints)
-    return case.model_copy(update={"joints": joints})
+    return rubbing(case_file.select(shipped("coarse"), "", names), friction, pressed)
 
 
 def swing(scale: float = 1.0, late: float = 0.0) -> np.ndarray:

@@ -33,7 +33,7 @@ from runs.sweep.distances import (
 from runs.sweep.points import Plan, plan
 from runs.sweep.run import Outcome, run_point
 from tests.runs.case_texts import shipped
-from tests.runs.summaries import printed
+from tests.runs.summaries import printed, rubbing
 from tests.runs.sweeping import COARSE, run
 
 TIME = np.arange(2001) / 1000
@@ -75,9 +75,8 @@ def test_a_pad_force_is_held() -> None:
 def against(here: Path) -> Plan:
     """Return a sweep of the coarse case with friction, until after its first peak."""
     text = COARSE.read_text(encoding="utf-8")
-    rubbing = text.replace("exponent = 2.0\n", f"exponent = 2.0\n{RUBBING}", 1)
-    rubbing = rubbing.replace("duration = 0.6", "duration = 0.9")
-    Path("case.toml").write_text(rubbing, encoding="utf-8")
+    text = text.replace("exponent = 2.0\n", f"exponent = 2.0\n{RUBBING}", 1)
+    Path("case.toml").write_text(text.replace("= 0.6", "= 0.9", 1), encoding="utf-8")
     return plan("case.toml", ["joint.play=0.008,0.014"], MODELS, None, "kantorovich-5")
 
 
@@ -221,9 +220,8 @@ def test_chaos_is_compared_until_its_horizon() -> None:
     )
     assert until == found.times[0, 1]
     assert 0.12 < until < 3.0
-    joint = replace(case.joints[0], friction=0.2, normal_forces=(4500.0, 5000.0))
-    rubbing = case.model_copy(update={"joints": (joint,)})
-    assert comparison_end(rubbing, model, run_case(rubbing), None, None) == 3.0
+    regular = rubbing(case)
+    assert comparison_end(regular, model, run_case(regular), None, None) == 3.0
 
 
 @pytest.mark.slow

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Drives of a case: keys, errors in them, and results of a run."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -23,22 +24,14 @@ from runs.report.figures import draw
 from runs.report.result_tables import drive_table, record_tables, rest_tables
 from runs.report.summary_table import summary_table
 from runs.sweep.points import plan
-from tests.runs.case_texts import elements, read_case, refusal, shipped, table
+from tests.runs.case_texts import edited, elements, read_case, refusal, shipped, table
 from tests.runs.summaries import printed_check
 
 DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
 DRIVE = "drive = { travel = 4.0, time = 5.0, least_overlap = 1.0 }\n"
 SHORT, FAST = ("duration = 7.0", "duration = 0.3"), ("time = 5.0", "time = 0.2")
+drawn_out = partial(edited, DRAWN)
 TABLE = "drive = { table = [[0.0, 0.0], [1.0, 2.0], [4.0, -1.0]] }\n"
-
-
-def edited(*edits: tuple[str, str]) -> str:
-    """Return the text of the case with something else in place of what it says."""
-    text = DRAWN
-    for before, after in edits:
-        assert before in text
-        text = text.replace(before, after)
-    return text
 
 
 @pytest.mark.parametrize(
@@ -58,7 +51,7 @@ def test_a_drive_has_a_history(
 ) -> None:
     """Reference: analytic, the extension at the start, in the middle and at the end."""
     (tmp_path / "ways.csv").write_text("t (ms);way (mm)\n0;0\n1000;2000\n4000;-1000\n")
-    found = build_boom(read_case(tmp_path, edited((DRIVE, drive)))).joints[0].drive
+    found = build_boom(read_case(tmp_path, drawn_out((DRIVE, drive)))).joints[0].drive
     assert (found is None) == (ways is None)
     if found is not None:
         assert found.history(np.array([0.0, 2.5, 6.0])) == pytest.approx(ways)
@@ -146,7 +139,7 @@ def test_a_drive_in_other_units(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str) -> None:
     """Reference: exact message."""
-    assert refusal(tmp_path, edited((before, after))) == message
+    assert refusal(tmp_path, drawn_out((before, after))) == message
 
 
 @pytest.mark.parametrize("name", ["extension", "drive_power-2", "drive_lag-3"])
@@ -164,7 +157,7 @@ def test_outputs_of_drives_are_no_one_elses(tmp_path: Path, name: str) -> None:
 def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) -> None:
     """Reference: by hand. The drive starts at the sine's maximum, between sampled times."""
     late = ("time = 5.0", "start = 0.2083333333333, time = 0.02"), SHORT
-    text = edited(*late) + table(
+    text = drawn_out(*late) + table(
         "[[load]]", segment="inner", x="head", magnitude=500, frequency=1.2
     )
     own = run_case(read_case(tmp_path, text), models=["kantorovich-5"]).summary.design.models
@@ -181,7 +174,7 @@ def test_no_extension_note_without_static_states() -> None:
 @pytest.mark.usefixtures("unprinted")
 def test_run_reports_its_drive(tmp_path: Path) -> None:
     """Reference: analytic, the travels of the case, and the drive force from contact forces."""
-    results = run_case(read_case(tmp_path, edited(SHORT, FAST)), models=["kantorovich-5"])
+    results = run_case(read_case(tmp_path, drawn_out(SHORT, FAST)), models=["kantorovich-5"])
     data = results.trajectories.sel(model="kantorovich-5")
     assert float(data["extension"][-1]) == pytest.approx(4.0)
     force = 0.2 * np.abs(data["contact_force"]).sum("station")
@@ -237,7 +230,7 @@ def test_run_reports_its_drive(tmp_path: Path) -> None:
 
 def test_friction_of_a_drive_in_a_flat_boom_acts_along_it_alone(tmp_path: Path) -> None:
     """Reference: the same joint with lateral normal forces of 0."""
-    text = edited(("friction = 0.2 ", "normal_forces = [0.0, 0.0]\nfriction = 0.2 "))
+    text = drawn_out(("friction = 0.2 ", "normal_forces = [0.0, 0.0]\nfriction = 0.2 "))
     boom = build_boom(shipped("drawn-out"))
     assert boom.joints[0].friction == 0.2
     assert boom.joints == build_boom(read_case(tmp_path, text)).joints
@@ -245,7 +238,7 @@ def test_friction_of_a_drive_in_a_flat_boom_acts_along_it_alone(tmp_path: Path) 
 
 def test_drive_works_against_axial_forces(tmp_path: Path) -> None:
     """Reference: analytic, half of 550.7 kg and a rope of 20 kN over 4 m."""
-    text = edited(SHORT, FAST, ("friction = 0.2 ", "locked_at = 1.0\nfriction = 0.2 "))
+    text = drawn_out(SHORT, FAST, ("friction = 0.2 ", "locked_at = 1.0\nfriction = 0.2 "))
     works = []
     for pressed in ("", "[gravity]\nacceleration = 10.0\nangle = 30.0\n[[axial]]\nforce = 2e4\n"):
         data = run_case(read_case(tmp_path, text + pressed), models=["kantorovich-5"]).trajectories
@@ -294,7 +287,7 @@ def test_check_prints_drives() -> None:
 def test_largest_speed_is_the_steepest_slope(tmp_path: Path) -> None:
     """Reference: by hand, 0.1 m in 0.01 s."""
     jerk = "drive = { table = [[0.0, 0.0], [20.0, 1.0], [20.01, 1.1], [40.0, 2.0]] }\n"
-    case = read_case(tmp_path, edited((DRIVE, jerk)))
+    case = read_case(tmp_path, drawn_out((DRIVE, jerk)))
     (line,) = drive_lines(build_boom(case), case.system)
     assert ", at 10 m/s at most; " in line
 

@@ -27,7 +27,7 @@ from runs.pipeline.estimates import (
     sweep_cost,
 )
 from runs.sweep import points as sweep_points
-from tests.runs.case_texts import refused, shipped
+from tests.runs.case_texts import edited, refused, shipped
 from tests.runs.coarse_case import COARSE
 from tests.runs.summaries import printed
 
@@ -55,12 +55,8 @@ SERIES = "--models", "kantorovich-5"
 pytestmark = pytest.mark.usefixtures("here")
 
 
-def write(*edits: tuple[str, str]) -> None:
-    text = COARSE
-    for old, new in edits:
-        assert old in text
-        text = text.replace(old, new, 1)
-    Path("case.toml").write_text(text, encoding="utf-8")
+def write(edits: dict[str, str]) -> None:
+    Path("case.toml").write_text(edited(COARSE, *edits.items()), encoding="utf-8")
 
 
 def memory(*arguments: str) -> int:
@@ -79,30 +75,22 @@ def memory(*arguments: str) -> int:
 @pytest.mark.parametrize(
     ("edits", "options", "members"),
     [
-        ((("duration = 0.6", "duration = 0.3"), ("output_step = 1e-3", "output_step = 1e-5")),
-         SERIES,
+        ({"duration = 0.6": "duration = 0.3", "output_step = 1e-3": "output_step = 1e-5"}, SERIES,
          20),
-        ((("mesh_size = 0.25", "mesh_size = 0.1"), ("duration = 0.6", "duration = 0.01")),
-         ("--models", "shell"),
-         None),
-        ((
-             ("duration = 0.6", "duration = 0.1"),
-             ("output_step = 1e-3", "output_step = 0.1\nstep = 1e-7"),
-             (
-                 "[[model]]",
-                 "[[load]]\nsegment = 'inner'\nmagnitude = 9.0\nramp = 0.2\n[[model]]",
-             ),
-         ),
-         SERIES,
-         None),
+        ({"mesh_size = 0.25": "mesh_size = 0.1", "duration = 0.6": "duration = 0.01"},
+         ("--models", "shell"), None),
+        ({"duration = 0.6": "duration = 0.1",
+          "output_step = 1e-3": "output_step = 0.1\nstep = 1e-7",
+          "[[model]]": "[[load]]\nsegment = 'inner'\nmagnitude = 9.0\nramp = 0.2\n[[model]]"},
+         SERIES, None),
     ],
     ids=["outputs and members", "mesh", "steps of an output interval"],
 )  # fmt: skip
 def test_memory_is_not_above_the_estimate_and_not_far_below(
-    edits: tuple[tuple[str, str], ...], options: tuple[str, ...], members: int | None
+    edits: dict[str, str], options: tuple[str, ...], members: int | None
 ) -> None:
     """Reference: external, the operating system. Compilation needs three times as much."""
-    write(*edits)
+    write(edits)
     case = case_file.load("case.toml")
     case = case_file.select(case, "case.toml", [options[1]], members=members)
     told, arguments = run_cost(case).memory, (*options, "--members", str(members or 0))
@@ -154,15 +142,15 @@ def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolera
 @pytest.mark.parametrize(
     ("edits", "line"),
     [
-        ((("output_step = 1e-3", "output_step = 1e-7"),), "83 GB and 30 min"),
-        ((("mesh_size = 0.25", "mesh_size = 0.015"),), "9.1 GB and 3 min"),
-        ((("element_length = 0.5", "element_length = 0.002"),), "21 GB and 11.2 h"),
-        ((("duration = 0.6", "duration = 60.0\nstep = 1e-8"),), "2.6 GB and 20.1 h"),
+        ({"output_step = 1e-3": "output_step = 1e-7"}, "83 GB and 30 min"),
+        ({"mesh_size = 0.25": "mesh_size = 0.015"}, "9.1 GB and 3 min"),
+        ({"element_length = 0.5": "element_length = 0.002"}, "21 GB and 11.2 h"),
+        ({"duration = 0.6": "duration = 60.0\nstep = 1e-8"}, "2.6 GB and 20.1 h"),
     ],
 )
-def test_excessive_memory_or_time_is_refused(edits: tuple[tuple[str, str], ...], line: str) -> None:
+def test_excessive_memory_or_time_is_refused(edits: dict[str, str], line: str) -> None:
     """Reference: non-regression, measured for a million outputs, degrees of freedom and steps."""
-    write(*edits)
+    write(edits)
     with refused(
         f"case.toml: --large: missing, and it may take {line}; give it to start anyway, or "
         "ask for fewer outputs, members, points or steps, or for coarser meshes"
@@ -191,7 +179,7 @@ def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
 def test_a_sweep_takes_the_time_of_its_points(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: analytic, equal points, two at a time."""
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
-    write()
+    write({})
     points = [p.case for p in sweep_points.plan("case.toml", VARY, ["beam-fe"], None).points]
     one, all_of_them = sweep_cost(points[:1]), sweep_cost(points)
     assert all_of_them.memory == pytest.approx(2.0 * one.memory, rel=1e-9)

@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from runpy import run_path
 from types import ModuleType
+from typing import Any
 
 import numpy as np
 import pytest
@@ -38,7 +39,6 @@ MODEL = elements("timoshenko", theory="timoshenko", contact=CONTACT)
 
 
 def run(script: Path, *arguments: str) -> float:
-    """Return the number that the script prints in OpenSees."""
     told = run_elsewhere(str(script), *arguments, folder=script.parent)
     found = re.search(r": ([-\d.e]+) m", told)
     assert found is not None, told
@@ -52,6 +52,11 @@ def boom_with_more(folder: Path) -> Case:
     )
     boom, _, _ = heavier.replace("[[joint]]", f"{MORE}\n[[joint]]", 1).partition("[[model]]")
     return read_case(folder, boom + MODEL)
+
+
+def exported(case: Case, folder: Path, comm: Any = None, cache: Any = None) -> Path:
+    write(case, "", comm, folder / "boom.py", cache)
+    return folder / "boom.py"
 
 
 class _Sinking(ModuleType):
@@ -77,8 +82,7 @@ def test_the_largest_tip_may_be_a_downward_one(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Reference: by hand, −5 mm after five of ten steps."""
-    script = tmp_path / "boom.py"
-    write(boom_with_more(tmp_path), "", None, script, None)
+    script = exported(boom_with_more(tmp_path), tmp_path)
     package, program = ModuleType("openseespy"), _Sinking("openseespy.opensees")
     monkeypatch.setattr(package, "opensees", program, raising=False)
     monkeypatch.setitem(sys.modules, "openseespy", package)
@@ -93,8 +97,7 @@ def test_the_largest_tip_may_be_a_downward_one(
 def test_a_beam_rests_and_peaks_elsewhere_as_here(tmp_path: Path) -> None:
     """Reference: other code, OpenSees with its elements, Newton's method and TR-BDF2."""
     case = boom_with_more(tmp_path)
-    script = tmp_path / "boom.py"
-    write(case, "", None, script, None)
+    script = exported(case, tmp_path)
     system = build(case, build_boom(case), case.models[0]).system
     at_first = replace(system.gather_loads(), excitations=())
     rest = at_first.observers["tip"].row @ equilibrium(at_first, at_first.load)
@@ -112,8 +115,7 @@ def test_lift_rests_on_its_cylinder_in_opensees_as_here(tmp_path: Path) -> None:
     level = {"gravity.angle": 0.0, "damping.modal": 0.0, "start.state": "rest"}
     case = pt.change(pt.load_case(CASES / "lift.toml"), **level)
     case = case_file.select(case, "", ["timoshenko"])
-    script = tmp_path / "boom.py"
-    write(case, "", None, script, None)
+    script = exported(case, tmp_path)
     system = build(case, build_boom(case), case.models[0]).system.gather_loads()
     rest = system.observers["tip"].row @ equilibrium(system, system.load)
     assert run(script, "--static") == pytest.approx(float(rest), rel=1e-6)
@@ -135,8 +137,7 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
     model = calibrated_beam(case, shell, fields=False)
     case = case.model_copy(update={"models": (model,)})
     cache = Cache(tmp_path / "cache")
-    script = tmp_path / "boom.py"
-    write(case, "", MPI.COMM_SELF, script, cache)
+    script = exported(case, tmp_path, MPI.COMM_SELF, cache)
     tools = BuildContext(MPI.COMM_SELF, cache=cache)
     system = build(case, build_boom(case), model, tools).system
     rest = float(system.observers["tip"].row @ equilibrium(system, system.load))

@@ -13,7 +13,7 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.sweep.points import plan
 from tests.beam_model.exact import bonded_frequencies
-from tests.runs.case_texts import STEEL, box, elements, refused, table
+from tests.runs.case_texts import STEEL, box, edited, elements, refused, table
 from tests.runs.coarse_case import COARSE
 from tests.system.run_folder import protractile
 
@@ -66,11 +66,7 @@ def case_of(text: str) -> Case:
 
 
 def by_hand() -> Case:
-    text = CRANE
-    for relative, absolute in BY_HAND:
-        assert text.count(relative) == 1, relative
-        text = text.replace(relative, absolute)
-    return case_of(text)
+    return case_of(edited(CRANE, *BY_HAND))
 
 
 def test_a_boom_by_lengths_is_the_same_boom_also_when_it_is_written() -> None:
@@ -130,9 +126,8 @@ def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
     ],
 )  # fmt: skip
 def test_a_contradiction_is_one_line(relative: str, wrong: str, line: str) -> None:
-    assert CRANE.count(relative) == 1
     with refused(f"crane.toml: {line}"):
-        case_of(CRANE.replace(relative, wrong))
+        case_of(edited(CRANE, (relative, wrong)))
 
 
 def test_frequencies_over_the_extension_are_one_command() -> None:

@@ -32,7 +32,6 @@ WHY = "a step of 1e-12 s makes 3e+11 steps; make it longer"
 
 @pytest.fixture(autouse=True)
 def _here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Work in an empty folder, with a cache beside it."""
     (tmp_path / "here").mkdir()
     monkeypatch.chdir(tmp_path / "here")
     monkeypatch.setenv(VARIABLE, str(tmp_path / "cache"))

@@ -25,7 +25,7 @@ from runs.report.force_figures import contact_peaks, first_contacts, friction
 from runs.report.model_tables import model_table
 from runs.report.motion_figures import close_up, energies, heads, horizons, tip
 from tests.runs.case_texts import shipped
-from tests.runs.summaries import changed
+from tests.runs.summaries import changed, rubbing
 
 pytestmark = pytest.mark.slow
 
@@ -79,7 +79,6 @@ def drawn(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Drawn]:
 def everything(
     results: Results, drawn: Drawn, tmp_path_factory: pytest.TempPathFactory
 ) -> Everything:
-    """Return all figures of the run."""
     return draw(results, tmp_path_factory.mktemp("everything")), dict(drawn.sheets)
 
 
@@ -94,14 +93,11 @@ def labels(axes: Axes) -> list[str]:
 
 def with_friction(results: Results) -> Results:
     """Return the same run with invented friction: 1 kN up at 9 m, nothing at 10 m."""
-    rubbing = {"friction": 0.2, "normal_forces": (4500.0, 5000.0)}
-    joints = tuple(replace(joint, **rubbing) for joint in results.case.joints)
     data = results.trajectories.copy(deep=True)
     data["friction_force"] = 0.0 * data["contact_force"].fillna(0.0)
     data["friction_force"][dict(station=0)] = 1000.0
     data["friction_loss"] = 0.1 * data["work"]
-    case = results.case.model_copy(update={"joints": joints})
-    return replace(results, case=case, trajectories=data)
+    return replace(results, case=rubbing(results.case), trajectories=data)
 
 
 def test_draws_each_figure_as_png(everything: Everything) -> None:
@@ -227,7 +223,6 @@ def test_figures_omit_values_that_are_not_finite(results: Results, tmp_path: Pat
 
 
 def test_the_title_follows_the_motion_downwards(results: Results, drawn: Drawn) -> None:
-    """A boom under its weight deflects downwards; the title has the signed deflection."""
     down = results.trajectories.copy(deep=True)
     down["tip"] *= -1.0
     upwards, downwards = (

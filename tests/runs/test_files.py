@@ -23,7 +23,6 @@ ROOT = Path(__file__).parents[2]
 
 
 def contents(folder: Path) -> dict[str, str]:
-    """Return the text of all files but the manifest, by their paths in a folder."""
     return {
         str(path.relative_to(folder)): path.read_text(encoding="utf-8")
         for path in folder.rglob("*")
@@ -32,7 +31,6 @@ def contents(folder: Path) -> dict[str, str]:
 
 
 def write(folder: Path, *names: str) -> None:
-    """Write files whose content is the list of all names."""
     for name in names:
         (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(" ".join(names), encoding="utf-8")
@@ -67,7 +65,6 @@ def test_only_complete_files_get_their_names(tmp_path: Path) -> None:
 
 
 def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
-    """The new folder replaces the old one, with its permissions."""
     folder = tmp_path / "figures"
     for names in (("a.png", "b.png"), ("b.png", "deep/c.png")):
         with atomic_folder(folder) as part:
@@ -81,7 +78,6 @@ def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("kind", ["file", "folder"])
 def test_failing_write_keeps_the_old_file(tmp_path: Path, kind: str) -> None:
-    """The error message has the path that the user gave."""
     place = tmp_path / "place"
     path = place if kind == "file" else place / "a.png"
     path.parent.mkdir(exist_ok=True)
@@ -101,7 +97,6 @@ def test_failing_write_keeps_the_old_file(tmp_path: Path, kind: str) -> None:
 
 
 def test_changed_folder_keeps_other_files(tmp_path: Path) -> None:
-    """Files of the user are not in the manifest, so that they may change."""
     folder = tmp_path / "out"
     with atomic_folder(folder) as part:
         write(part, "data", "report")

@@ -7,33 +7,29 @@ import numpy as np
 import pytest
 
 from dynamics.damping import closed_contact_modes
-from dynamics.equilibrium import equilibrium, equilibrium_at
+from dynamics.equilibrium import equilibrium
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
 from runs.case.hoist import HoistTable, WindTable, with_initial_slack
 from runs.case.load_tables import LoadTable
+from runs.case.reading import select
 from runs.case.schema import Case, EnsembleTable, StartTable
 from runs.pipeline.bonded import bonded_system
 from runs.pipeline.models import build
 from tests.runs.case_texts import refusal, shipped
+from tests.runs.summaries import static_tip
 
 HOIST = (CASES / "hoist.toml").read_text(encoding="utf-8")
 
 
-def of_beam(case: Case) -> Case:
-    """Return a case with its series only."""
-    return case.model_copy(update={"models": case.models[:1]})
+@pytest.fixture(scope="module", name="case")
+def _case() -> Case:
+    return select(shipped("hoist"), "", ["series"])
 
 
-def static_tip(case: Case, time: float) -> float:
-    system = build(case, build_boom(case), case.models[0]).system
-    return float(system.observers["tip"].row @ equilibrium_at(system.gather_loads(), time))
-
-
-def test_hanging_load_at_rest() -> None:
+def test_hanging_load_at_rest(case: Case) -> None:
     """Reference: the same boom under the components of the load across and along it."""
-    case = of_beam(shipped("hoist"))
     weight = 5000.0 * 9.80665
     across = LoadTable(segment="fly", x="head", magnitude=-0.5 * weight)  # type: ignore[arg-type] # pydantic reads "head" as a place
     force = case.axial[0].force
@@ -43,9 +39,8 @@ def test_hanging_load_at_rest() -> None:
     assert abs(static_tip(case, 0.0)) < 0.5 * abs(static_tip(case, 5.0))
 
 
-def test_results_of_a_hoist() -> None:
+def test_results_of_a_hoist(case: Case) -> None:
     """Reference: the height at which the load leaves the ground, and the energy balance."""
-    case = of_beam(shipped("hoist"))
     case = change(case, **{"hoist.phi_2_min": 1.1, "hoist.beta_2": 0.34})
     results = run_case(change(case, **{"time.duration": 4.0, "time.output_step": 2e-3}))
     (summary,) = results.summary.models.values()
@@ -64,9 +59,8 @@ def test_results_of_a_hoist() -> None:
     assert (found.swing_out, found.swing_aside) == (None, None)
 
 
-def test_work_of_the_winch() -> None:
+def test_work_of_the_winch(case: Case) -> None:
     """Reference: the energy balance of a horizontal boom, in which only the winch moves rows."""
-    case = of_beam(shipped("hoist"))
     results = run_case(change(case, **{"time.duration": 1.0, "gravity.angle": 0.0}))
     drives = results.summary.design.models["series"].drives
     work = float(results.trajectories["drive_work"].values[0, -1])
@@ -76,9 +70,9 @@ def test_work_of_the_winch() -> None:
     assert drives.winch_power == pytest.approx(0.2 * force, rel=1e-2)
 
 
-def test_ensemble_and_comparison_without_play() -> None:
+def test_ensemble_and_comparison_without_play(case: Case) -> None:
     """Reference: energy balance of all members, and the stiffer boom without play."""
-    case = change(of_beam(shipped("hoist")), **{"time.duration": 0.6})
+    case = change(case, **{"time.duration": 0.6})
     table = EnsembleTable(members=2, vary="load", relative=1e-3, seed=1)
     results = run_case(case.model_copy(update={"ensemble": table}))
     found = results.summary.models["series"].ensemble
@@ -89,9 +83,8 @@ def test_ensemble_and_comparison_without_play() -> None:
     assert static < 1.02 * bonded < 0.0
 
 
-def test_rope_of_a_boom_without_play_is_straight_at_rest() -> None:
+def test_rope_of_a_boom_without_play_is_straight_at_rest(case: Case) -> None:
     """Reference: the series without play. A taut rope would raise the first frequency to 1.9 Hz."""
-    case = of_beam(shipped("hoist"))
     boom, (model,) = build_boom(case), case.models
     system = build(case, boom, model).system.gather_loads()
     bonded = bonded_system(system, [equilibrium(system, system.load)])[0]
@@ -102,9 +95,9 @@ def test_rope_of_a_boom_without_play_is_straight_at_rest() -> None:
     assert own == pytest.approx(other, rel=0.02)
 
 
-def test_dropped_load() -> None:
+def test_dropped_load(case: Case) -> None:
     """Reference: a force of the same size at the tip that is released at t = 0."""
-    case = change(of_beam(shipped("hoist")), **{"time.duration": 0.4})
+    case = change(case, **{"time.duration": 0.4})
     weight = LoadTable(
         segment="fly",
         x="head",  # type: ignore[arg-type] # read as in a file
@@ -120,9 +113,8 @@ def test_dropped_load() -> None:
     assert np.ptp(tips[0]) > 0.1
 
 
-def test_load_swings_under_wind() -> None:
+def test_load_swings_under_wind(case: Case) -> None:
     """Reference: analytic, 2 F l/(m g) of a force F that acts at once."""
-    case = of_beam(shipped("hoist"))
     wind = WindTable(direction="x", force=500.0)
     hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, pendulum=2.0, wind=(wind,))
     still = case.model_copy(update={"hoist": hung, "start": StartTable()})

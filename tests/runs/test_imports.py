@@ -64,7 +64,6 @@ def imported(node: ast.AST, for_types: bool) -> Iterator[str]:
 
 @pytest.fixture(scope="module")
 def trees() -> dict[str, ast.Module]:
-    """Return the syntax tree of each module of the project, by its name."""
     return {
         ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): ast.parse(
             path.read_text("utf-8")
@@ -86,7 +85,6 @@ def test_no_module_imports_itself_by_way_of_others(graph: dict[str, set[str]]) -
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_a_room_knows_those_below(room: str, trees: dict[str, ast.Module]) -> None:
-    """This also holds for imports of types. No package imports the studies."""
     own = (tree for name, tree in trees.items() if name.split(".")[0] == room)
     known = {found.split(".")[0] for tree in own for found in imported(tree, True)}
     assert known & ROOMS.keys() <= ROOMS[room] | {room}
@@ -131,7 +129,6 @@ def test_version_is_the_installed_one() -> None:
 
 
 def test_importing_the_package_keeps_warnings() -> None:
-    """Only the command suppresses warnings; a notebook shows them."""
     program = "import warnings, protractile as pt; pt.load_case; warnings.warn('heard')"
     done = subprocess.run(
         [sys.executable, "-c", program], cwd=ROOT, check=True, capture_output=True, text=True
@@ -180,7 +177,6 @@ KNOWS = re.compile(
 
 
 def test_no_other_module_knows_the_paper() -> None:
-    """This holds for modules and for templates of the report."""
     modules = [path for room in PACKAGES for path in (ROOT / room).glob("**/*.py")]
     general = {*modules, *(ROOT / "runs/report/templates").iterdir()}.difference(CLIENT)
     assert len(general) > 150

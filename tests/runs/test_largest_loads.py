@@ -39,7 +39,6 @@ SINE = '[[load]]\nsegment = "arm"\nx = 6.0\nmagnitude = 500.0\nfrequency = 2.0\n
 
 
 def boom_of(loads: str, of_joint: str = PAD) -> str:
-    """Return a case of two boxes with pads, clamped at the base."""
     return (
         f'title = "Two boxes"\n[time]\nduration = 1.0\n{STEEL}yield_strength = 3e8\n'
         + box("arm", (0.0, 8.0), ARM, CLAMPED)

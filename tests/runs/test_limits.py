@@ -82,13 +82,11 @@ def test_check_compares_limits_with_the_tip_at_rest() -> None:
 
 
 def limit_sentences(case: Case) -> list[str]:
-    """Return the sentences of ``check`` on limits."""
     return [line for line in check_case(CheckedCase(case)).lines if "imit " in line]
 
 
 @pytest.mark.usefixtures("few_figures")
 def test_the_exit_status_is_1_beyond_a_limit(capsys: pytest.CaptureFixture[str]) -> None:
-    """A limit of a quantity without values is not met, either."""
     write("tip = 0.001\npad_pressure = 1e6\ndecay_time = 10.0")
     for command in (["run", "case.toml", "--out", "out"], ["report", "out"]):
         assert protractile(*command) == 1

@@ -100,7 +100,6 @@ def test_slow_is_below_the_closed_boom(case: Case) -> None:
 
 
 def test_a_boom_out_of_proportion_has_no_slow_motion(case: Case) -> None:
-    """If a mass prevents the eigenvalue analysis, each model reports it."""
     heavy = case.segments[0].model_copy(update={"mass_per_length": 1e300})
     segments = heavy.model_copy(update={"height_to_width": None}), *case.segments[1:]
     changed = case.model_copy(update={"segments": segments, "models": case.models[:1]})
@@ -127,7 +126,6 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
 
 @pytest.fixture
 def sheets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Sheet]:
-    """Return the drawn sheets by their names."""
     found: dict[str, Sheet] = {}
     monkeypatch.setattr(Sheet, "savefig", lambda sheet, path, **_: found.update({path.stem: sheet}))
     return found

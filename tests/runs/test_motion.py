@@ -8,19 +8,16 @@ from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from protractile.cases import change
-from runs import CASES
-from runs.case.reading import load
+from runs.case.reading import select
 from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.motion_results import Peak
 from runs.pipeline.run import Run, run_case
+from tests.runs.case_texts import shipped
 
 
 def short(name: str, model: str, **values: object) -> Run:
-    """Return the run of one model, without design results."""
-    case = change(load(str(CASES / name)), **values)
-    models = tuple(one for one in case.models if one.name == model)
-    return run_case(case.model_copy(update={"models": models}), "", RunContext())
+    return run_case(change(select(shipped(name), "", [model]), **values), "", RunContext())
 
 
 def answers(run: Run) -> ModelDesignResults:
@@ -35,8 +32,8 @@ PULLED = {"joint.drive.time": 0.02, "time.duration": 0.03, "joint.play": 0.0}
 @pytest.mark.parametrize(
     ("name", "model", "values", "motions"),
     [
-        ("coarse.toml", "kantorovich-4", {"time.duration": 0.03}, 1),
-        ("drawn-out.toml", "kantorovich-5", PULLED, 2),
+        ("coarse", "kantorovich-4", {"time.duration": 0.03}, 1),
+        ("drawn-out", "kantorovich-5", PULLED, 2),
     ],
 )
 def test_all_motions_of_a_model_take_the_step_of_the_case(
@@ -62,7 +59,7 @@ def test_all_motions_of_a_model_take_the_step_of_the_case(
 
 def test_bonded_rest_is_known_without_a_motion(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: the same static state after a motion."""
-    run = short("coarse.toml", "kantorovich-4", **{"time.duration": 0.03})
+    run = short("coarse", "kantorovich-4", **{"time.duration": 0.03})
     whole = answers(run)
 
     def fail(way: AdaptiveStep, motion: Motion, progress: None = None) -> Trajectory:

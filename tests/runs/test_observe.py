@@ -108,7 +108,6 @@ def test_velocity_is_the_slope_of_the_deflection(tmp_path: Path) -> None:
 
 
 def test_data_have_names_and_units(tmp_path: Path) -> None:
-    """Every variable and coordinate has a long name, and every station has a name."""
     data = turned(tmp_path, "kantorovich-4").trajectories
     assert data.attrs["Conventions"] == "CF-1.8"
     assert [
@@ -122,7 +121,6 @@ def test_data_have_names_and_units(tmp_path: Path) -> None:
 
 
 def test_a_segment_s_name_may_have_blanks_and_points(tmp_path: Path) -> None:
-    """The key of its velocity is its name."""
     text = UNLOADED.replace('"inner"', '"fly 2.1"')
     start = '[start]\nvelocity = { "fly 2.1" = { z = 0.1 }, outer = 0.2 }\n\n'
     case = read_case(tmp_path, text.replace("[[model]]", start + "[[model]]", 1))

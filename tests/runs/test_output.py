@@ -27,7 +27,6 @@ pytestmark = pytest.mark.usefixtures("few_figures")
 
 @pytest.fixture(scope="module")
 def run() -> Run:
-    """Return the run of a series over a twentieth of a second."""
     case = case_file.select(shipped("coarse"), "", ["kantorovich-4"], None)
     return finished(change(case, **{"time.duration": 0.05}))
 
@@ -46,7 +45,6 @@ def header(folder: Path) -> list[str]:
 
 
 def test_columns_of_stations_are_distinct(run: Run, tmp_path: Path) -> None:
-    """The boom has two stations in each of two directions, and a stop at the position of one."""
     plain = run.results.trajectories
     places = [("9", "z"), ("10", "z"), ("9", "y"), ("10", "y"), ("9", "z")]
     names = place_names([(float(x), direction) for x, direction in places])

@@ -30,7 +30,6 @@ PAD = "pad = { length = 0.2, width = 0.05, thickness = 0.02, allowable_pressure 
 
 
 def case_with(folder: Path, joint: str, play: float = 0.014) -> Case:
-    """Return the coarse case with only Timoshenko elements, with contacts of the joint."""
     text = COARSE[: COARSE.index("[[model]]")] + elements("beam", element_length=0.5)
     text = text.replace(COARSE[COARSE.index("statements") :].splitlines()[0] + "\n", "")
     text = text.replace("play = 0.014", f"play = {play}").replace(LAW, joint)

@@ -70,7 +70,6 @@ def test_an_instant_is_shown_once(shell: Scene) -> None:
 
 
 def test_motion_without_contact_or_peak_still_has_an_instant(shell: Scene) -> None:
-    """Half a period has no peak, and forces of a model without stations are NaN."""
     motion = shell.motion.where(shell.motion["time"] < 0.0).assign(tip=shell.motion["tip"])
     assert characteristic_instants(motion.isel(time=slice(0, 100))) == {
         "largest-deflection": pytest.approx(TIME[99])
@@ -167,7 +166,6 @@ def test_boom_is_drawn_and_moves(pictures: list[Path]) -> None:
 
 @pytest.mark.slow
 def test_overlap_shows_both_segments_and_the_forces(pictures: list[Path]) -> None:
-    """At the first peak there are three colours, and red arrows up at 10 m and down at 9 m."""
     picture = picture_of(pictures, "overlap-first-peak.png")[190:800]
     is_force = red(picture)
     assert (warmth(picture) < -60.0).mean() > 0.08
@@ -231,7 +229,6 @@ def test_large_stress_is_dark(pictures: list[Path]) -> None:
 @pytest.mark.slow
 @pytest.mark.usefixtures("_opengl")
 def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
-    """Both segments are visible in their colours, without two hiding outer walls."""
     (overlap,) = shell.overlaps
     with rc_context(theme.PAGE_RC):
         mesh = draw_mesh(shell, overlap)
@@ -279,7 +276,6 @@ def test_symbols_of_loads_masses_and_cylinders_follow_the_boom(shell: Scene) -> 
 
 @pytest.mark.slow
 def test_animation_is_small_and_moves(pictures: list[Path]) -> None:
-    """A whole film is below 4 MB."""
     assert 40 <= snapshots.FRAMES <= 60
     assert pictures[-1].stat().st_size < 4.0e6 * FRAMES / snapshots.FRAMES
     with Image.open(pictures[-1]) as animation:

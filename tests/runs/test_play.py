@@ -13,6 +13,7 @@ from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, Step
 from dynamics.gap_system import GapSystem
+from runs.case.reading import select
 from runs.pipeline.bonded import bonded_system
 from runs.pipeline.design_results import DesignResults, PlayDifference
 from runs.pipeline.model_quality import quality_notes
@@ -25,10 +26,7 @@ if TYPE_CHECKING:
 
 
 def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> DesignResults:
-    """Return results of some models of the paper's boom."""
-    case = shipped("coarse")
-    models = tuple(model for model in case.models if model.name in names)
-    return answers_of(case.model_copy(update={"models": models}), comm)
+    return answers_of(select(shipped("coarse"), "", names), comm)
 
 
 @pytest.fixture(scope="module")
@@ -38,7 +36,6 @@ def answers() -> DesignResults:
 
 
 def numbers(found: DesignResults, model: str) -> dict[tuple[str, str], PlayDifference]:
-    """Return the effect of play in a model."""
     (play,) = (one for one in found.play if one.model == model)
     return {(one.what, one.where): one for one in play.numbers}
 

@@ -30,7 +30,6 @@ class Pushed:
     moments: list[tuple[float, float]] = field(default_factory=list)
 
     def turn(self, x: float) -> float:
-        """Return the moment of all forces about x in N·m."""
         middle = 0.5 * (self.segment.start + self.segment.end)
         pushed = sum(f * (at - x) for at, f in self.forces) + sum(m for _, m in self.moments)
         return pushed + self.along * self.segment.length * (middle - x)

@@ -91,7 +91,6 @@ def tables(results: Results, width: int = 100) -> str:
 
 
 def skipping(results: Results, why: str) -> Summary:
-    """Return the summary of a run without snapshots."""
     return results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=why)})
 
 
@@ -254,7 +253,6 @@ def told(results: Results) -> list[str]:
 
 
 def test_large_displacement_gives_a_caution(results: Results) -> None:
-    """The limit is a tenth of the length of 19 m."""
     assert results.summary.cautions == []
     wild = results.trajectories.copy(deep=True)
     wild["tip"][0, -1] = 2.0

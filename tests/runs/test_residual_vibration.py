@@ -29,16 +29,16 @@ from runs.sweep.residual_vibration import (
     draw_vibration,
     vibration_curves,
 )
-from tests.runs.case_texts import read_case
+from tests.runs.case_texts import edited, read_case
 
 # No play and a load that ramps: no chaos, and swings that are no mere distance of the start.
+DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
 PLAYLESS = "play = 0.0"
 LOAD = '[[load]]\nsegment = "inner"\nx = "head"\nmagnitude = 1000.0\nramp = 0.2\n\n[[model]]'
 
 
 def case(folder: Path, drive: str, extension: str = "5.0") -> Case:
-    text = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
-    for before, after in {
+    changes = {
         "drive = { travel = 4.0, time = 5.0, least_overlap = 1.0 }": drive,
         "extension = 5.0": f"extension = {extension}",
         "play = 0.014": PLAYLESS,
@@ -47,10 +47,8 @@ def case(folder: Path, drive: str, extension: str = "5.0") -> Case:
         "friction = 0.2": "normal_forces = [0.0, 0.0]\nfriction = 0.2",
         "duration = 7.0": "duration = 0.6",
         "[[model]]": LOAD,
-    }.items():
-        assert before in text
-        text = text.replace(before, after, 1)
-    return read_case(folder, text)
+    }
+    return read_case(folder, edited(DRAWN, *changes.items()))
 
 
 def swing_of(case: Case) -> ResidualVibration | None:

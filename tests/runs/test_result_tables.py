@@ -52,7 +52,6 @@ def answering(results: Results, **changes: Any) -> Results:
 
 
 def cells(table: Table | None) -> dict[str, dict[str, str]]:
-    """Return each row by its first cell."""
     return {row[0]: dict(zip(table.headings, row, strict=True)) for row in table.rows}
 
 

@@ -208,7 +208,6 @@ def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
 
 
 def still(boom: Boom, output: BeamOutput) -> tuple[Scene, np.ndarray]:
-    """Return a beam's scene without trajectories."""
     return Scene.of_beam(CASE, boom, output, xr.Dataset(coords={"time": output.time}))
 
 

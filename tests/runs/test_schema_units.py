@@ -20,7 +20,7 @@ from runs.case.conversion import convert_to_si
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
 from runs.sweep.points import plan
-from tests.runs.case_texts import STEEL, elements, refused
+from tests.runs.case_texts import STEEL, edited, elements, refused
 from tests.runs.summaries import printed_check
 from tests.touching import contact_laws
 
@@ -95,11 +95,7 @@ def _folder(here: Path) -> None:
 
 
 def written(units: str = "", extra: tuple[tuple[str, str], ...] = ()) -> str:
-    text = IN_SI.format(units=units, steel=STEEL, beam=BEAM)
-    for si, mm in extra:
-        assert text.count(si) == 1, si
-        text = text.replace(si, mm)
-    return text
+    return edited(IN_SI.format(units=units, steel=STEEL, beam=BEAM), *extra)
 
 
 def case_of(text: str) -> Case:
@@ -255,7 +251,6 @@ def test_other_systems_are_refused() -> None:
 
 
 def _tables(table: type = Case) -> Iterator[type]:
-    """Yield the classes of all tables of a case."""
     yield table
     for field in fields_of(table).values():
         for part in _parts(field.annotation):

@@ -171,7 +171,6 @@ STRESS: dict[str, Any] = {
 
 
 def results(stress: dict[str, Any] | None) -> Results:
-    """Return a run of the coarse case's shell, with or without stresses."""
     case = case_file.select(shipped("coarse"), "", ["shell"], None)
     data = xr.Dataset(
         {"tip": (("model", "time"), np.zeros((1, 601)))},
@@ -239,7 +238,6 @@ def case(tmp_path: Path) -> Case:
 
 
 def turning(boom: Boom) -> float:
-    """Moment of the weights about the hinge in N·m."""
     weights = [segment.mass_per_length * segment.length for segment in boom.segments]
     moment = weights[0] * 4.5 + weights[1] * 11.25 + 1000.0 * 15.0
     return moment * 9.80665
@@ -250,7 +248,6 @@ ARM = (3.0 * 1.9 + 0.3 * 1.8) / np.hypot(1.8, 1.9)
 
 
 def test_cylinder_of_the_boom_follows_the_case(case: Case, tmp_path: Path) -> None:
-    """This holds for the case as written, and after a run has written it again."""
     for boom in (build_boom(case), build_boom(read_case(tmp_path, dumps(case)))):
         assert boom.segments[0].supports == (Support(0.0, "hinged", depth=0.2),)
         assert boom.cylinders == (

@@ -14,7 +14,7 @@ from geometry.section import BoxSection, Section
 from runs.case.build import build_boom
 from runs.case.reading import load
 from runs.pipeline.models import build
-from tests.runs.case_texts import refused
+from tests.runs.case_texts import edited, refused
 from tests.runs.coarse_case import COARSE
 from tests.system.run_folder import protractile
 
@@ -34,12 +34,8 @@ pytestmark = pytest.mark.usefixtures("here")
 
 
 def written(sections: Sequence[str]) -> str:
-    """Return a case file of the coarse case with these sections."""
-    text = COARSE
-    for given, section in zip(GIVEN, sections, strict=True):
-        assert given in text
-        text = text.replace(given, f"section = {section}\n")
-    Path("case.toml").write_text(text, encoding="utf-8")
+    edits = [(g, f"section = {s}\n") for g, s in zip(GIVEN, sections, strict=True)]
+    Path("case.toml").write_text(edited(COARSE, *edits), encoding="utf-8")
     return "case.toml"
 
 
@@ -156,7 +152,6 @@ STIFFENED = COARSE.replace(
 
 @pytest.fixture
 def stiffened(here: Path) -> str:
-    """Return a case file of the coarse case with stiffeners."""
     Path("case.toml").write_text(STIFFENED, encoding="utf-8")
     return "case.toml"
 

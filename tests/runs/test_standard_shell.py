@@ -52,7 +52,6 @@ RAISED = f"""
 
 
 def at_rest(folder: Path, text: str) -> tuple[Boom, GapSystem, Array]:
-    """Return a boom, its shell and the equilibrium of the shell."""
     case = read_case(folder, CASE + text)
     boom = build_boom(case)
     system = build(case, boom, case.models[0], BuildContext(MPI.COMM_SELF)).system.gather_loads()
@@ -76,7 +75,6 @@ def test_axial_forces_turn_a_shared_shell_about_its_lowered_pin(tmp_path: Path) 
 
 
 def output(boom: Boom) -> ShellOutput:
-    """Return the output of a shell at rest for one second."""
     shell = reduce_boom(touching(boom, LAW, LATERAL_LAW), ShellOptions(0.5), MPI.COMM_SELF)
     time = np.array([0.0, 1.0])
     data = xr.Dataset(coords={"time": time})

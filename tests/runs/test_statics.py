@@ -32,7 +32,7 @@ from runs.pipeline.static_results import (
 )
 from studies.reference_models.statics import static_response
 from tests.docs.conftest import toml_blocks
-from tests.runs.case_texts import CLAMPED, box, read_case, shipped
+from tests.runs.case_texts import CLAMPED, THIN, box, edited, read_case, shipped
 from tests.runs.summaries import model_summary, printed_check, summary_of
 
 
@@ -68,12 +68,8 @@ def test_unequal_plays_are_not_pressed_in() -> None:
     joint = replace(joint, play_above=0.001)
     lines = told(case.model_copy(update={"joints": (joint,)}))
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
-    assert [float(value) for value in rows["inner", "9"]] == pytest.approx(
-        [2.203, 0.0148], rel=2e-3
-    )
-    assert [float(value) for value in rows["inner", "10"]] == pytest.approx(
-        [-2.7535, 0.0166], rel=2e-3
-    )
+    for x, expected in (("9", [2.203, 0.0148]), ("10", [-2.7535, 0.0166])):
+        assert [float(value) for value in rows["inner", x]] == pytest.approx(expected, rel=2e-3)
 
 
 def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
@@ -135,7 +131,6 @@ def test_series_weigh_and_swing_with_stiffeners_as_elements_do(tmp_path: Path) -
 
 
 def test_a_boom_without_rest_says_so() -> None:
-    """The square of the load overflows."""
     case = shipped("coarse")
     segments = tuple(s.model_copy(update={"load": 1.0e300}) for s in case.segments)
     lines = told(case.model_copy(update={"segments": segments}))
@@ -172,14 +167,7 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
 def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) -> None:
     """Reference: exact words. A beam has rigid walls, so that its tip has another cause."""
     text = "".join(toml_blocks("tutorial.md")[:3])
-    for old, new in (
-        ("flange = 0.006", "flange = 0.002"),
-        ("flange = 0.005", "flange = 0.002"),
-        ("thickness = 0.012", "thickness = 0.012, offset = 0.039"),
-        ("magnitude = -1595.0", "magnitude = -2500.0"),
-    ):
-        assert old in text
-        text = text.replace(old, new)
+    text = edited(text, *THIN, ("magnitude = -1595.0", "magnitude = -2500.0"))
     case = read_case(tmp_path, text)
     cause = "walls under pads cause most of it; change the pads"
     lines = check_case(CheckedCase(case)).lines
@@ -198,7 +186,6 @@ def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) ->
 
 
 def pad_wall_sentences(case: Case) -> list[str]:
-    """Return the sentences of ``check`` on walls under pads."""
     lines = check_case(CheckedCase(case)).lines
     found = [line for line in lines if line.startswith(("Walls bend", "Remedies"))]
     return [line.replace("−", "-") for line in found]

@@ -21,27 +21,19 @@ from runs.report import theme
 from runs.report.figure_context import FigureContext
 from runs.report.force_figures import drives
 from runs.report.result_tables import result_tables, stick_slip_table
-from tests.runs.case_texts import read_case, refusal, shipped
+from tests.runs.case_texts import edited, read_case, refusal, shipped
 from tests.runs.summaries import printed_check
 
+DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
 ROPE = "least_overlap = 1.0, stiffness = 2e5, dashpot = 500.0, static_friction = 0.3 }"
 # Without play, at rest under loads downwards, so that pads press all the time.
 PRESSED = {"play = 0.014": "play = 0.0", "load = 55.07": "load = -540.0"}
 RESTS = {"[[joint]]": '[start]\nstate = "equilibrium"\n\n[[joint]]'}
 
 
-def changed_text(changes: dict[str, str]) -> str:
-    text = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
-    for before, after in changes.items():
-        assert before in text
-        text = text.replace(before, after)
-    return text
-
-
 def drawn_by(folder: Path, rope: str, **others: str) -> Case:
-    """Return the loaded case, extended by a rope."""
     changes = {**PRESSED, **RESTS, "least_overlap = 1.0 }": rope, **others}
-    return read_case(folder, changed_text(changes))
+    return read_case(folder, edited(DRAWN, *changes.items()))
 
 
 @pytest.mark.parametrize(
@@ -63,13 +55,13 @@ def drawn_by(folder: Path, rope: str, **others: str) -> Case:
 )  # fmt: skip
 def test_slips_in_a_drive(tmp_path: Path, rope: str, message: str) -> None:
     """Reference: exact message."""
-    assert refusal(tmp_path, changed_text({"least_overlap = 1.0 }": rope})) == message
+    assert refusal(tmp_path, edited(DRAWN, ("least_overlap = 1.0 }", rope))) == message
 
 
 def test_no_stick_slip_without_friction(tmp_path: Path) -> None:
     """Reference: exact message."""
     changes = {"least_overlap = 1.0 }": ROPE, "friction = 0.2 ": "# "}
-    assert refusal(tmp_path, changed_text(changes)) == (
+    assert refusal(tmp_path, edited(DRAWN, *changes.items())) == (
         "joint[1].drive.static_friction: nothing rubs in the joint; give it friction, or leave "
         "static_friction out"
     )
@@ -100,7 +92,7 @@ def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
         "duration = 7.0": "duration = 0.2",
     }
     rope = {"least_overlap = 1.0 }": ROPE + "\nlocked_at = 'tail'"}
-    case = read_case(tmp_path, changed_text(rope | along))
+    case = read_case(tmp_path, edited(DRAWN, *rope.items(), *along.items()))
     (pulled,) = elastic_drives(case, build_boom(case)).values()
     assert pulled.thrust == pytest.approx(0.5 * 550.7 * 9.80665)
     later = change(case, **{"joint.drive.start": 0.1})

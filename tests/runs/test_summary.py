@@ -28,7 +28,6 @@ def test_keys_and_values_are_unchanged() -> None:
 
 
 def test_a_summary_comes_back_from_a_cache(tmp_path: Path) -> None:
-    """Fields that were not set do not become null."""
     summary = Summary.load(EARLIER)
     Cache(tmp_path).store("a", summary)
     assert str(Cache(tmp_path).load("a", Summary)) == str(summary)

@@ -32,7 +32,6 @@ from tests.runs.sweeping import FAST, Planned, run
 
 @pytest.fixture
 def ran(monkeypatch: pytest.MonkeyPatch) -> list[Case]:
-    """Return the cases of the points that have been run."""
     cases: list[Case] = []
     run_point = sweep.run_point
 
@@ -349,12 +348,10 @@ def charts(sweeping: Plan, *quantities: Sequence[str]) -> None:
     ids=["one key", "two keys", "three keys"],
 )  # fmt: skip
 def test_charts_fit_number_of_keys(planned: Planned, texts: list[str], names: list[str]) -> None:
-    """Quantities without values, here the settling time, and constant quantities have no chart."""
     assert written(planned(*texts)) == names
 
 
 def test_maps_have_labels_at_computed_values(planned: Planned, sheets: list[Sheet]) -> None:
-    """With many or irregular values, round values have labels."""
     charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"), CHARTED[:1])
     axes = sheets[0].axes[0]
     assert axes.get_xlabel() == ""
@@ -375,7 +372,6 @@ def test_cells_of_a_map_show_their_values(planned: Planned, sheets: list[Sheet])
 
 
 def test_constant_quantity_has_no_panel(planned: Planned, sheets: list[Sheet]) -> None:
-    """The mass does not depend on the play. Axes have no offsets."""
     sweeping = planned("joint.play=0:0.009:4")
     outcomes = [
         Outcome({name: {"mass": 1382.3, "stress": 5e7 + 1e3 * i} for name in FAST}, {})

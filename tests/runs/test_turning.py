@@ -12,7 +12,6 @@ from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp, trapezoid
 
 from beam_model.lines import lines
-from dynamics.equilibrium import equilibrium_at
 from dynamics.excitation import SCurve, Stroke
 from dynamics.frame_motion import FrameMotion
 from dynamics.gap_system import GapSystem
@@ -32,11 +31,12 @@ from runs.case.reading import load
 from runs.case.schema import Case
 from runs.case.turning import LuffTable, turning_changes, turning_loads
 from runs.pipeline.estimates import Preview
-from runs.pipeline.models import axial_travels, build
+from runs.pipeline.models import axial_travels
 from runs.pipeline.turning import drive_moments, shaper_lines, turning_cautions, turning_lines
 from runs.report.crane_position import CranePosition
 from runs.report.result_tables import luffing_table
 from tests.runs.case_texts import read_case, refusal, refused, shipped
+from tests.runs.summaries import static_tip
 
 ARM = (CASES / "inspection-arm.toml").read_text(encoding="utf-8")
 CRANE = (CASES / "crane.toml").read_text(encoding="utf-8")
@@ -72,15 +72,9 @@ def test_bar_turned_with_a_constant_acceleration() -> None:
 
 
 def slewing_arm(tmp_path: Path, *tables: str, arm: str = ARM) -> Case:
-    """Return the arm without its gust, with further tables, as beam elements."""
     gust, models = arm.index("[[load]]"), arm.index("[[model]]")
     case = read_case(tmp_path, arm[:gust] + "\n".join(tables) + "\n" + arm[models:])
     return case.model_copy(update={"models": case.models[1:2]})
-
-
-def static_tip(case: Case, time: float) -> float:
-    system = build(case, build_boom(case), case.models[0]).system.gather_loads()
-    return float(system.observers["tip"].row @ equilibrium_at(system, time))
 
 
 def test_luffed_arm(tmp_path: Path) -> None:
@@ -245,7 +239,6 @@ TIME = np.array([0.0, 2.5, 5.0])
 
 
 def motion(**variables: list[float]) -> xr.Dataset:
-    """Return a trajectory with given variables of the load."""
     found = {name: ("time", values) for name, values in variables.items()}
     return xr.Dataset(found, {"time": TIME})
 

@@ -42,7 +42,6 @@ def law_in_mm(law: Gap) -> Gap:
 
 
 def boom_in_mm(boom: Boom) -> Boom:
-    """Return the boom in mm, t, s, N and MPa."""
     return Boom(
         tuple(_segment(segment) for segment in boom.segments),
         tuple(_joint(joint) for joint in boom.joints),

@@ -25,7 +25,6 @@ time = {{ duration = 0.1, output_step = 1e-3 }}
 
 
 def load(**keys: object) -> str:
-    """Return a load at the tip."""
     return table("[[load]]", segment="fly", x="head", **keys)
 
 

@@ -43,7 +43,6 @@ def refusal_of(file: str) -> str:
 def test_special_and_oversized_files_are_refused(
     file: str, make: Callable[[str], object], why: str
 ) -> None:
-    """Reading a pipe would wait for its writer, and a device has no end."""
     make(file)
     assert refusal_of(file) == f"{file}: file: cannot be read ({why}); give a case file that can"
 
@@ -222,7 +221,6 @@ def test_factors_need_a_magnitude_and_columns_are_two() -> None:
 
 
 def complaint(csv: str, keys: str) -> str:
-    """Return the message about the load with which a case is refused."""
     with pytest.raises(BadInput) as error:
         case_of(csv, keys)
     return str(error.value).removeprefix("case.toml: load[1].")
@@ -248,7 +246,6 @@ def test_columns_of_no_file_are_refused() -> None:
     ],
 )  # fmt: skip
 def test_end_of_a_series_gives_a_caution(times: tuple[float, float], note: str | None) -> None:
-    """The coarse case lasts 0.6 s."""
     case = case_of(f"{times[0]},1\n{times[1]},2\n", "magnitude = 1.0")
     assert case.time.duration == 0.6
     expected = [] if note is None else [f"note: the series of load[1] {note}"]

@@ -35,7 +35,7 @@ from tests.runs.paper_curves import (
     verdict,
     verdicts,
 )
-from tests.runs.summaries import model_summary, printed, steps_for_peaks, summary_of
+from tests.runs.summaries import model_summary, printed, rubbing, steps_for_peaks, summary_of
 from tests.touching import contact_laws, touching
 
 TIME = np.arange(10_001) / 1000
@@ -211,18 +211,10 @@ def test_s6_asks_for_one_absolute_level(head_scale: float, expected: str) -> Non
 
 
 def test_s6_asks_for_greater_relative_differences() -> None:
-    """If the head moves as far as the tip and differs less, its relative difference is smaller."""
     motion = curves()
     for both in motion.values():
         both["head"] = both["head"] + 0.9 * motion["kantorovich-5"]["tip"]
     assert verdict("S6", motion)[:2] == ("contradicted", pytest.approx(1.0 / 0.3, rel=1e-3))
-
-
-def rubbing() -> Case:
-    """Return the case with friction."""
-    (joint,) = paper().joints
-    joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
-    return paper().model_copy(update={"joints": (joint,)})
 
 
 def conforming(late: float) -> dict[str, dict[str, np.ndarray]]:
@@ -239,7 +231,7 @@ def conforming(late: float) -> dict[str, dict[str, np.ndarray]]:
 
 def test_s7_looks_at_the_whole_length() -> None:
     part = pytest.approx(0.017 / 0.1935, rel=1e-3)
-    assert verdict("S7", conforming(0.5), case=rubbing())[:2] == ("reproduced", part)
+    assert verdict("S7", conforming(0.5), case=rubbing(paper()))[:2] == ("reproduced", part)
 
 
 @pytest.mark.parametrize("fault", ["no stratification", "apart at once", "play-free too", "head"])
@@ -252,7 +244,7 @@ def test_s7_is_turned_by_each_of_its_parts(fault: str) -> None:
     if fault == "head":
         for both in motion.values():
             both["head"] = 0.1 * swing(0.171)
-    assert verdict("S7", motion, case=rubbing())[0] == "contradicted"
+    assert verdict("S7", motion, case=rubbing(paper()))[0] == "contradicted"
 
 
 @pytest.mark.parametrize(
@@ -264,7 +256,7 @@ def test_s7_is_turned_by_each_of_its_parts(fault: str) -> None:
     ],
 )
 def test_s8_asks_how_long_elements_last(duration: float, expected: str, told: str) -> None:
-    found, _, why = verdict("S8", curves(duration), case=rubbing())
+    found, _, why = verdict("S8", curves(duration), case=rubbing(paper()))
     assert found == expected
     assert told in why
 
@@ -408,7 +400,6 @@ def test_verdict_comes_from_the_first_decisive_run(
 
 
 def test_verdicts_of_several_cases_name_their_case() -> None:
-    """Each statement has a paragraph instead of a column."""
     paragraphs = printed(print_verdicts, RUNS, width=80).split("\n\n")[1:]
     heads = [paragraph.splitlines()[0] for paragraph in paragraphs]
     assert heads[0] == "S1 reproduced in paper"

@@ -13,8 +13,10 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from geometry.mesh import mesh_segment
 from geometry.plating import add_thickness
-from protractile.cases import run_case
-from runs import CASES
+from protractile.cases import change, run_case
+from runs.case.kinds.shell import Shell
+from runs.case.reading import select
+from runs.case.schema import BucklingTable
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.pipeline.wall_buckling import with_locations
@@ -25,29 +27,23 @@ from runs.report.result_tables import buckling_table
 from runs.report.summary_table import summary_table
 from shell_model.buckling import SegmentBuckling
 from studies.wall_buckling import TUBE
-from tests.runs.case_texts import read_case, table
+from tests.runs.case_texts import shipped
 from tests.runs.moving_segments import moving_scene
 from tests.shell_model.booms import box_segment
 
-COARSE = {"kind": "shell", "mesh_size": 0.25, "contact_tolerance": "any"}
-SHELL = table("[[model]]", name="shell", **COARSE) + table("[buckling]", modes=2)
 
-
-def run(folder: Path, name: str, **changes: str) -> Results:
+def run(name: str, duration: float) -> Results:
     """Return the results of a shipped case with a shell of few triangles, and a beam."""
-    text = (CASES / name).read_text(encoding="utf-8")
-    for key, value in changes.items():
-        (line,) = (line for line in text.splitlines() if line.startswith(f"{key} = "))
-        text = text.replace(line, f"{key} = {value}", 1)
-    head, *models = text.split("[[model]]")
-    beam = next(model for model in models if "timoshenko" in model)
-    return run_case(read_case(folder, f"{head}[[model]]{beam}{SHELL}"))
+    shell = Shell(name="shell", kind="shell", mesh_size=0.25, contact_tolerance="any")
+    case = select(shipped(name), "", ["timoshenko"])
+    more = {"models": (*case.models, shell), "buckling": BucklingTable(modes=2), "statements": ()}
+    return run_case(change(case.model_copy(update=more), **{"time.duration": duration}))
 
 
 @pytest.mark.slow
-def test_a_run_has_factors_of_shell_and_panels(tmp_path: Path) -> None:
+def test_a_run_has_factors_of_shell_and_panels() -> None:
     """Reference: other code, panel formulas, below the shell with its restrained folds."""
-    results = run(tmp_path, "coarse.toml", statements="[]", duration="0.01")
+    results = run("coarse", 0.01)
     summary = Summary.model_validate_json(str(results.summary))
     shell, beam = (summary.design.models[name] for name in ("shell", "timoshenko"))
     assert [one.segment for one in shell.buckling] == ["outer", "inner"]
@@ -72,9 +68,9 @@ def test_a_run_has_factors_of_shell_and_panels(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_buckling_of_a_telescoping_shell_is_at_the_farthest_tip(tmp_path: Path) -> None:
+def test_buckling_of_a_telescoping_shell_is_at_the_farthest_tip() -> None:
     """Reference: other code, panel formulas of the same state, at the largest extension."""
-    results = run(tmp_path, "drawn-out.toml", duration="0.05")
+    results = run("drawn-out", 0.05)
     shell = results.summary.design.models["shell"]
     assert shell.farthest_static is not None
     for own, estimate in zip(shell.buckling, shell.panels, strict=True):
@@ -96,9 +92,8 @@ def test_round_off_does_not_choose_between_mirrored_walls() -> None:
     assert x == other_x
 
 
-def test_a_case_without_the_table_has_none(tmp_path: Path) -> None:
-    text = (CASES / "coarse.toml").read_text(encoding="utf-8")
-    results = run_case(read_case(tmp_path, text), models=["timoshenko"])
+def test_a_case_without_the_table_has_none() -> None:
+    results = run_case(shipped("coarse"), models=["timoshenko"])
     assert not buckling_table(results).rows
     assert not results.summary.design.models["timoshenko"].panels
 
