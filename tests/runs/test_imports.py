@@ -142,15 +142,16 @@ def test_modules_in_all_folders_count(tmp_path: Path) -> None:
     deep.mkdir(parents=True)
     for folder in (package, package / "inner", deep):
         (folder / "__init__.py").touch()
-    (deep / "a.py").write_text("x = 1\n")
-    found = [sources([package])]
-    (deep / "a.py").write_text("x = 2\n")
-    found.append(sources([package]))
-    (deep / "a.py").rename(deep / "b.py")
-    found.append(sources([package]))
-    (deep / "b.py").rename(package / "b.py")
-    found.append(sources([package]))
-    assert len(set(found)) == 4
+    found = {sources([package])}
+    for change in (
+        lambda: (deep / "a.py").write_text("x = 1\n"),
+        lambda: (deep / "a.py").write_text("x = 2\n"),
+        lambda: (deep / "a.py").rename(deep / "b.py"),
+        lambda: (deep / "b.py").rename(package / "b.py"),
+    ):
+        change()
+        found.add(sources([package]))
+    assert len(found) == 5
 
 
 def test_results_are_no_source(tmp_path: Path) -> None:

@@ -3,7 +3,7 @@
 
 import re
 import tomllib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, get_args, get_origin
@@ -201,29 +201,20 @@ def test_check_shows_the_units_of_the_case() -> None:
 def test_a_sweep_s_values_are_in_the_units_of_the_case() -> None:
     """Reference: analytic. Keys of several units, and a number that stands for a table."""
     in_mm()
-    keys = {
-        "joint.extension=6000,7000": ("mm", [6.0, 7.0]),
-        "joint.stiffness=1e4,1e7": ("N/mm^2", [1e10, 1e13]),
-        "load[2].magnitude=1000,2000": ("N mm", [1.0, 2.0]),
-        "start.velocity.fly=5,9.7": ("mm/s", [0.005, 0.0097]),
-    }
-    for text, (unit, expected) in keys.items():
+    keys: dict[str, tuple[str, list[float], Callable[[Case], float]]] = {
+        "joint.extension=6000,7000": ("mm", [6.0, 7.0], lambda c: c.joints[0].extension),
+        "joint.stiffness=1e4,1e7": ("N/mm^2", [1e10, 1e13], lambda c: c.joints[0].stiffness),
+        "load[2].magnitude=1000,2000": ("N mm", [1.0, 2.0], lambda c: c.loads[1].magnitude),
+        "start.velocity.fly=5,9.7": (
+            "mm/s", [0.005, 0.0097], lambda c: c.start.velocity["fly"].z
+        ),
+    }  # fmt: skip
+    for text, (unit, expected, value) in keys.items():
         planned = plan("crane.toml", [text], None, None)
         assert list(planned.units) == [unit]
         values = [float(part) for part in text.partition("=")[2].split(",")]
         assert list(planned.variations[0].values) == values
-        found = [_value(point.case, text.partition("=")[0]) for point in planned.points]
-        assert found == expected
-
-
-def _value(case: Case, key: str) -> float:
-    joint = case.joints[0]
-    return {
-        "joint.extension": joint.extension,
-        "joint.stiffness": joint.stiffness,
-        "load[2].magnitude": case.loads[1].magnitude,
-        "start.velocity.fly": case.start.velocity["fly"].z if case.start.velocity else None,
-    }[key]
+        assert [value(point.case) for point in planned.points] == expected
 
 
 def test_a_change_in_python_is_in_si_units() -> None:
