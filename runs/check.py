@@ -64,7 +64,7 @@ from runs.pipeline.statics import (
 )
 from runs.pipeline.turning import shaper_lines, turning_lines
 from runs.report.formatting import milli, number, without_round_off
-from runs.report.tables import WIDE, Cell, Column, Table
+from runs.report.tables import WIDE, Cell, Column, Table, print_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -96,12 +96,11 @@ class Check:
 
     def show(self, console: Console) -> None:
         """Print the tables, then the sentences."""
-        print_lines = partial(console.print, markup=False, highlight=False)
-        print_lines(self.title)
+        print_text(console, self.title)
         for table in self.tables:
             table.show(console)
         for line in self.lines:
-            print_lines(line)
+            print_text(console, line)
 
     def __repr__(self) -> str:
         text = StringIO()

@@ -12,6 +12,7 @@ from runs.pipeline.combinations import combination_states, combination_tables
 from runs.pipeline.combined_shells import shell_states
 from runs.pipeline.proofs import proof_table, prove
 from runs.process.terminal import message, say, shorten
+from runs.report.tables import print_text
 
 
 def print_proofs(
@@ -33,11 +34,12 @@ def print_proofs(
         # Only the first rank has the states of a shell.
         return 0
     results = prove(case, states)
+    print_text(console, case.title)
     name = "" if shell is None else shell[0].name
     for table in combination_tables([one.result for one in states], case, name):
         table.show(console)
     proof_table(results, case).show(console)
-    console.print(results.governing(case.system), markup=False, highlight=False)
+    print_text(console, results.governing(case.system))
     failed = [one for one in results.proofs if not one.holds]
     for one in failed:
         say(message(f"{shorten(file)}: {one.text(case.system)}. Remedy: {one.remedy}"))

@@ -159,7 +159,7 @@ def quality_notes(
             yield QualityNote(
                 "reduction",
                 f"{name}: the reduced shell of {model.modes} generalised coordinates reproduces "
-                f"the local contact compliance within {number(error, 1)}.",
+                f"the local contact compliance within a relative error of {number(error, 1)}.",
             )
     for name, model in models.items():
         if model.mesh_error is not None:

@@ -78,13 +78,13 @@ def deflection_advice(beam: BeamStates | None) -> str:
 
 def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
     """Return a sentence that names the beams with rigid walls under pads; empty without them."""
-    names = [model.name for model in models if not (model.bonded or model.needs_shell)]
+    with_play = [model for model in models if not model.bonded]
+    names = [repr(model.name) for model in with_play if not model.needs_shell]
+    elastic = [repr(model.name) for model in with_play if model.needs_shell]
     if not names or not any(joint.padded for joint in boom.joints):
         return ""
-    return (
-        f"Walls under pads are rigid in {join_words(map(repr, names))}. Shells, calibrated beams "
-        "and `check` include the compliance of these walls."
-    )
+    others = f", elastic in {join_words(elastic)}" if elastic else ""
+    return f"Walls under pads are rigid in {join_words(names)}{others}."
 
 
 def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:

@@ -408,18 +408,13 @@ def proof_table(result: Proofs, case: Case) -> Table:
     used = [f"{100.0 * one.utilisation:.3g} % {'✓' if one.holds else '✗'}" for one in proofs]
     columns = [
         Column("proof of", [fill(KINDS[one.kind].name, 12) for one in proofs]),
-        Column("place, x", [_lines(one.place) + x for one, x in zip(proofs, at, strict=True)]),
+        Column("place, x", [fill(one.place, 20) + x for one, x in zip(proofs, at, strict=True)]),
         Column("design\neffect", shown([one.demand for one in proofs])),
         Column("limit\nvalue", shown([one.resistance for one in proofs])),
         Column("utilis-\nation", used),
-        Column("combination,\nspectrum", [_lines(one.combination) for one in proofs]),
+        Column("combination,\nspectrum", [one.combination.replace(", ", ",\n") for one in proofs]),
     ]
     kinds = dict.fromkeys(one.kind for one in proofs)
     formulas = [f"{KINDS[kind].name.capitalize()}: {KINDS[kind].formula}." for kind in kinds]
     notes = [DEFINITION, *formulas, *result.notes]
     return Table("Proofs", columns, notes, "proofs", [one for one in used if "✗" in one])
-
-
-def _lines(text: str) -> str:
-    """Return a text with a new line after each comma."""
-    return text.replace(", ", ",\n")

@@ -179,7 +179,8 @@ class ModelSummary(SummaryTable):
         Metric("peak_contact_force", "N", "peak force of an impact", TO_KILO, "kN", charted=False),
     ]
     wall_time: Annotated[
-        float | None, Metric("", "s", "wall time", 1.0, "s", heading="wall time", form=".1f")
+        float | None,
+        Metric("", "s", "computing time", 1.0, "s", heading="computing time", form=".1f"),
     ] = None
     step_error: Annotated[
         FiniteNumber,

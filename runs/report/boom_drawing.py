@@ -318,8 +318,8 @@ def _remarks(case: Case, boom: Boom) -> Iterator[str]:
     if loose:
         yield f"play {_join_values(1e3 * joint.play for joint in loose)} mm"
     if boom.spatial:
-        sideways = (1e3 * (joint.lateral_play or 0.0) for joint in loose)
-        yield f"sideways {_join_values(sideways)} mm"
+        lateral = (1e3 * (joint.lateral_play or 0.0) for joint in loose)
+        yield f"lateral play {_join_values(lateral)} mm"
     if any(joint.friction for joint in loose):
         yield f"friction {_join_values(joint.friction for joint in loose)}"
     for base in case.base:

@@ -33,8 +33,8 @@ PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
 _STAGES = {"rows": "contacts and friction"}
 # Text for each error of the reduction of a shell.
 _REDUCTION_ERRORS = {
-    "contact_compliance": "reduction error of the local contact compliance {}",
-    "deflections": "of the deflections of tip and head {}",
+    "contact_compliance": "relative error of the reduction in the local contact compliance {}",
+    "deflections": "in the deflections of tip and heads {}",
     "frequency_limit_in_hz": "natural frequencies accurate up to {} Hz",
 }
 
@@ -129,6 +129,6 @@ def _costs(results: Results) -> Mapping[str, str]:
             if (error := model.reduction_errors.get(key)) is not None
         ]
         if error := model.mesh_error:
-            parts.append(f"mesh error of the local compliance {percent(error, 2)}")
+            parts.append(f"mesh error of the local contact compliance {percent(error, 2)}")
         costs[name] = ", ".join(parts)
     return costs

@@ -56,7 +56,7 @@ def first_contacts(run: FigureContext) -> list[Figure]:
     caption = (
         f"Contact force at each station, mean over {TO_MILLI * FORCE_WINDOW:g} ms"
         + ("" if run.stays_in_contact else " of many short impacts")
-        + ". Forces act on the outer segment, upwards where positive."
+        + ". Forces act on the outer segment, positive upwards, lateral ones towards larger y."
         + initial_position_note(run.case)
     )
     chart = Chart(run.time, "force (kN)", curves, stations, (0.0, end))
@@ -274,8 +274,8 @@ def stress_history(run: FigureContext) -> list[Figure]:
             for row in (row for row in rows if row.x == x):
                 color = theme.segment_color(segments.index(row.segment))
                 for largest, label, width in (
-                    (row.von_mises_patch, "patch mean", 1.8),
-                    (row.von_mises, "one triangle", 0.8),
+                    (row.von_mises_patch, "local plate stress", 1.8),
+                    (row.von_mises, "one element", 0.8),
                 ):
                     axes.plot(
                         time,
@@ -289,14 +289,14 @@ def stress_history(run: FigureContext) -> list[Figure]:
         fullest = max(panels, key=lambda axes: len(axes.lines))
         patch = max(max(row.von_mises_patch) for row in rows) * TO_MEGA
         title = (
-            f"{name}: local plate stress up to {number(patch)} MPa, in one triangle up to "
+            f"{name}: local plate stress up to {number(patch)} MPa, in one element up to "
             f"{number(stress.von_mises * TO_MEGA)} MPa"
         )
         caption = (
             f"Largest von Mises stress of {name!r} at either face within {stress.band:g} m of "
-            f"each station and support, in each interval of {run.time[-1] / time.size:.2g} s. "
-            "The local plate stress, a mean over a patch of half a wall, converges. "
-            "Beside a contact line the stress of one triangle grows with mesh refinement: use it "
+            "stations, supports, lugs and loads, in each interval of "
+            f"{run.time[-1] / time.size:.2g} s. The local plate stress converges with mesh "
+            "refinement. The stress of one element grows with it beside a contact line: use it "
             "only for place and time."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))

@@ -12,7 +12,7 @@ from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
 from runs.pipeline.metrics import metrics
 from runs.pipeline.results import Results
-from runs.pipeline.summary import CalibrationCard, FirstPeak, ModelSummary
+from runs.pipeline.summary import CalibrationCard, ModelSummary
 from runs.report.formatting import number, percent
 from runs.report.tables import Cell, Column, Table
 
@@ -40,7 +40,7 @@ def model_table(results: Results) -> Table:
     models = list(summary.models.values())
     failed = [model for model in results.case.models if model.name in summary.failures]
     freedom = [str(model.degrees_of_freedom) for model in models]
-    peaks = [_first_peak(model.first_peak["tip"], duration) for model in models]
+    peaks = [model.first_peak["tip"] for model in models]
     contacts = [model.first_contact for model in models]
     touching = 0.0 in contacts and not any(contacts)
     shares = SHARES if any(model.ensemble for model in models) else ()
@@ -57,7 +57,9 @@ def model_table(results: Results) -> Table:
         Column("peak contact force", [_peak_force(model) for model in models], ".3g", "kN"),
         *metric_columns(ModelSummary, models),
     )
-    notes = []
+    notes = ["Computing time: without compilation."]
+    if any(time is None for time, _ in peaks):
+        notes.append(f"First tip peak –: none within {duration:g} s.")
     if shares:
         notes.append(
             "Horizon: time at which the members of a model's ensemble differ by this fraction of "
@@ -65,8 +67,9 @@ def model_table(results: Results) -> Table:
         )
     if resolving := [model.resolving_step for model in models if _is_unresolved(model)]:
         notes.append(
-            "≥: the impact is shorter than six steps; the force is the largest mean over a step. "
-            f"time.step = {min(filter(None, resolving)):.1e} would resolve it."
+            "≥: the impact is shorter than six steps at its time, which may exceed the shortest "
+            "step; the force is the largest mean over a step. A constant step, time.step = "
+            f"{min(filter(None, resolving)):.1e}, would resolve it."
         )
     if any(model.peak_contact_force and model.contact_changes for model in models):
         notes.append(
@@ -124,9 +127,9 @@ def step_table(results: Results) -> Table:
         Column("contact changes", [model.contact_changes for model in models]),
     ]
     notes = [
-        "Step error: difference between the deflections with this step and with twice this step, "
-        "summed over windows of time. In chaotic motion no step size converges. Contact changes: "
-        "openings and closings."
+        "Step error: sum over windows of about a period of the slowest mode; each adds the largest "
+        "difference of its deflections from those with twice the step. In chaotic motion no step "
+        "size converges. Contact changes: openings and closings."
     ]
     tried = [model.steps_for_peaks for model in models]
     within = next((steps for steps in tried if steps), None)
@@ -164,7 +167,10 @@ def law_table(results: Results) -> Table:
         Column("law", [str(law) for _, _, law in laws], unit="k in N/mⁿ"),
         Column("first tip peak", peaks, ".1f", "mm"),
     )
-    notes = ["Force = k · penetrationⁿ, beyond the clearance of its side."]
+    notes = [
+        "k δⁿ is the force of all pads on one side of a station; δ is the displacement beyond the "
+        "clearance."
+    ]
     if not all(joint.pad or joint.pads for _, joint, _ in laws):
         notes.append(
             "Without slide pads, contact is at the corners of the boxes. Pads beside the "
@@ -176,24 +182,23 @@ def law_table(results: Results) -> Table:
 
 def lateral_peak_table(results: Results) -> Table | None:
     """Return the table of first tip peaks along z and along y; None for a planar boom."""
-    models, duration = results.summary.models, results.case.time.duration
-    reference = results.reference
+    models, reference = results.summary.models, results.reference
     if reference is None or "tip_lateral" not in models[reference].first_peak:
         return None
     columns = [Column("model", list(models))]
-    for place, way in (("tip", "up"), ("tip_lateral", "sideways")):
+    for place, way in (("tip", "vertical (z)"), ("tip_lateral", "lateral (y)")):
         peaks = [model.first_peak[place] for model in models.values()]
-        first_peaks = [_first_peak(peak, duration) for peak in peaks]
         other = models[reference].first_peak[place].height
         differences = [
             p.height / other - 1.0 if p.height is not None and other else None for p in peaks
         ]
         columns += [
-            Column(way, [time for time, _ in first_peaks], ".3f", "s"),
-            Column(way, [height for _, height in first_peaks], ".1f", "mm"),
+            Column(way, [time for time, _ in peaks], ".3f", "s"),
+            Column(way, [height for _, height in peaks], ".1f", "mm"),
             Column(f"{way}, difference from {reference}", differences, ".2g", "%"),
         ]
-    return Table("First peaks of the tip in space", columns, name="space")
+    notes = [f"–: no peak within {results.case.time.duration:g} s."]
+    return Table("First peaks of the tip in space", columns, notes, "space")
 
 
 def buckling_table(results: Results) -> Table | None:
@@ -211,14 +216,9 @@ def buckling_table(results: Results) -> Table | None:
     )
     notes = (
         "Buckling factor: multiple of the axial forces at which the boom with closed joints "
-        "buckles. The tip includes second-order effects.",
+        "buckles. The static tip deflection includes second-order effects.",
     )
     return Table("Axial forces", columns, notes, "axial")
-
-
-def _first_peak(peak: FirstPeak, duration: float) -> tuple[Cell, Cell]:
-    """Return time and height of the first peak, or a remark if there is none."""
-    return peak if peak.height is not None else ("no peak", f"within {duration:g} s")
 
 
 def wall_table(results: Results) -> Table:
@@ -241,10 +241,10 @@ def wall_table(results: Results) -> Table:
     )
     largest = [f"{name}: {_largest(results.boom, stress)}" for name, stress in shells.items()]
     means = (
-        "Means over the row of elements at x, on the side of the tip. Axial forces are positive "
-        "in tension. Shear forces act on the part towards the base, upwards in steep walls and "
-        "towards larger y in others; moments about the y-axis are "
-        "positive with tension at the top."
+        "Resultants of each wall in the row of elements next to x on the tip side, at the end of a "
+        "segment in the last row. Positive: axial force in tension; shear force on the part near "
+        "the base, upwards in walls steeper than 45°, towards larger y in others; moment about the "
+        "y-axis through the centroid of the whole section, with tension at the top."
     )
     title = "Section forces of walls at the instant of the largest stress"
     return Table.of_rows("walls", title, columns, rows, (*largest, means))
@@ -253,7 +253,7 @@ def wall_table(results: Results) -> Table:
 def _largest(boom: Boom, stress: StressSummary) -> str:
     """Return a text on the largest stresses: mean over a patch, and in a single triangle."""
     triangle = (
-        f"single element, which grows with mesh refinement beside a line of contact: "
+        f"single element, no design value: "
         f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_yield_utilisation(boom, stress)} at "
         f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
         f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."
@@ -261,10 +261,10 @@ def _largest(boom: Boom, stress: StressSummary) -> str:
     if (patch := stress.patch) is None:
         return f"largest von Mises stress of a {triangle}"
     return (
-        "largest von Mises stress over a patch of half a wall, which converges with mesh "
-        "refinement: "
+        "largest local plate stress: "
         f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_yield_utilisation(boom, patch)} near "
-        f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; of a {triangle}"
+        f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; largest "
+        f"von Mises stress of a {triangle}"
     )
 
 

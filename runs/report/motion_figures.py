@@ -31,7 +31,7 @@ DISSIPATED = (0.75, 0.45, 0.2)
 
 
 # Direction of each tip displacement in titles and captions.
-DIRECTIONS = {"tip": "", "tip_lateral": ", lateral"}
+DIRECTIONS = {"tip": "", "tip_lateral": ", lateral (y)"}
 
 
 def tip(run: FigureContext) -> list[Figure]:
@@ -181,11 +181,12 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
     if not run.with_play or run.stays_in_contact:
         return ""
     if run.ensembles is None or place not in run.ensembles:
-        if run.regular or run.ensembles is not None:
+        if run.regular or run.ensembles is not None or place != run.tips[0]:
             return ""
         return (
-            " After the first contacts, motion with play may be chaotic: then a curve is one of "
-            "many possible motions. An ensemble shows whether it is chaotic."
+            " After the first contacts, motion with play may be chaotic: then all curves are one "
+            "of many possible motions. An ensemble of motions with slightly different data (table "
+            "`ensemble`) shows whether the motion is chaotic."
         )
     low, high = BAND
     band = (
@@ -327,8 +328,8 @@ def residuals(run: FigureContext) -> list[Figure]:
     axes.set_yscale("log")
     axes.set(xlabel="time (s)", ylabel="residual / maximum work (–)", xlim=(0.0, run.time[-1]))
     caption = (
-        "Kinetic, strain and contact energy plus losses less the work of the loads, divided by "
-        "the largest work; running maximum. Without contact it is round-off."
+        "Energy residual: (kinetic + strain + contact energy + losses − initial energy − work) / "
+        "largest work; running maximum of its magnitude."
     )
     title = f"Energy residual: up to {scientific(highest(worst), 2)} of the work"
     return [run.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]

@@ -430,7 +430,7 @@ def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array)
     sheet.ring(float(x), float(y), largest)
     segment = scene.boom.segments[int(scene.segment[triangle])]
     place = f"x = {view.stress.centroids[triangle][0]:.2f} m ({segment.name})"
-    return f"circle: smoothed maximum {largest}, {place}"
+    return f"circle: nodal average {largest}, {place}"
 
 
 def _coarse_mesh_caution(view: OverlapView) -> str:

@@ -70,17 +70,17 @@ def at_rest(run: FigureContext) -> list[Figure]:
     if bonded and not rests.keys() & set(run.bonded):
         lines["without play"] = rest_lines(bonded[0], "without play", theme.PLAY_FREE)
     caption = (
-        "Static state under the maximum load: deflection and section forces. Positive normal "
-        "forces are tension, positive moments give tension at the top. In an overlap each segment "
-        "has its own curve."
+        "Static state with the farthest tip: deflection and section forces. Positive: normal force "
+        "in tension, shear force upwards on the part towards the base, moment with tension at the "
+        "top. In an overlap each segment has its own curve."
         + initial_position_note(run.case)
         + extension_note(run.case, rests.values())
     )
-    far = max(rests.values(), key=lambda rest: abs(rest.tip))
+    name, far = max(rests.items(), key=lambda item: abs(item[1].tip))
     tips = [f"{TO_MILLI * far.tip:.1f} mm"]
-    tips += [f"laterally at {TO_MILLI * far.tip_lateral:.1f} mm"] if far.tip_lateral else []
+    tips += [f"lateral {TO_MILLI * far.tip_lateral:.1f} mm"] if far.tip_lateral else []
     tip = with_minus_signs(", ".join(tips))
-    title = f"Static deflection under the maximum load: the tip at {tip}"
+    title = f"Static state under the loads at {far.time:g} s: tip at {tip} in {name}"
     return _draw_panels(run, lines, "at-rest", title, caption)
 
 
@@ -103,8 +103,8 @@ def envelopes(run: FigureContext) -> list[Figure]:
         for name, several in envelopes_of_models.items()
     }
     caption = (
-        "Minimum and maximum of the section forces over the run, along each segment."
-        + initial_position_note(run.case)
+        "Minimum and maximum of the section forces over the run, along each segment; signs as in "
+        "the figure of the static state." + initial_position_note(run.case)
     )
     return _draw_panels(run, lines, "envelopes", "Section forces in motion", caption)
 

@@ -62,7 +62,10 @@ def play_table(results: Results) -> Table | None:
         Column("play adds", added),
         Column("", [None if is_negligible(one) else one.share for one in rows], ".3g", "%"),
     )
-    notes = ("Absolute values.",)
+    notes = (
+        "Magnitudes, and the difference of the magnitudes. Forces, moments, reactions and stresses "
+        "are maxima of the motion.",
+    )
     return Table(f"Effect of play: {effect.model}", columns, notes, "play")
 
 
@@ -89,7 +92,7 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
         Column("resulting tip deflection", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
     )
     note = "The rotation is due to play and contact compliance, in a shell also to wall compliance."
-    title = "Static state under the maximum load: rotation of joints by play and local compliance"
+    title = "Static state with the farthest tip: rotation of joints by play and local compliance"
     return Table(title, columns, (note + as_extended,), "tilts")
 
 
@@ -100,8 +103,8 @@ def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
         forces = {one.place: one.force for one in rest.stations}
         if forces:
             columns.append(Column(name, [forces.get(place) for place in places], ".4g", "kN"))
-    note = "Forces at stations, on the outer segment, positive upwards or towards larger y."
-    title = "Static state under the maximum load: contact forces"
+    note = "Forces on the outer segment, positive upwards, lateral ones towards larger y."
+    title = "Static state with the farthest tip: contact forces"
     return Table(title, columns, (note + as_extended,), "pressed")
 
 
@@ -110,16 +113,21 @@ def _reaction_table(results: Results) -> Table:
     reactions = design.reactions
     bonded = {(one.segment, one.x): one.force for one in design.reactions_bonded}
     beside = [bonded.get((one.segment, one.x)) for one in reactions]
+    lugs = {(results.boom.segments[one.segment].name, one.x) for one in results.boom.cylinders}
+    kinds = ["lug" if (one.segment, one.x) in lugs else "support" for one in reactions]
+    places = [
+        f"{kind}, {one.segment} at {one.x:g} m" for kind, one in zip(kinds, reactions, strict=True)
+    ]
     columns = (
-        Column("support", [f"{one.segment} at {one.x:g} m" for one in reactions]),
+        Column("support or cylinder lug", places),
         Column("transverse force", [one.force for one in reactions], ".4g", "kN"),
         *_force_column("axial force", [one.along for one in reactions], ".4g", "kN"),
         *_force_column("moment", [one.moment for one in reactions], ".3g", "kN m"),
         Column("transverse force,\nwithout play", beside, ".4g", "kN"),
     )
     notes = (
-        "Beam elements under the loads at t = 0. Transverse forces are positive towards the upper "
-        "side of the boom, axial forces towards the tip.",
+        "By beam elements. On the boom, forces are positive towards its upper side and the tip, "
+        "moments where they turn the tip upwards.",
     )
     return Table("Static state at t = 0: support reactions", columns, notes, "reactions")
 
@@ -336,8 +344,9 @@ def pad_table(results: Results) -> Table:
         Column("utilisation", [pad.utilisation for pad in pads], ".0f", "%"),
     )
     note = (
-        "Largest force of one pad during the motion. Pads of one side of a station share its force "
-        "in proportion to their stiffness, pads of a pair evenly; the pressure is uniform."
+        "Largest force of one pad during the motion. The pads on one side of a station share the "
+        "force of the station in proportion to their stiffness, the pads of a pair evenly; the "
+        "pressure is uniform."
     )
     return Table("Slide pads", columns, (note,), "pads")
 
@@ -363,9 +372,8 @@ def stress_table(results: Results) -> Table:
         ("its utilisation", ".3g", "%"),
     )
     notes = (
-        "Bending stress: axial stress in an outer fibre, from section forces. Local plate stress: "
-        "von Mises stress with plate bending, mean over a patch of half a wall near pads, other "
-        "contacts and supports. Utilisations are fractions of the yield strength.",
+        "Bending stress: axial stress in an outer fibre, from section forces. Utilisations are "
+        "fractions of the yield strength.",
     )
     return Table.of_rows(
         "stress", "Bending stress and local plate stress", columns, rows, notes, sparse=True
@@ -398,7 +406,7 @@ def buckling_table(results: Results) -> Table:
         ("panel at x", ".4g", "m"),
     )
     notes = (
-        "Factor of all loads at which a wall buckles, in the static state under the maximum load; "
+        "Factor of all loads at which a wall buckles, in the static state with the farthest tip; "
         "walls are elastic and flat. Shell: pads included; extrapolated from two meshes, of which "
         "the finer one has the mesh error. Panel formulas: long, simply supported walls without "
         "pads.",

@@ -224,7 +224,7 @@ def place_of_largest_force(views: Sequence[Scene], time: float) -> str:
     """Return the location of the largest force at a time in s as text; empty for one station."""
     scene = views[0]
     places = [
-        (f"joint {number}{' sideways' if seen.from_above else ''}", overlap.stations)
+        (f"joint {number}{', lateral' if seen.from_above else ''}", overlap.stations)
         for seen in views
         for number, overlap in enumerate(seen.overlaps, start=1)
     ]
@@ -346,8 +346,8 @@ def describe_one(results: Results, path: Path) -> Figure:
     if name == ANIMATION:
         last = _film_end(motion, CranePosition.of(results.case, results.boom, motion))
         caption = (
-            f"The first {last:g} s of {model!r}, in {SHOWN:g} s. Colours and magnification as in "
-            "the pictures of the boom."
+            f"Animation of the first {last:g} s of {model!r}, shown in {SHOWN:g} s. "
+            "Colours and magnification as in the pictures of the boom."
         )
         return Figure(path, f"Boom in motion, first {last:g} s", caption)
     if mode := _BUCKLING.fullmatch(name):
@@ -359,34 +359,34 @@ def describe_one(results: Results, path: Path) -> Figure:
         return Figure(path, f"Buckling of {segment}", caption)
     seen = _NAME.fullmatch(name.removesuffix(path.suffix))
     assert seen is not None, f"{path.name} is not a snapshot's name"
-    above, aside = (", seen from above", " sideways") if seen["above"] else ("", "")
+    above, aside = (", seen from above", " (lateral)") if seen["above"] else ("", "")
     if above:
         motion = motion.assign(tip=motion["tip_lateral"])
-    when, tip = _instant(seen["when"], motion)
-    state = f"{model!r}{above}: {when}{tip}" + (", lateral" if above and tip else "")
+    when, state = _instant(seen["when"], motion, "lateral tip" if above else "tip")
+    state = f"{model!r}{above}, {state}"
     which = f" of joint {seen['joint']}" if seen["joint"] else ""
+    joint = results.case.joints[int(seen["joint"] or 1) - 1] if seen["view"] != "boom" else None
+    pair = f"overlap of {joint.inner!r} in {joint.outer!r}" if joint else ""
     title, caption = {
         "boom": (
             "Boom",
-            f"The boom of {state}. Colour: magnitude of deflection{aside}; grey: undeformed; "
+            f"Boom in {state}. Colour: magnitude of deflection{aside}; grey: undeformed; "
             "symbols: supports, cylinders, masses and loads. Displacements and play are magnified "
             "by the factor above the picture.",
         ),
         "stress": (
             f"Stress at the overlap{which}",
-            f"Von Mises stresses of {state}. Above: the whole boom; below: the "
-            f"overlap{which}, cut open. The larger value of both faces, averaged over the "
-            f"elements of a wall around each point; values beyond the end of the scale have its "
-            f"darkest colour. Beside a line of contact they grow with mesh refinement; "
-            f"utilisations use means over a patch of half a wall, which converge and are in the "
-            f"tables. "
-            "Displacements and play are magnified by the factors above the picture.",
+            f"Von Mises stresses in {state}. Upper picture: whole boom; lower picture: "
+            f"{pair}, cut open. Colours and circle: nodal averages of the larger value of both "
+            "faces. They grow with mesh refinement beside a line of contact: no design values, "
+            "unlike the local plate stress in the tables. Values beyond the end of the scale have "
+            "its darkest colour. The factors above the picture magnify displacements and play.",
         ),
         "overlap": (
             f"Overlap{which}",
-            f"The overlap{which} of {state}, cut open. Blue: outer segment; orange: inner one; "
-            "arrows: forces of the inner one on the outer one. Play, and displacements relative "
-            "to the outer segment, are magnified by the factor above the picture.",
+            f"In {state}: {pair}, cut open. Blue: outer segment; orange: inner one; arrows: forces "
+            "of the inner one on the outer one. The factor above the picture magnifies play and "
+            "displacements relative to the outer segment.",
         ),
     }[seen["view"]]
     if lines[model] == "surface" and seen["view"] != "boom":
@@ -394,16 +394,24 @@ def describe_one(results: Results, path: Path) -> Figure:
     return Figure(path, f"{title}{above}: {when}", caption)
 
 
-def _instant(name: str, motion: xr.Dataset) -> tuple[str, str]:
-    """Return two texts on a picture: its event, and the tip deflection at its time."""
+def _instant(name: str, motion: xr.Dataset, tip_name: str) -> tuple[str, str]:
+    """Return two texts on the instant of a picture: for its title, and with the tip's deflection.
+
+    Args:
+        name: name of the instant in the file name.
+        motion: trajectories of the model; ``tip`` is the displayed deflection.
+        tip_name: name of this deflection.
+    """
     event = TITLES.get(name, name.replace("-", " "))
     instants = characteristic_instants(motion)
     if name in instants:
-        time, when = instants[name], f"{event} at {instants[name]:.3f} s"
+        time = instants[name]
     elif _GIVEN.fullmatch(name):
         time = float(name.removesuffix("s"))
-        when = f"{time:.3f} s"
     else:
-        return event, ""
-    tip = float(motion["tip"].sel(time=time, method="nearest"))
-    return when, f", the tip at {with_minus_signs(f'{TO_MILLI * tip:+.1f}')} mm"
+        return event, f"at the {event}"
+    deflection = float(motion["tip"].sel(time=time, method="nearest"))
+    tip = f"{tip_name} {with_minus_signs(f'{TO_MILLI * deflection:+.1f}')} mm"
+    if name in instants:
+        return f"{event} at {time:.3f} s", f"at the {event} ({time:.3f} s, {tip})"
+    return f"{time:.3f} s", f"at {time:.3f} s ({tip})"

@@ -23,6 +23,7 @@ from runs.report.figure_context import farthest, tip_directions
 from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
 from runs.report.result_tables import is_negligible, times
 from runs.report.tables import Column, Table
+from shell_model.stress.history import BAND
 
 # Higher utilisations are highlighted.
 NEAR = 0.9
@@ -74,15 +75,16 @@ def summary_table(results: Results) -> Table | None:
     dynamic = [*map(_farthest, designs, tips)]
     travel = [farthest(x - x[0]) if x[0] else None for x in tips]
     bending, plates = ([one and _stress(one) for one in several] for several in (fibres, walls))
+    z, lateral = ", vertical (z)" if results.boom.spatial else "", "Static lateral tip deflection"
     rows_of_models = (
         Column("Static tip deflection (t = 0)", at_start, ".1f", "mm"),
         Column("Static tip deflection (maximum load)", at_most, ".1f", "mm"),
         Column("Static tip deflection (end of telescoping)", extended, ".1f", "mm"),
         Column("Maximum dynamic tip deflection (factor φ)", dynamic, unit="mm"),
         # A motion that starts undeformed is not in static equilibrium at t = 0.
-        Column("Tip travel from t = 0", travel, ".1f", "mm"),
+        Column(f"Tip travel from t = 0{z}", travel, ".1f", "mm"),
         Column("Residual vibration of the tip", [_vibration(one) for one in designs], unit="mm"),
-        Column("Static lateral tip deflection", [one or None for one in aside], ".1f", "mm"),
+        Column(f"{lateral} (maximum load)", [one or None for one in aside], ".1f", "mm"),
         Column("Lateral tip deflection, maximum", _each(designs, "lateral deflection"), unit="mm"),
         Column("First natural frequency", hertz, ".3g", "Hz"),
         Column("Period of the motion (time history)", periods, ".3g", "s"),
@@ -125,7 +127,9 @@ def deviation_note(results: Results) -> str:
     if not deviations:
         return ""
     behind = [name for name in results.summary.models if name not in results.main_models]
-    more = f" Tables and figures below include {join_words(map(repr, behind))}." if behind else ""
+    shown = [one for one in results.completed_models if one.name in behind]
+    others = [f"{one.name!r} ({one.kind}, {one.describe()})" for one in shown]
+    more = f" Some tables and figures also show {join_words(others)}." if others else ""
     return (
         f"Deviation of the static tip deflection (maximum load) from {reference}: "
         f"{', '.join(deviations)}.{more}"
@@ -142,14 +146,16 @@ def play_effect(results: Results) -> str:
         by_kind.setdefault(each.what, []).append(each)
     first = {what: max(several, key=lambda one: one.with_play) for what, several in by_kind.items()}
     kinds = [(_PHRASES[what], one) for what, one in first.items() if what in _PHRASES]
-    more = [f"{_more(one)} to {what}" for what, one in kinds if not is_negligible(one)]
+    changed = [(what, one) for what, one in kinds if not is_negligible(one)]
+    more = [f"{_change(one)} to {what}" for what, one in changed if one.increase > 0.0]
+    less = [f"{what} by {_change(one)}" for what, one in changed if one.increase <= 0.0]
     same = [what for what, one in kinds if is_negligible(one)]
-    sentences = [f"Play adds {join_words(more)}."] if more else []
-    sentences += [f"It hardly changes {join_words(same)}."] if same else []
+    parts = [(more, "adds"), (less, "reduces"), (same, "hardly changes")]
+    sentences = [f"Play {verb} {join_words(several)}." for several, verb in parts if several]
     frequency = first.get("first frequency")
     if frequency is not None and frequency.bonded and not is_negligible(frequency):
         both = f"from {amount(frequency.bonded, 'Hz')} to {amount(frequency.with_play, 'Hz')}"
-        sentences.append(f"It changes the first frequency {both}.")
+        sentences.append(f"Play changes the first frequency {both}.")
     return " ".join(sentences)
 
 
@@ -165,7 +171,8 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
         return ""
     governing.sort(key=lambda one: one.value or 0.0, reverse=True)
     used = "; ".join(map(str, governing))
-    return f"Utilisation {used}. No safety factor is included.{_missing_strengths(results, model)}"
+    missing = _missing_strengths(results, model)
+    return f"In this run, without safety factors, the utilisation is {used}.{missing}"
 
 
 def _missing_strengths(results: Results, model: str) -> str:
@@ -184,11 +191,11 @@ _PHRASES = {
 }
 
 
-def _more(one: PlayDifference) -> str:
+def _change(one: PlayDifference) -> str:
     share = (
         "" if one.share is None else f" ({with_minus_signs(f'{TO_PERCENT * one.share:+.0f}')} %)"
     )
-    return f"{amount(one.increase, one.unit)}{share}"
+    return f"{amount(abs(one.increase), one.unit)}{share}"
 
 
 def governing_pads(results: Results) -> dict[str, PadLoad]:
@@ -242,8 +249,14 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     yield f"{'; '.join(described)}."
     yield "Tip: deflection perpendicular to the axis of the unloaded boom."
+    yield "Maximum load: largest value over the static states at the extremes of the loads in time."
+    if not all(joint.bonded for joint in results.boom.joints):
+        yield (
+            "Station: place x where two segments may touch; the centre of a pad at the end of the "
+            "overlap lies half its length inside."
+        )
     yield from filter(None, [rigid_wall_note(models, results.boom)])
-    if "Tip travel from t = 0, mm" in rows:
+    if any(title.startswith("Tip travel") for title in rows):
         yield "Tip travel: largest displacement of the tip from its position at t = 0."
     if any("×" in cell for cells in rows.values() for cell in cells):
         extended = ", at any extension" if results.case.driven_segments else ""
@@ -277,15 +290,15 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         yield f"Stresses: % of the yield strength, {strengths}."
     if "Local plate stress, maximum (utilisation), MPa" in rows:
         yield (
-            "Local plate stress: von Mises stress with plate bending, mean over a patch of half a "
-            "wall near pads, other contacts and supports."
+            "Local plate stress: von Mises stress with plate bending, mean over half the width of "
+            f"a wall, within {BAND:g} m of a station or support along x."
         )
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
-            f"Stresses of single elements beside contact lines are larger ({join_words(most)}) and "
-            "grow with mesh refinement; the table of section forces of walls gives their positions."
+            f"Stresses of single elements are larger ({join_words(most)}; positions: notes of the "
+            "section forces of walls). They grow with mesh refinement: no design values."
         )
 
 
@@ -348,8 +361,8 @@ def limit_table(results: Results) -> Table | None:
     ]
     first = results.main_models[0]
     notes = [
-        f"The limits apply to {first}, or to the next model if {first} has no value. Results are "
-        "those of the run; proofs compare the combinations with the limits."
+        f"The limits apply to this run of {first}, or of the next model if {first} has no value. "
+        "`protractile prove` compares the combinations with them."
     ]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 

@@ -153,7 +153,7 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
         for one in segment_table.masses:
             yield _mass(index, at(one.x, *segment.ends), f"mass, {number(one.mass, 4)} kg")
     if case.payload is not None:
-        payload = f"payload, {number(case.payload.mass, 4)} kg"
+        payload = f"mass at the tip, {number(case.payload.mass, 4)} kg"
         yield _mass(len(boom.segments) - 1, boom.tip, payload)
     names = [segment.name for segment in boom.segments]
     for table in case.loads:
@@ -225,14 +225,11 @@ def _force(
     size = abbreviate(abs(value), unit)
     if direction == "y":
         sign = AWAY if value > 0.0 else TOWARDS
-        return Symbol("loads", index, places, 0.0, sign, f"{size} sideways{how}")
-    if value > 0.0:
-        return Symbol(
-            "loads", index, places, "bottom", FORCE_UP, f"{size} up, perpendicular to the boom{how}"
-        )
-    return Symbol(
-        "loads", index, places, "top", FORCE_DOWN, f"{size} down, perpendicular to the boom{how}"
-    )
+        return Symbol("loads", index, places, 0.0, sign, f"{size} lateral{how}")
+    edge: Edge = "bottom" if value > 0.0 else "top"
+    sign, side = (FORCE_UP, "upper") if value > 0.0 else (FORCE_DOWN, "lower")
+    meaning = f"{size} perpendicular to the boom, towards its {side} side{how}"
+    return Symbol("loads", index, places, edge, sign, meaning)
 
 
 def _history(table: HistoryTable) -> str:

@@ -5,11 +5,13 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from html import escape
 from itertools import zip_longest
 from pathlib import Path
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 from rich.box import SIMPLE_HEAD
@@ -28,6 +30,8 @@ if TYPE_CHECKING:
 # Characters per line in the report, on a telephone, and in a file.
 ROOMY, NARROW = 115, 40
 WIDE = 180
+# Spaces at which no line breaks, for example between a number and its unit.
+_KEPT_SPACE = re.compile(r"(?<=\d) (?=[^\W\d]{1,3}\b|[%×])|(?<=×) (?=\d)|(?<=[=≤≥]) (?=[−\d])")
 
 # Conversion factors from SI units to units of headings; all other units are SI units.
 _FACTORS = {"%": TO_PERCENT, "mm": TO_MILLI, "mrad": TO_MILLI, "ms": TO_MILLI, "µs": TO_MICRO}
@@ -248,7 +252,7 @@ class Table:
             grid.padding = 0
         console.print(grid)
         for note in self.notes:
-            console.print(Text(note))
+            print_text(console, note)
 
     def _repr_html_(self) -> str:
         import pandas as pd
@@ -265,6 +269,13 @@ class Table:
         return "\n".join(
             [f"## {self.title}", "", *lines, "", *(f"{note}\n" for note in self.notes)]
         )
+
+
+def print_text(console: Console, text: str) -> None:
+    """Print a text in lines that keep numbers and their units together."""
+    kept = _KEPT_SPACE.sub("\N{NO-BREAK SPACE}", text)
+    lines = fill(kept, console.width, break_on_hyphens=False)
+    console.print(Text(lines.replace("\N{NO-BREAK SPACE}", " ")))
 
 
 def as_json(data: Any) -> str:

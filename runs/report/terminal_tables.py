@@ -26,7 +26,7 @@ from runs.report.summary_table import (
     play_effect,
     utilisation_verdict,
 )
-from runs.report.tables import Cell, Column, Table
+from runs.report.tables import Cell, Column, Table, print_text
 
 # Terminal headings of columns of the table of models, by their headings in the report.
 SHOWN = {
@@ -35,8 +35,8 @@ SHOWN = {
     "first contact\ns": "first contact\ns",
     "first tip peak\ns": "first tip peak\ns",
     "first tip peak\nmm": "peak\nmm",
-    "energy residual\nof the work": "energy\nresidual",
-    "wall time\ns": "time\ns",
+    "energy residual\nof the work": "energy residual\nof the work",
+    "computing time\ns": "computing\ntime, s",
 }
 
 
@@ -79,7 +79,7 @@ def print_models(results: Results, console: Console) -> None:
     skipped = results.summary.snapshots.skipped
     missing = [] if skipped is None else [f"no snapshots: {skipped}"]
     for line in (*_model_notes(results), *missing, *results.summary.cautions):
-        console.print(line, markup=False, highlight=False)
+        print_text(console, line)
 
 
 def print_results(results: Results, console: Console) -> None:
@@ -92,8 +92,7 @@ def print_results(results: Results, console: Console) -> None:
     for table in (*filter(None, tables), *record_tables(results), *largest):
         table.show(console)
     for line in filter(None, (play_effect(results), utilisation_verdict(results))):
-        text = f"{results.main_models[0]}: {line[0].lower()}{line[1:]}"
-        console.print(text, markup=False, highlight=False)
+        print_text(console, f"{results.main_models[0]}: {line[0].lower()}{line[1:]}")
 
 
 def result_table(results: Results) -> Table:
@@ -150,8 +149,9 @@ def _model_notes(results: Results) -> Iterator[str]:
     for name, model in results.summary.models.items():
         if errors := model.reduction_errors:
             yield (
-                f"{name}: {model.modes} generalised coordinates. Reduction errors: local contact "
-                f"compliance {number(errors['contact_compliance'], 1)}, deflections of tip and "
-                f"head {number(errors['deflections'], 1)}. Mesh error of the local compliance: "
-                f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}"
+                f"{name}: {model.modes} generalised coordinates. Relative errors of the reduction: "
+                f"local contact compliance {number(errors['contact_compliance'], 1)}, deflections "
+                f"of tip and heads {number(errors['deflections'], 1)}. Mesh error of the local "
+                "contact compliance: "
+                f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}."
             )

@@ -219,7 +219,10 @@ def test_run_reports_its_drive(tmp_path: Path) -> None:
     assert [c.cells for c in table.columns] == [["kantorovich-5"], *([value] for value in told)]
     drawn = {figure.path.stem: figure for figure in draw(results, tmp_path)}
     # By hand, the play's lever, and elements: 7 mm of bending.
-    assert drawn["at-rest"].title == "Static deflection under the maximum load: the tip at 140.4 mm"
+    assert (
+        drawn["at-rest"].title
+        == "Static state under the loads at 0.2 s: tip at 140.4 mm in kantorovich-5"
+    )
     assert "Extension as at 0.2 s." in drawn["at-rest"].caption
     assert drawn["drive"].title.startswith("Drive of inner: up to ")
     assert "work of loads and drives" in drawn["energies"].caption

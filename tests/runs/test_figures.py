@@ -109,7 +109,7 @@ def test_draws_each_figure_as_png(everything: Everything) -> None:
     ]  # fmt: skip
     assert sorted(figures[0].path.parent.iterdir()) == sorted(f.path for f in figures)
     # Of motions without friction under given normal forces a curve is a sample.
-    assert sum("possible motions" in figure.caption for figure in figures) == 2
+    assert sum("possible motions" in figure.caption for figure in figures) == 1
     for figure in figures:
         pixels = image.imread(figure.path)
         assert pixels.shape[1] == round(theme.WIDTH * SMALL)

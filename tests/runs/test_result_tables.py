@@ -106,8 +106,8 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
     ]
     told = answering(results, play=[PlayEffect(PLAYED, numbers)])
     assert play_effect(told) == (
-        "Play adds 50 mm (+50 %) to the static tip deflection (maximum load) and 20 MPa "
-        "(+20 %) to the maximum bending stress. It changes the first frequency from 2 Hz to 1.5 Hz."
+        "Play adds 50 mm (+50 %) to the static tip deflection (maximum load) and 20 MPa (+20 %) to "
+        "the maximum bending stress. Play changes the first frequency from 2 Hz to 1.5 Hz."
     )
     rows = cells(play_table(told))
     assert rows["bending stress, inner"]["play adds"] == "−10 MPa"
@@ -120,9 +120,12 @@ def test_tables_of_rest_name_their_loads(results: Results) -> None:
     """Reference: by hand. The moment of a hinge is round-off, compared with 5 kN m of a clamp."""
     bears = [Reaction("outer", x, 1e3, m, None) for x, m in ((0.0, 5e3), (3.0, 1.6e-7))]
     tables = rest_tables(answering(results, reactions=bears))
-    titles = 2 * ["Static state under the maximum load"] + ["Static state at t = 0"]
+    titles = 2 * ["Static state with the farthest tip"] + ["Static state at t = 0"]
     assert [table.title.partition(":")[0] for table in tables] == titles
     assert [row[2] for row in tables[-1].rows] == ["5", "0"]
+
+
+USED = "In this run, without safety factors, the utilisation is"
 
 
 def with_stress(results: Results, stress: float) -> Results:
@@ -152,9 +155,9 @@ def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> 
     """Reference: by hand, as above. Without a yield strength there is no verdict."""
     assert utilisation_verdict(results) == ""
     assert utilisation_verdict(with_stress(results, 340e6)) == (
-        "Utilisation 105 % by local plate stress (outer segment, x = 10 m): exceeds yield; 95.8 % "
-        "by bending stress (outer segment, x = 2 m): below yield. No safety factor is included. No "
-        "yield strength is given of outer and inner."
+        f"{USED} 105 % by local plate stress (outer segment, x = 10 m): exceeds yield; 95.8 % by "
+        "bending stress (outer segment, x = 2 m): below yield. No yield strength is given of outer "
+        "and inner."
     )
 
 
@@ -165,12 +168,12 @@ def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
     steel = change(results.case, **{"material.yield_strength": 355e6})
     told = with_stress(replace(results, case=steel), 300e6)
     unpressed, known = replace(pad, force=0.0, pressure=0.0), replace(pad, utilisation=1.35)
-    plate, factor = "Utilisation 93 % by local plate stress", "No safety factor is included."
+    plate, below = f"{USED} 93 % by local plate stress", "below yield."
     where = "(inner segment, x = 10 m): exceeds the allowable pressure"
     for one, start, end in (
         (pad, plate, "No allowable pressure is given of pads of inner."),
-        (unpressed, plate, factor),
-        (known, f"Utilisation 135 % by pad pressure {where}", factor),
+        (unpressed, plate, below),
+        (known, f"{USED} 135 % by pad pressure {where}", below),
     ):
         found = replace(told, summary=told.summary.model_copy(update={"pads": [one]}))
         assert utilisation_verdict(found).startswith(start)
@@ -182,11 +185,11 @@ def test_exhausted_fatigue_life_exceeds_the_limit(results: Results) -> None:
     life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
     told = answering(results, own={"life": [life]})
     assert utilisation_verdict(told) == (
-        "Utilisation 320 % by fatigue damage (inner segment, x = 10 m): exceeds the fatigue life. "
-        "No safety factor is included. No yield strength is given of outer and inner."
+        f"{USED} 320 % by fatigue damage (inner segment, x = 10 m): exceeds the fatigue life. No "
+        "yield strength is given of outer and inner."
     )
     terminal = printed(print_results, told, width=250).splitlines()
-    assert terminal[-1].startswith(f"{PLAYED}: utilisation 320 % by fatigue damage")
+    assert terminal[-1].startswith(f"{PLAYED}: i{USED[1:]} 320 % by fatigue damage")
     table = summary_table(told)
     assert list(table.strong) == ["3.2"]
     assert cells(table)["Fatigue damage (Miner)"][PLAYED] == "3.2"

@@ -140,7 +140,7 @@ def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
 
 @pytest.mark.parametrize(
     ("station", "place"),
-    [(1, " (joint 1)"), (2, " (joint 2)"), (4, " (joint 1 sideways)"), (8, " (a stop)")],
+    [(1, " (joint 1)"), (2, " (joint 2)"), (4, " (joint 1, lateral)"), (8, " (a stop)")],
 )
 def test_of_several_joints_the_pressed_one_is_named(
     in_space: list[Scene], station: int, place: str
@@ -312,8 +312,8 @@ def test_unequal_walls_are_labelled() -> None:
 def test_drawing_of_a_lift_labels_every_part() -> None:
     """Reference: the case file."""
     assert legend(drawn("lift")) == [
-        "slide pads", "support", "cylinder, 30 MN/m", "payload, 150 kg",
-        "1.595 kN down, perpendicular to the boom, ramp of 0.1 s", "play 3 mm",
+        "slide pads", "support", "cylinder, 30 MN/m", "mass at the tip, 150 kg",
+        "1.595 kN perpendicular to the boom, towards its lower side, ramp of 0.1 s", "play 3 mm",
         "self-weight, g = 9.807 m/s²",
     ]  # fmt: skip
 
@@ -321,8 +321,8 @@ def test_drawing_of_a_lift_labels_every_part() -> None:
 def test_boom_in_space_shows_lateral_loads() -> None:
     """Reference: the case file. The largest factor of its gust is 1."""
     found = legend(drawn("inspection-arm"))
-    assert "sideways 4 mm" in found
-    assert any("N/m sideways at most, root" in text for text in found)
+    assert "lateral play 4 mm" in found
+    assert any("N/m lateral at most, root" in text for text in found)
 
 
 @pytest.mark.parametrize("name", ["paper", "crane", "three-segments"])
@@ -344,12 +344,12 @@ def test_a_force_down_points_down() -> None:
     """Reference: the loaded point; on an upright boom forces come from the left, loads hang."""
     case = shipped("crane")
     acts = {symbol.meaning: symbol for symbol in boom_symbols(case, build_boom(case))}
-    load_across = acts["24.52 kN down, perpendicular to the boom, ramp of 0.5 s"]
+    load_across = acts["24.52 kN perpendicular to the boom, towards its lower side, ramp of 0.5 s"]
     (_, tail), (_, head) = load_across.rotated(0.0).vertices[:2]
     assert tail > head == 0.0
     (x, z), _ = load_across.rotated(90.0).vertices[:2]
     assert (x, z) == pytest.approx((-1.0, 0.0), abs=1e-12)
-    payload = acts["payload, 350 kg"]
+    payload = acts["mass at the tip, 350 kg"]
     assert payload.rotated(60.0) is PAYLOAD
 
 

@@ -183,10 +183,8 @@ def results(stress: dict[str, Any] | None) -> Results:
 def test_stress_figure_states_maximum_and_limits(tmp_path: Path) -> None:
     with matplotlib.rc_context(theme.RC):
         (figure,) = stress_history(FigureContext(results(STRESS), tmp_path))
-    assert figure.title == (
-        "shell: local plate stress up to 31 MPa, in one triangle up to 91.6 MPa"
-    )
-    assert "grows with mesh refinement" in figure.caption
+    assert figure.title == ("shell: local plate stress up to 31 MPa, in one element up to 91.6 MPa")
+    assert "converges with mesh refinement" in figure.caption
     with Image.open(figure.path) as image:
         image.verify()
 

@@ -122,7 +122,10 @@ class Shell(ModelTable):
         return super().cannot_telescope
 
     def describe(self) -> str:
-        places = {"near webs": "at pads, else near webs", "across": "across the flanges"}
+        places = {
+            "near webs": "at pads, without pads on lines near webs",
+            "across": "on lines across the flanges",
+        }
         line = places.get(self.contact_line, "over the surface of the overlap")
         return f"mesh {self.mesh_size:g} m, contact {line}"
 
