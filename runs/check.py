@@ -55,7 +55,7 @@ from runs.pipeline.proportions import (
     proportion_cautions,
     tip_cautions,
 )
-from runs.pipeline.static_results import bulge_cautions, tilts
+from runs.pipeline.static_results import bulge_cautions
 from runs.pipeline.statics import (
     Statics,
     contact_and_support_reactions,
@@ -485,10 +485,11 @@ def _static_lines(
         f"play {number(bonded_hertz, 4)} Hz."
     )
     causes = "Play and the walls under pads rotate" if padded else "Play rotates"
-    for tilt in tilts(state.boom, state.system, state.position):
+    rest = beam.farthest
+    for tilt in rest.tilts:
         yield (
-            f"{causes} {tilt.inner!r} by {milli(tilt.rotation)} mrad in "
-            f"{tilt.outer!r}, which moves the tip by {milli(tilt.tip)} mm."
+            f"{causes} {tilt.inner!r} by {milli(tilt.rotation)} mrad in {tilt.outer!r}, which "
+            f"moves the tip by {milli(tilt.tip)} mm, under the loads at t = {rest.time:.4g} s."
         )
     yield from pad_wall_lines(beam)
     yield from filter(None, [rigid_wall_note(case.models, boom)])

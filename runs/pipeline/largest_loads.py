@@ -63,6 +63,11 @@ class BeamStates(NamedTuple):
         """The boom of the model."""
         return self.model.boom
 
+    @property
+    def farthest(self) -> StaticResult:
+        """The result with the largest tip deflection."""
+        return max(self.rests, key=lambda rest: abs(rest.tip))
+
     def with_results(self) -> BeamStates:
         """Return the states, completed by their static results."""
         states = zip(self.time.tolist(), self.positions, strict=True)

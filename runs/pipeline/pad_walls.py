@@ -34,7 +34,7 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     Raises:
         NumericsError: the boom has no equilibrium after a change that a remedy makes.
     """
-    boom, rest = beam.boom, max(beam.rests, key=lambda one: abs(one.tip))
+    boom, rest = beam.boom, beam.farthest
     tip, time, part = rest.tip, rest.time, wall_part(beam)
     if part is None:
         return
@@ -62,7 +62,7 @@ def wall_part(beam: BeamStates) -> float | None:
 
     The share is 1 if walls cause all of it; None without pads, or if a section is unknown.
     """
-    boom, rest = beam.boom, max(beam.rests, key=lambda one: abs(one.tip))
+    boom, rest = beam.boom, beam.farthest
     padded = any(joint.padded for joint in boom.joints)
     if not padded or any(segment.section is None for segment in boom.segments):
         return None

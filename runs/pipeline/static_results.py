@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import count, zip_longest
+from itertools import zip_longest
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium_at
@@ -50,7 +51,7 @@ class Diagram:
 
 @dataclass(frozen=True, slots=True)
 class Tilt:
-    """Rotation of a joint by its play and the compression of its contacts."""
+    """Rotation of a joint by its play, the compression of its contacts, and walls that bend."""
 
     inner: str  #: name of the inner segment
     outer: str  #: name of the outer segment
@@ -218,7 +219,7 @@ def static_result(model: LoadedModel, time: float, position: Array) -> StaticRes
         tip=seen["tip"],
         tip_lateral=seen.get("tip_lateral"),
         diagrams=diagrams,
-        tilts=list(tilts(boom, system, position, time)),
+        tilts=list(tilts(model, position, time)),
         stations=list(station_loads(boom, system, position)),
         cylinders={name: seen[name] for name in forces(boom)},
     )
@@ -282,35 +283,33 @@ def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
     return [f"{text}{', '.join(bulges)}; beams with rigid walls do not show this"] if bulges else []
 
 
-def tilts(boom: Boom, system: GapSystem, position: Array, time: float = 0.0) -> Iterator[Tilt]:
-    """Yield the rotations of joints with play and several stations.
+def tilts(model: LoadedModel, position: Array, time: float = 0.0) -> Iterator[Tilt]:
+    """Yield the rotations of joints with play and several stations, from the segments' axes.
 
     Args:
-        boom: the boom, with the play of the system.
-        system: system of the model.
+        model: the model.
         position: equilibrium (num_modes,).
         time: time in s of the extension.
     """
-    gaps, numbers = system.rows @ position, count()
-    for joint in (joint for joint in boom.joints if not joint.bonded):
-        mean_gaps = [
-            float(gaps[system.station_of_row == next(numbers)].mean()) for _ in joint.stations
-        ]
-        if len(mean_gaps) > 1:
-            before = travel(boom, joint.outer, time)
-            extension = travel(boom, joint.inner, time) - before
-            on_outer = (
-                [x for x, _ in station_positions(joint, extension)]
-                if joint.drive
-                else joint.stations
-            )
-            # The resultant force of a pad acts at its centre.
-            midpoints = contact_centres(boom, joint)
-            on_outer = [
-                x + sum(midpoints[at]) / len(midpoints[at]) - at
-                for x, at in zip(on_outer, joint.stations, strict=True)
-            ]
-            tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
-            rotation = (mean_gaps[-1] - mean_gaps[0]) / (on_outer[-1] - on_outer[0])
-            inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
-            yield Tilt(inner, outer, rotation, mean_gaps[0] + rotation * (tip - on_outer[0]))
+    boom, axes = model.boom, []
+    for line in model.lines:
+        x, rows = dict(line.deflections)["z"]
+        axes.append(CubicSpline(x, rows @ position[: rows.shape[1]]))
+    for joint in (joint for joint in boom.joints if not joint.bonded and len(joint.stations) > 1):
+        before = travel(boom, joint.outer, time)
+        extension = travel(boom, joint.inner, time) - before
+        places = [(x, x) for x in joint.stations]
+        if joint.drive:
+            places = station_positions(joint, extension)
+        # The resultant force of a pad acts at its centre.
+        centres = contact_centres(boom, joint)
+        offsets = [sum(centres[x]) / len(centres[x]) - x for x in joint.stations]
+        on_outer, displacements = [], []
+        for (x_outer, x_inner), offset in zip(places, offsets, strict=True):
+            on_outer.append(x_outer + offset)
+            relative = axes[joint.inner](x_inner + offset) - axes[joint.outer](x_outer + offset)
+            displacements.append(float(relative))
+        tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
+        rotation = (displacements[-1] - displacements[0]) / (on_outer[-1] - on_outer[0])
+        inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
+        yield Tilt(inner, outer, rotation, displacements[0] + rotation * (tip - on_outer[0]))

@@ -2,7 +2,8 @@
 """Deflections and section forces along segments of shells.
 
 Mesh lines around the whole section divide a segment into bands. Deflections of a band are means
-over the walls; section forces are integrals of membrane and bending stresses over the walls,
+over the walls, along z of the walls in their planes, so that local bending of walls does not
+contribute; section forces are integrals of membrane and bending stresses over the walls,
 divided by the length of the band. The shear force also has the part −P w′ of the compression P.
 """
 
@@ -100,10 +101,13 @@ def _mean_deflections(
     along_y, along_z = modes[:, :, 1].T, modes[:, :, 2].T
     polar = area * (y**2 + z**2)
     twist = mean(area * y, polar) @ along_z - mean(area * z, polar) @ along_y
-    plain = mean(area, area)
+    # The tangent around the section is (up, -across).
+    across, up = (part[:, None] for part in shell.outward[triangles, 1:].T)
+    webs = area * across**2
+    in_plane = mean(webs, webs) @ along_z - mean(area * across * up, webs) @ along_y
     return (
-        np.asarray(plain @ along_y, dtype=float),
-        np.asarray(plain @ along_z, dtype=float),
+        np.asarray(mean(area, area) @ along_y, dtype=float),
+        np.asarray(in_plane, dtype=float),
         np.asarray(twist, dtype=float),
     )
 

@@ -14,6 +14,7 @@ from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Load, Material, Segment, Support
 from geometry.profiles import hexagon
 from geometry.section import BoxSection
+from protractile.cases import run_case
 from runs.case.build import build_boom
 from runs.case.conversion import convert_to_si
 from runs.pipeline.design_results import ModelDesignResults
@@ -24,6 +25,7 @@ from runs.pipeline.largest_loads import (
     static_table,
 )
 from runs.pipeline.load_table import load_table
+from runs.pipeline.pad_walls import wall_part
 from runs.pipeline.section_forces import section_forces
 from runs.pipeline.statics import boom_with_play, reactions, statics
 from runs.pipeline.strength import Fibres, outer_corners
@@ -115,6 +117,40 @@ def test_overloads_are_cautions(tmp_path: Path) -> None:
         "caution: static utilisation under the loads at t = 0 s: 439 % by pad pressure (fly "
         "segment, x = 8 m): exceeds the allowable pressure",
     ]
+
+
+def test_a_joint_rotates_by_its_play_and_by_walls(tmp_path: Path) -> None:
+    """Reference: by hand, 4 mm of play over 1.8 m between the centres of pads, and the share of
+    walls in the tip, which :func:`wall_part` computes by rigid walls.
+    """
+    case = read_case(tmp_path, boom_of(RAMP))
+    beam = BeamStates.of(case, boom_with_play(case, build_boom(case)))
+    (tilt,) = beam.farthest.tilts
+    part = wall_part(beam)
+    assert part is not None
+    play, walls = 0.002 - 0.004 / 1.8 * (14.0 - 6.1), part * beam.farthest.tip
+    assert walls < -0.002
+    assert tilt.tip == pytest.approx(play + walls, abs=1e-4)
+
+
+@pytest.mark.slow
+def test_a_joint_of_a_shell_rotates_by_walls(tmp_path: Path) -> None:
+    """Reference: other code path, the difference of the tips if pads bear beside the middle of the
+    flange or on the corners.
+    """
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+    shell = (
+        '[[model]]\nname = "shell"\nkind = "shell"\nmesh_size = 0.2\ncontact_tolerance = "any"\n'
+    )
+    tips, rotated = [], []
+    for bears in ("offset = 0.05", 'bears = "corner"'):
+        text = boom_of(RAMP.replace("ramp = 0.1\n", ""), PAD.replace("}", f", {bears} }}"))
+        run = run_case(read_case(tmp_path, text + shell), ["shell"])
+        (rest,) = run.summary.design.models["shell"].static
+        tips.append(rest.tip)
+        rotated.append(rest.tilts[0].tip)
+    assert tips[0] < 1.1 * tips[1]
+    assert rotated[0] - rotated[1] == pytest.approx(tips[0] - tips[1], rel=0.03)
 
 
 def test_statics_include_a_released_load_up_to_its_release(tmp_path: Path) -> None:

@@ -57,7 +57,10 @@ def test_masses_forces_and_tips_are_those_of_hand() -> None:
     tips = "Static tip deflection (t = 0) in the beam estimate: 143.2 mm; without play 9.916 mm."
     assert tips in lines
     # What 2.2 and 2.8 kN press contacts of 1e13 N/m² in is in it.
-    tilt = "Play rotates 'inner' by 14.03 mrad in 'outer', which moves the tip by 133.3 mm."
+    tilt = (
+        "Play rotates 'inner' by 14.03 mrad in 'outer', which moves the tip by 133.3 mm, under the "
+        "loads at t = 0 s."
+    )
     assert tilt in lines
 
 
