@@ -95,9 +95,7 @@ def test_colours_are_distinct() -> None:
         ]
         luminance = float(np.dot(linear, [0.2126, 0.7152, 0.0722]))
         assert 1.05 / (luminance + 0.05) > 3.0, colour
-
-
-def test_more_models_than_colours_still_differ() -> None:
+    # More models than colours still differ.
     names = [f"model {i}" for i in range(3 * len(theme.PALETTE))]
     drawn = theme.strokes([*names, "bonded"], ["bonded"])
     assert len(set(drawn.values())) == len(names) + 1

@@ -166,11 +166,6 @@ def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) ->
     assert [rest.time for rest in bonded] == [begun.time, largest.time]
 
 
-def test_no_extension_note_without_static_states() -> None:
-    """Reference: by hand. The models of a telescoping boom may have no equilibrium."""
-    assert extension_note(shipped("drawn-out"), []) == ""
-
-
 @pytest.mark.usefixtures("unprinted")
 def test_run_reports_its_drive(tmp_path: Path) -> None:
     """Reference: analytic, the travels of the case, and the drive force from contact forces."""
@@ -305,6 +300,8 @@ def test_drawing_shows_the_extension_of_a_segment() -> None:
     assert (x.min(), x.max()) == pytest.approx((9.0, 19.0))
     assert sheet.axes[1].get_xlim()[1] > 19.0
     assert "extended position" in [text.get_text() for text in sheet.legends[0].get_texts()]
+    # The models of a telescoping boom may have no equilibrium.
+    assert extension_note(shipped("drawn-out"), []) == ""
 
 
 def test_resolving_times_have_both_ends() -> None:

@@ -152,15 +152,12 @@ def test_modules_in_all_folders_count(tmp_path: Path) -> None:
         change()
         found.add(sources([package]))
     assert len(found) == 5
-
-
-def test_results_are_no_source(tmp_path: Path) -> None:
-    (tmp_path / "__init__.py").touch()
-    before = sources([tmp_path])
-    (tmp_path / "a.txt").touch()
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "a.py").touch()
-    assert sources([tmp_path]) == before
+    # Results are no source.
+    before = sources([package])
+    (package / "a.txt").touch()
+    (package / "out").mkdir()
+    (package / "out" / "a.py").touch()
+    assert sources([package]) == before
 
 
 def test_the_packages_are_found_by_themselves() -> None:

@@ -37,8 +37,6 @@ def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
     assert found.equivalent == pytest.approx(100e6 * 10.0 ** (1.0 / 3.0), rel=1e-9)
     assert found.counts[-1] == pytest.approx(10.0)
     assert sum(found.counts) == pytest.approx(found.cycles)
-
-
-def test_without_a_category_ranges_are_counted_alone() -> None:
+    # Without a category ranges are counted alone.
     still = life(StressHistory("arm", (2.0, 0.0, 0.1), np.zeros(5)), LifeTable())
     assert (still.cycles, still.largest, still.equivalent, still.damage) == (0.0, 0.0, 0.0, None)

@@ -44,7 +44,7 @@ def header(folder: Path) -> list[str]:
         return next(csv.reader(file))
 
 
-def test_columns_of_stations_are_distinct(run: Run, tmp_path: Path) -> None:
+def test_columns_of_stations_are_distinct(run: Run, folder: Path, tmp_path: Path) -> None:
     plain = run.results.trajectories
     places = [("9", "z"), ("10", "z"), ("9", "y"), ("10", "y"), ("9", "z")]
     names = place_names([(float(x), direction) for x, direction in places])
@@ -53,14 +53,11 @@ def test_columns_of_stations_are_distinct(run: Run, tmp_path: Path) -> None:
         direction=("station", [direction for _, direction in places]), place=("station", names)
     )
     in_space = replace(run, results=replace(run.results, trajectories=data))
-    out = tmp_path / "out"
+    out = tmp_path / "in space"
     out.mkdir()
     write(in_space, Addition(), out)
     gaps = [name for name in header(out) if name.startswith("gap@")]
     assert gaps == ["gap@9", "gap@10", "gap@9y", "gap@10y", "gap@9#2"]
-
-
-def test_columns_of_a_flat_boom_have_their_x(folder: Path) -> None:
     assert [name for name in header(folder) if name.startswith("gap@")] == ["gap@9", "gap@10"]
 
 

@@ -104,6 +104,8 @@ def test_pressure_stands_beside_the_pad_strength(tmp_path: Path) -> None:
     assert told["utilisation\n%"] == pytest.approx((0.5 * peaks / 0.01 / 2.0e7).tolist())
     kept = Summary.model_validate_json(str(found.summary)).pads
     assert [pad.pressure for pad in kept] == told["pressure\nMPa"]
+    # Corners bear no pressure.
+    assert not pad_table(results(tmp_path, LAW)).rows
 
 
 def test_summary_names_the_governing_pad(tmp_path: Path) -> None:
@@ -144,10 +146,6 @@ def test_governing_pad_at_rest_is_named(tmp_path: Path, shim: float) -> None:
     expected = {0.0: 0.5 * 0.6, 1.0e-3: 0.5}.get(shim)
     part = min(one.pad / abs(one.force) for one in (tail, head) if one.pad is not None)
     assert expected is None or part == pytest.approx(expected)
-
-
-def test_corners_bear_no_pressure(tmp_path: Path) -> None:
-    assert not pad_table(results(tmp_path, LAW)).rows
 
 
 def pad_on(side: str, width: float, thickness: float, **others: float) -> str:

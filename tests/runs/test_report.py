@@ -191,10 +191,14 @@ def test_a_missing_peak_is_said_to_be_missing(results: Results, figures: list[Fi
     assert not re.search(" – +– ", lines["beam-fe-bonded"])
 
 
-def test_cautions_stand_above_everything(results: Results, figures: list[Figure]) -> None:
+def test_cautions_and_skipped_pictures_are_said(results: Results, figures: list[Figure]) -> None:
     summary = results.summary.model_copy(update={"cautions": ["caution: <of> the tip"]})
     text = Page(report(replace(results, summary=summary), figures)).text
     assert text.index("caution: <of> the tip") < text.index("Verdicts")
+    assert "Snapshots" not in Page(report(results, figures)).text
+    summary = skipping(results, "no GL here")
+    page = Page(report(replace(results, summary=summary), figures))
+    assert "Skipped: no GL here" in page.text
 
 
 def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
@@ -206,14 +210,6 @@ def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
     assert not page.all("script")
     assert page.text.count(attack) == 2 + len(verdicts) + 1  # title, heading; whys; snapshots
     assert page.all("img")[0]["alt"] == "Tip <of> the boom"
-
-
-def test_says_why_there_are_no_snapshots(results: Results, figures: list[Figure]) -> None:
-    assert "Snapshots" not in Page(report(results, figures)).text
-    reason = "no GL here"
-    summary = skipping(results, reason)
-    page = Page(report(replace(results, summary=summary), figures))
-    assert f"Skipped: {reason}" in page.text
 
 
 def test_fits_a_telephone_and_paper(page: Page) -> None:

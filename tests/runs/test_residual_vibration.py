@@ -131,9 +131,7 @@ def test_boom_at_rest_has_no_residual_vibration(tmp_path: Path) -> None:
     swing = swing_of(drawn.model_copy(update={"start": start, "loads": ()}))
     assert (swing.initial, swing.final) == (0.0, 0.0)
     assert swing.tip > 1.0e-3
-
-
-def test_unfinished_drive_has_no_residual_vibration(tmp_path: Path) -> None:
+    # Nor has one whose drive does not end, or that has none.
     assert swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.7 }")) is None
     assert swing_of(case(tmp_path, "")) is None
 
@@ -198,9 +196,7 @@ def test_a_chart_says_how_fast_it_may_be_drawn_out(
     curve, *levels = saved[0].axes[0].get_lines()
     np.testing.assert_allclose(curve.get_xydata(), [[1.0, 20.0], [2.0, 50.0]])
     assert [line.get_ydata()[0] for line in levels] == [30.0, 60.0]
-
-
-def test_sweep_without_speeds_has_no_speed_chart(tmp_path: Path) -> None:
+    # Without speeds there is no chart.
     data = swept().isel(key=[0])
     draw_vibration(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
     assert not list(tmp_path.iterdir())

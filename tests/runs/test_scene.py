@@ -143,7 +143,7 @@ def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
     [(1, " (joint 1)"), (2, " (joint 2)"), (4, " (joint 1, lateral)"), (8, " (a stop)")],
 )
 def test_of_several_joints_the_pressed_one_is_named(
-    in_space: list[Scene], station: int, place: str
+    shell: Scene, in_space: list[Scene], station: int, place: str
 ) -> None:
     """Reference: the fixture, with a force up or down at one station only."""
     side, above = in_space
@@ -151,9 +151,7 @@ def test_of_several_joints_the_pressed_one_is_named(
     peak[200, station] = (-1.0) ** (station // 2) * 3.0e4
     side = replace(side, motion=side.motion.assign(contact_force_peak=peak))
     assert place_of_largest_force([side, above], float(TIME[200])) == place
-
-
-def test_the_only_joint_is_not_named(shell: Scene) -> None:
+    # The only joint of a boom is not named.
     assert place_of_largest_force([shell], 0.5) == ""
 
 
@@ -309,17 +307,14 @@ def test_unequal_walls_are_labelled() -> None:
     assert sizes("crane")[0] == "940 × 680\nweb 6\nflanges\n8, 10"
 
 
-def test_drawing_of_a_lift_labels_every_part() -> None:
-    """Reference: the case file."""
+def test_drawings_label_every_part() -> None:
+    """Reference: the case files."""
     assert legend(drawn("lift")) == [
         "slide pads", "support", "cylinder, 30 MN/m", "mass at the tip, 150 kg",
         "1.595 kN perpendicular to the boom, towards its lower side, ramp of 0.1 s", "play 3 mm",
         "self-weight, g = 9.807 m/s²",
     ]  # fmt: skip
-
-
-def test_boom_in_space_shows_lateral_loads() -> None:
-    """Reference: the case file. The largest factor of its gust is 1."""
+    # The largest factor of the gust of the arm is 1.
     found = legend(drawn("inspection-arm"))
     assert "lateral play 4 mm" in found
     assert any("N/m lateral at most, root" in text for text in found)

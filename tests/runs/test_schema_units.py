@@ -122,13 +122,10 @@ def test_a_case_in_millimetres_is_the_same_case(units: str) -> None:
         assert contact_laws(same, model) == contact_laws(expected, other)
 
 
-def test_defaults_do_not_depend_on_the_units() -> None:
+def test_defaults_and_the_effective_case_are_in_si_units() -> None:
     """Reference: non-regression, the defaults in SI units, which nobody gave in millimetres."""
     assert in_mm().time.output_step == 1.0e-3
     assert in_mm().models[1].model_dump()["element_length"] == 0.5
-
-
-def test_the_effective_case_is_in_si_units() -> None:
     case = in_mm()
     text = toml.dumps(case)
     assert 'units = "SI"\nshown_units = "mm-t-s"\n' in text
@@ -215,13 +212,11 @@ def test_a_sweep_s_values_are_in_the_units_of_the_case() -> None:
         values = [float(part) for part in text.partition("=")[2].split(",")]
         assert list(planned.variations[0].values) == values
         assert [value(point.case) for point in planned.points] == expected
-
-
-def test_a_change_in_python_is_in_si_units() -> None:
+    # A change in Python is in SI units.
     assert change(in_mm(), **{"joint.play": 0.02}).joints[0].play == 0.02
 
 
-def test_numbers_out_of_range_are_refused() -> None:
+def test_numbers_out_of_range_and_other_systems_are_refused() -> None:
     text = written('units = "mm-t-s"', IN_MM).replace("7.85e-9", "7.85e299")
     with refused(
         "crane.toml: units: a number is too large for SI units; look for one that is out of "
@@ -234,9 +229,6 @@ def test_numbers_out_of_range_are_refused() -> None:
         "smaller ones"
     ):
         plan("crane.toml", ["material.density=1e-9,1e300"], None, None)
-
-
-def test_other_systems_are_refused() -> None:
     with refused("crane.toml: units: must be 'SI', 'mm-t-s' or 'N-mm', got 'inch-lbf-s'"):
         in_mm("inch-lbf-s")
 

@@ -147,6 +147,10 @@ def test_a_linear_result_scatters_like_its_load(capsys: pytest.CaptureFixture[st
 def test_a_run_takes_the_mean() -> None:
     Path("case.toml").write_text(SCATTERED, encoding="utf-8")
     assert reading.load("case.toml").segments[0].load == LOAD
+    # A mean may be no text.
+    Path("case.toml").write_text(SCATTERED.replace(f"mean = {LOAD}", "mean = 'a'"), "utf-8")
+    with pytest.raises(BadInput, match=r"got 'a' and 5\.0"):
+        reading.load("case.toml")
 
 
 @pytest.mark.parametrize(
@@ -169,9 +173,3 @@ def test_bad_samples_are_refused(
     found = capsys.readouterr().err
     assert found.startswith(f"protractile: case.toml: {line}")
     assert found.count("\n") == 1
-
-
-def test_a_mean_may_be_no_text() -> None:
-    Path("case.toml").write_text(SCATTERED.replace(f"mean = {LOAD}", "mean = 'a'"), "utf-8")
-    with pytest.raises(BadInput, match=r"got 'a' and 5\.0"):
-        reading.load("case.toml")

@@ -187,21 +187,15 @@ def test_stress_figure_states_maximum_and_limits(tmp_path: Path) -> None:
     assert "converges with mesh refinement" in figure.caption
     with Image.open(figure.path) as image:
         image.verify()
+    assert not wall_table(results(None)).rows
+    assert stress_history(FigureContext(results(None), tmp_path)) == []
 
 
 def test_stress_table_has_the_force_of_each_wall() -> None:
     table = wall_table(results(STRESS))
     assert table.rows == [("shell", "outer", "2", "top", "−12.50", "0.00", "3.06")]
     assert "91.6 MPa at x = 9.03 m in 'inner', outer face of the wall 'right'" in table.notes[0]
-
-
-def test_without_a_shell_there_is_nothing(tmp_path: Path) -> None:
-    assert not wall_table(results(None)).rows
-    assert stress_history(FigureContext(results(None), tmp_path)) == []
-
-
-def test_largest_stress_is_compared_with_a_known_yield_strength() -> None:
-    """Reference: 91.6 MPa of 355 MPa."""
+    # 91.6 MPa of 355 MPa.
     plain = results(STRESS)
     material = plain.case.material
     steel = replace(material, yield_strength=355e6)

@@ -84,9 +84,7 @@ def test_arrows_over_a_surface_are_sums() -> None:
         told = "each arrow is the sum of the forces at the points nearest to its station."
         assert describe_one(replace(lines, case=case), Path(name)).caption.endswith(told)
         assert told not in describe_one(lines, Path(name)).caption
-
-
-def test_of_several_shells_the_right_one_is_named() -> None:
+    # Of several shells the right one is named.
     both = results("shell", "shell-fine")
     for name in ("shell", "shell-fine"):
         assert f"{name!r}" in describe_one(both, Path(f"{name}-boom-first-peak.png")).caption

@@ -210,7 +210,7 @@ def test_other_units_are_refused(heading: str, column: int, unit: str, wrong: st
     )
 
 
-def test_factors_need_a_magnitude_and_columns_are_two() -> None:
+def test_factors_need_a_magnitude_and_columns_are_two_of_a_file() -> None:
     assert complaint("t (s);F\n0;1\n1;1\n", "") == (
         "magnitude: missing; it is the load across the boom in N at x, or in N/m along the "
         "segment, or the moment in N m; a factor, 1 unless given, if the heading of its file has "
@@ -218,21 +218,18 @@ def test_factors_need_a_magnitude_and_columns_are_two() -> None:
     )
     one = 'magnitude = 1.0\ncolumns = ["t"]'
     assert complaint("0;1\n1;1\n", one) == "columns: must be a list of two names, got ['t']"
-
-
-def complaint(csv: str, keys: str) -> str:
-    with pytest.raises(BadInput) as error:
-        case_of(csv, keys)
-    return str(error.value).removeprefix("case.toml: load[1].")
-
-
-def test_columns_of_no_file_are_refused() -> None:
     text = '[[load]]\nsegment = "inner"\nmagnitude = 1.0\ncolumns = ["t", "F"]\n\n[[model]]'
     Path("case.toml").write_text(COARSE.replace("[[model]]", text, 1), encoding="utf-8")
     with refused(
         "case.toml: load[1].columns: there is no file whose columns these are; leave it out"
     ):
         reading.load("case.toml")
+
+
+def complaint(csv: str, keys: str) -> str:
+    with pytest.raises(BadInput) as error:
+        case_of(csv, keys)
+    return str(error.value).removeprefix("case.toml: load[1].")
 
 
 @pytest.mark.parametrize(

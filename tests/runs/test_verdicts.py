@@ -413,9 +413,6 @@ def test_a_verdict_shows_number_and_threshold() -> None:
         "S4 reproduced (demanded): 1.25 % measured, threshold 0.5",
         "It grows.",
     ]
-
-
-def test_runs_without_verdicts_show_no_table() -> None:
     assert printed(print_verdicts, {"boom": []}) == ""
 
 
