@@ -112,7 +112,8 @@ def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
     content = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
     (short,) = content.pop("cautions")
     assert content.pop("pads") == []
-    content["models"]["kantorovich-4"]["static_tip"] = -1.9
+    (rest,) = content["design"]["models"]["kantorovich-4"]["static"]
+    rest["tip"] = -1.9
     (folder / "summary.json").write_text(json.dumps(content), encoding="utf-8")
     write_report(Results.load(folder), Addition(), folder)
     told, again = json.loads((folder / "summary.json").read_text(encoding="utf-8"))["cautions"]
