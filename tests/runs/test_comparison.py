@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Comparison of ensembles by levels, distances of peaks, and the low-pass filter."""
+"""Comparison of models: levels of ensembles, references, the low-pass filter, and tables."""
 
 import re
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,20 +13,37 @@ from scipy.stats import norm
 from dynamics.motion import Motion
 from dynamics.predictability.ensemble import integrate_ensemble
 from dynamics.trajectory import PointwiseDifferences
+from protractile.cases import change
+from runs.case import reading as case_file
+from runs.case.schema import Case, StopTable
 from runs.paper.run_query import final_differences, peak_distances
 from runs.pipeline.comparison import Comparison, Distributions, PeakDifferences, compare
 from runs.pipeline.low_pass import SlowPeaks, filter_low_pass, slow_peaks
+from runs.pipeline.model_quality import compare_models, reference_of
+from runs.pipeline.results import Results
+from runs.report.document import render
+from runs.report.model_tables import law_table, model_table, step_table
+from runs.report.pages import Addition
+from runs.report.predictability import comparison_tables, predictability_tables
 from tests.dynamics.two_stops import CHAOTIC
+from tests.runs.case_texts import shipped
+from tests.runs.paper_curves import members
+from tests.runs.summaries import PRESSED, model_summary, rubbing, steps_for_peaks, summary_of
 
 TIME = np.arange(10_001) * 1e-3
-CUTOFF = 1.7
+CUTOFF, SLOW = 1.7, 2.0
+
+
+def swing(height: float = 1.0, delay: float | np.ndarray = 0.0) -> np.ndarray:
+    """Return a vibration with peaks of ``height`` at 0.5, 1.5, … s plus ``delay``."""
+    return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay)))
 
 
 def ensemble(delay: float = 0.0, height: float = 1.0, growth: float = 0.0) -> xr.Dataset:
     """Return vibrations of period 1 s; phases of members differ by ±1e-4 exp(growth t) in s."""
     parting = np.linspace(-1e-4, 1e-4, 9)[:, None] * np.exp(growth * TIME)
     parting = np.clip(np.vstack([np.zeros(TIME.size), parting]), -0.2, 0.2)
-    tip = swing(delay + parting, height)
+    tip = swing(height, delay + parting)
     return xr.Dataset({"tip": (("member", "time"), tip)}, coords={"time": TIME})
 
 
@@ -105,11 +124,6 @@ def test_every_level_has_a_description() -> None:
     assert list(Comparison.__slots__) == ["pointwise", "peaks", "distributions"]
 
 
-def swing(delay: float | np.ndarray = 0.0, height: float = 1.0) -> np.ndarray:
-    """Return a vibration with peaks of ``height`` at 0.5, 1.5, … s plus ``delay``."""
-    return height * 0.5 * (1.0 - np.cos(2.0 * np.pi * (TIME - delay)))
-
-
 def test_final_differences_are_relative_to_the_larger_range() -> None:
     """Reference: analytic."""
     one = np.array([TIME, TIME])
@@ -123,7 +137,7 @@ def test_final_differences_are_relative_to_the_larger_range() -> None:
 )
 def test_distance_of_peaks(delay: float, height: float, expected: float) -> None:
     """Reference: analytic, the larger of the delay over the period and the difference in height."""
-    curves = np.array([swing(), swing(delay, height)])
+    curves = np.array([swing(), swing(height, delay)])
     first, apart = peak_distances(curves, TIME, CUTOFF)
     assert first[1:-1] == pytest.approx(
         np.arange(1, first.size - 1) + 0.5 + min(delay, 0.0), abs=3e-3
@@ -141,7 +155,7 @@ def test_missing_peaks_have_infinite_distance() -> None:
 
 
 def test_peak_near_the_end_is_not_missing() -> None:
-    first, apart = peak_distances(np.array([swing(), swing(0.6)]), TIME, CUTOFF)
+    first, apart = peak_distances(np.array([swing(), swing(delay=0.6)]), TIME, CUTOFF)
     assert np.isfinite(apart).all()
     assert first.size == 9
 
@@ -169,7 +183,7 @@ def test_known_peaks_under_a_ripple() -> None:
 
 def test_spreads_over_members() -> None:
     """Reference: analytic. Delays of −20 … 40 ms, heights of 0.9 … 1.1."""
-    members = np.array([swing(), swing(0.04, 0.9), swing(-0.02, 1.1)])
+    members = np.array([swing(), swing(0.9, 0.04), swing(1.1, -0.02)])
     found = SlowPeaks.of(members, TIME, CUTOFF)
     assert found.time.size == 10
     inner = slice(1, -1)
@@ -212,3 +226,256 @@ def test_bad_signals_are_refused(times: int, cutoff: float, message: str | None)
         return
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         filter_low_pass(np.ones(times), 1e-3, cutoff)
+
+
+SERIES = ["kantorovich-4", "kantorovich-5"]
+
+
+def case_of(*names: str, friction: float = 0.0, pressed: tuple[float, ...] = PRESSED) -> Case:
+    """Return the coarse case with some of its models, and friction in its joint."""
+    return rubbing(case_file.select(shipped("coarse"), "", names), friction, pressed)
+
+
+def trajectories(**tips: np.ndarray) -> xr.Dataset:
+    return xr.Dataset(
+        {"tip": (("model", "time"), np.array(list(tips.values())))},
+        coords={"model": [name.replace("_", "-") for name in tips], "time": TIME},
+    )
+
+
+@pytest.mark.parametrize(
+    ("models", "expected"),
+    [
+        ([*SERIES, "shell", "beam-fe-bonded"], "shell"),
+        ([*SERIES, "beam-fe-bonded"], "kantorovich-5"),
+        (["beam-fe-bonded"], None),
+    ],
+)
+def test_the_reference_is_most_complicated_model(models: list[str], expected: str | None) -> None:
+    assert reference_of(case_of(*models).models) == expected
+
+
+def test_late_and_low_model_differs_at_each_level() -> None:
+    """Reference: analytic, half the height, 50 ms late; members apart by 1/4 period from 4 s on."""
+    late = np.where(TIME < 4.0, 0.0, 0.25)
+    tips = {
+        name: np.array([swing(scale, shift), swing(scale, shift + late)])
+        for name, scale, shift in (("kantorovich-4", 0.5, 0.05), ("kantorovich-5", 1.0, 0.0))
+    }
+    data = trajectories(kantorovich_4=tips["kantorovich-4"][0], kantorovich_5=swing())
+    found = compare_models(case_of(*SERIES), data, members(tips), SLOW)
+    assert found.reference == "kantorovich-5"
+    assert not found.whole
+    (level,) = found.ensembles.values()
+    assert level.pointwise.until == pytest.approx(4.0, abs=2e-3)
+    apart = np.abs(tips["kantorovich-4"][0] - swing())[TIME <= 4.0]
+    assert level.pointwise.largest == pytest.approx(apart.max(), rel=1e-6)
+    assert level.pointwise.rms == pytest.approx(np.sqrt(np.mean(apart**2)), rel=1e-3)
+    # The filter leans on the jump at 4 s: the first two peaks are far from it.
+    assert level.peaks.time[:2] == pytest.approx([0.05, 0.05], abs=5e-3)
+    assert level.peaks.height[:2] == pytest.approx([-0.5, -0.5], abs=1e-2)
+    assert level.peaks.explained[:2] == [False, False]
+    spread = level.distributions
+    assert spread.range == pytest.approx([1.0, 0.5], rel=1e-3)
+    assert spread.mean == pytest.approx([0.5, 0.25], abs=1e-2)
+    assert spread.deviation == pytest.approx([0.5 / np.sqrt(2.0), 0.25 / np.sqrt(2.0)], rel=0.02)
+    # All values of the half are below 0.5: half of the whole one's are.
+    assert spread.distance == pytest.approx(0.5, abs=0.02)
+
+
+def test_without_a_slow_motion_ensembles_are_not_compared() -> None:
+    ensembles = members({name: np.array([swing(), swing()]) for name in SERIES})
+    data = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
+    case = case_of(*SERIES)
+    assert compare_models(case, data, ensembles, None) is None
+    assert compare_models(case, data, None, None) is None
+
+
+def test_with_friction_every_model_is_compared_to_the_end() -> None:
+    """Reference: analytic, a tip too high by 0.1 up to 5 s, then by 0.3, for a range of 1."""
+    above = swing() + np.where(TIME <= 5.0, 0.1, 0.3)
+    data = trajectories(kantorovich_4=above, kantorovich_5=swing(), beam_fe_bonded=0.1 * swing())
+    case = case_of(*SERIES, "beam-fe-bonded", friction=0.2)
+    found = compare_models(case, data, None, None)
+    assert list(found.whole) == ["kantorovich-4", "beam-fe-bonded"]
+    whole = found.whole["kantorovich-4"]
+    assert whole.until == [5.0, 10.0]
+    assert whole.largest == pytest.approx([0.1, 0.3 / 1.2], rel=1e-2)
+    assert whole.rms == pytest.approx([0.1, np.sqrt(0.5 * (0.1**2 + 0.3**2)) / 1.2], rel=1e-2)
+    assert found.whole["beam-fe-bonded"].largest == pytest.approx([0.9, 0.9], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("friction", "pressed"), [(0.0, PRESSED), (0.2, ()), (0.2, (0.0, 0.0)), (0.2, (4500.0, 0.0))]
+)
+def test_friction_under_given_forces_is_regular(
+    friction: float, pressed: tuple[float, ...]
+) -> None:
+    """Reference: physics. Friction by contact forces or without any leaves motion chaotic."""
+    case = case_of(*SERIES, friction=friction, pressed=pressed)
+    data = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
+    assert compare_models(case, data, None, None) is None
+
+
+def test_motion_with_stops_is_not_regular() -> None:
+    """Reference: physics. Impacts on stops are chaotic in spite of friction."""
+    case = case_of(*SERIES, friction=0.2)
+    stop = StopTable(segment="inner", x=14.0, play=0.1, stiffness=1e7)
+    assert case.regular
+    assert not case.model_copy(update={"stops": (stop,)}).regular
+
+
+def test_a_short_run_with_friction_is_compared_to_its_end_alone() -> None:
+    data = trajectories(kantorovich_4=0.9 * swing(), kantorovich_5=swing())
+    case = case_of(*SERIES, friction=0.2)
+    found = compare_models(case, data.sel(time=slice(None, 2.0)), None, None)
+    assert found.whole["kantorovich-4"].until == [2.0]
+    assert found.whole["kantorovich-4"].largest == pytest.approx([0.1], rel=1e-6)
+
+
+def test_a_model_alone_is_compared_with_nothing() -> None:
+    alone = members({"kantorovich-4": np.array([swing(), swing()])})
+    data = trajectories(kantorovich_4=swing())
+    case = case_of("kantorovich-4", friction=0.2)
+    assert compare_models(case, data, alone, SLOW) is None
+
+
+MODELS = (*SERIES, "beam-fe-bonded")
+
+
+def results(comparisons: Any = None, friction: float = 0.0, **changes: Any) -> Results:
+    """Return 10 s of two models with play and one without; ``changes`` apply to the first."""
+    models = {name: model_summary() for name in MODELS} | {MODELS[0]: model_summary(**changes)}
+    asked = {"members": 32, "relative": 1e-9, "seed": 1, "vary": "load", "slow_below": 1.67}
+    summary = summary_of(models, ensemble=asked, comparisons=comparisons)
+    case = change(case_of(*MODELS, friction=friction), **{"time.duration": 10.0})
+    return Results(case, xr.Dataset(), summary)
+
+
+ENSEMBLE = {
+    "energy_residual": 1e-4,
+    "horizons": {"0.01": 0.802, "0.2": None},
+    "slow_peaks": {
+        "time": [0.5469, 1.5906], "time_spread": [0.001, 0.022], "height": [0.1522, 0.14691],
+        "height_spread": [0.00019, 0.0068], "period": 1.0437, "period_spread": 0.021,
+    },
+}  # fmt: skip
+LEVELS = {
+    "pointwise": {"until": 0.802, "largest": 0.1829, "rms": 0.0793},
+    "peaks": {
+        "time": [-0.026, 0.004], "time_spread": [0.001, 0.024], "height": [-0.01542, 0.001],
+        "height_spread": [0.00023, 0.0075], "explained": [False, True],
+    },
+    "distributions": {
+        "since": 4.643, "range": [0.1681, 0.1757], "mean": [0.0995, 0.0807],
+        "deviation": [0.0478, 0.04], "distance": 0.199,
+    },
+}  # fmt: skip
+MEASURED = {
+    "relatives": [1e-12, 1e-6], "shares": [0.01, 0.2], "times": [[1.5, 6.0], [1.0, None]],
+    "of_step": [1.2, None], "rate": [27.63, None], "step_change": None,
+    "limits": ["step", "physics"],
+}  # fmt: skip
+
+
+def test_nothing_is_known_of_a_run_without_ensembles() -> None:
+    assert predictability_tables(results()) == []
+    assert comparison_tables(results()) == []
+    assert not any("horizon" in heading for heading in model_table(results()).headings)
+
+
+def test_horizons_and_slow_peaks_are_the_summary_s() -> None:
+    found = results(ensemble=ENSEMBLE)
+    horizons, peaks = predictability_tables(found)
+    assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "2", "1.044 ± 0.021")]
+    assert "32 members, loads changed by up to 1 × 10⁻⁹" in horizons.notes[0]
+    assert peaks.headings == ("peak", "kantorovich-4")
+    assert peaks.rows == [
+        ("1", "0.547 ± 0.001 s\n152.20 ± 0.19 mm"),
+        ("2", "1.591 ± 0.022 s\n146.91 ± 6.80 mm"),
+    ]
+    table = model_table(found)
+    at = table.headings.index("horizon 1 %\ns")
+    assert [row[at : at + 2] for row in table.rows] == [("0.80", "> 10"), ("–", "–"), ("–", "–")]
+
+
+def test_an_ensemble_without_slow_peaks_has_horizons() -> None:
+    (horizons,) = predictability_tables(results(ensemble=ENSEMBLE | {"slow_peaks": None}))
+    assert horizons.rows == [("kantorovich-4", "0.80", "> 10", "–", "–")]
+
+
+def test_missing_peaks_make_no_table() -> None:
+    none: dict[str, Any] = {k: [] for k in ("time", "time_spread", "height", "height_spread")}
+    values = {key: [None, None] for key in ("range", "mean", "deviation")}
+    level = LEVELS | {
+        "peaks": none | {"explained": []},
+        "distributions": values | {"since": None, "distance": None},
+    }
+    nothing = ENSEMBLE | {"slow_peaks": none | {"period": None, "period_spread": None}}
+    found = results({"reference": "shell", "ensembles": {MODELS[0]: level}}, ensemble=nothing)
+    page = render(found, Addition(), [], [])
+    assert "Horizons" in page
+    assert "Distribution of the tip" in page
+    assert "– / –" not in page
+    assert not any("Slow peaks" in title for title in re.findall("<h3>.*</h3>", page))
+
+
+def test_growth_names_the_limit() -> None:
+    _, growth, _ = predictability_tables(results(ensemble=ENSEMBLE, horizons=MEASURED))
+    assert growth.headings[2:4] == ("change 1 × 10⁻¹²\ns", "change 1 × 10⁻⁶\ns")
+    assert growth.rows == [
+        ("kantorovich-4", "1 %", "1.50", "1.00", "1.20", "28", "the step"),
+        ("kantorovich-4", "20 %", "6.00", "–", "–", "–", "the motion"),
+    ]
+
+
+def test_comparison_levels_name_class_and_difference() -> None:
+    """Reference: the classes of measures, and numbers by hand in mm and ms."""
+    ensembles = {"kantorovich-4": LEVELS}
+    tables = comparison_tables(results({"reference": "shell", "ensembles": ensembles}))
+    for table, level in zip(
+        tables, (PointwiseDifferences, PeakDifferences, Distributions), strict=True
+    ):
+        assert level.scope in table.notes
+        assert "against shell" in table.title
+    pointwise, peaks, distributions = (table.rows for table in tables)
+    assert pointwise == [("kantorovich-4", "0.80", "18.29", "7.93")]
+    assert peaks == [
+        ("1", "−26 ± 1 ms\n−15.42 ± 0.23 mm *"),
+        ("2", "+4 ± 24 ms\n+1.00 ± 7.50 mm"),
+    ]
+    assert distributions == [
+        ("kantorovich-4", "4.64", "175.7 / 168.1", "80.7 / 99.5", "40.0 / 47.8", "0.199")
+    ]
+
+
+def test_a_whole_run_is_compared_with_friction() -> None:
+    whole = {"kantorovich-4": {"until": [5.0, 10.0], "largest": [0.1, 0.25], "rms": [0.05, 0.125]}}
+    (table,) = comparison_tables(results({"reference": "shell", "whole": whole}, friction=0.2))
+    assert "above the step error in the table of steps" in " ".join(table.notes)
+    assert table.headings[1:3] == ("largest difference\nto 5 s, %", "rms\nto 5 s, %")
+    assert table.rows == [("kantorovich-4", "10.00", "5.00", "25.00", "12.50")]
+
+
+def test_steps_for_peaks_are_counted_and_rated() -> None:
+    plain = step_table(results())
+    steps, changes = (
+        f"2{part}".replace(" ", "\N{NO-BREAK SPACE}") for part in (" 380 952", " 020")
+    )
+    assert plain.rows[0] == ("kantorovich-4", "4.2", steps, changes)
+    more = step_table(results(steps_for_peaks=steps_for_peaks(1500), step_error=0.0123))
+    assert [row[-2:] for row in more.rows] == [
+        ("1\N{NO-BREAK SPACE}500", "1.2"), ("–", "–"), ("–", "–"),
+    ]  # fmt: skip
+    assert "the first 3 of them within 1 %" in " ".join(more.notes)
+
+
+def test_contact_laws_are_those_of_the_models() -> None:
+    table = law_table(results())
+    assert table.rows == [
+        (name, "inner in outer", "14.0", "k 1e+13, n 2", "168.9") for name in MODELS[:2]
+    ]
+    free = results()
+    joints = [replace(joint, bonded=True) for joint in free.case.joints]
+    bonded = free.case.model_copy(update={"joints": tuple(joints)})
+    assert not law_table(Results(bonded, free.trajectories, free.summary)).rows

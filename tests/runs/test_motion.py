@@ -1,23 +1,27 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Time steps of the motions of a model, and results if a motion fails."""
+"""Time steps, damping and friction of the motions of a model, and results if a motion fails."""
 
+import numpy as np
 import pytest
 
 from dynamics.failure import NumericsError
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
-from protractile.cases import change
+from protractile.cases import change, run_case
 from runs.case.reading import select
+from runs.case.schema import DampingTable
 from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.motion_results import Peak
-from runs.pipeline.run import Run, run_case
+from runs.pipeline.run import Run
+from runs.pipeline.run import run_case as run_models
 from tests.runs.case_texts import shipped
+from tests.runs.summaries import motion_of
 
 
 def short(name: str, model: str, **values: object) -> Run:
-    return run_case(change(select(shipped(name), "", [model]), **values), "", RunContext())
+    return run_models(change(select(shipped(name), "", [model]), **values), "", RunContext())
 
 
 def answers(run: Run) -> ModelDesignResults:
@@ -79,3 +83,30 @@ def test_factor_needs_a_static_value_of_some_size(
 ) -> None:
     """Reference: by hand; a torque of round-off at rest gives no factor of 30000."""
     assert Peak("torque", "foot", "N m", 3.0, 1.0, at_rest).factor == factor
+
+
+@pytest.mark.parametrize("damping", [{"modal": 0.015}, {"stiffness": 3e-4}], ids=str)
+@pytest.mark.parametrize("name", ["lift", "inspection-arm"])
+def test_a_pressed_boom_keeps_its_ledger(name: str, damping: dict[str, float]) -> None:
+    case = change(shipped(name), **{"time.duration": 0.5, "time.output_step": 0.01})
+    run = motion_of(case.model_copy(update={"damping": DampingTable(**damping)}), 1)
+    assert run.energy_residual < 1e-4
+    loss = np.diff(run.data["damping_loss"].values)
+    assert loss.min() >= 0.0
+    assert loss.sum() > 0.0
+
+
+@pytest.mark.parametrize("friction", [0.05, 0.15])
+def test_arm_with_friction_moves_in_a_gust(friction: float) -> None:
+    """Reference: analytic, the balance of energy; steps of half the length, to 1 % of the range."""
+    joint = {"joint.friction": friction, "joint.lateral_play": 0.002}
+    case = change(shipped("inspection-arm"), **joint, **{"time.duration": 1.6})
+    beam = case.models[1]
+    steps = {"coarse": 1e-3, "fine": 5e-4}
+    models = (beam.model_copy(update={"name": one, "step": step}) for one, step in steps.items())
+    nothing = dict.fromkeys(("load_cases", "combinations", "spectra"), ())
+    results = run_case(case.model_copy(update=nothing | {"models": tuple(models)}))
+    coarse, fine = (results.trajectories["tip_lateral"].sel(model=one).values for one in steps)
+    assert float(np.abs(coarse - fine).max()) < 0.01 * float(np.ptp(fine))
+    for model in results.summary.models.values():
+        assert model.energy_residual < 1e-10
