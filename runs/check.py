@@ -162,7 +162,7 @@ def check_case(checked: CheckedCase) -> Check:
         # Imported late, since the results of a run take half a second.
         from runs.pipeline.quantities import static_limit_lines
 
-        lines += static_limit_lines(case.limits, [e.largest for e in extremes if e.name == "tip"])
+        lines += static_limit_lines(case.limits, extremes)
     lines.append(f"A run may take {run_cost(case, preview)}.")
     return Check(case.title, [table for table in tables if table.rows], lines)
 

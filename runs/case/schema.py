@@ -216,9 +216,9 @@ class LimitsTable(CaseTable):
     tip_at_rest: Annotated[Positive, In("m")] | None = None
     """the largest permitted static tip deflection in m"""
     stress: Annotated[Positive, In("Pa")] | None = None
-    """the largest permitted stress of an outer fibre in Pa"""
+    """the largest permitted bending stress in Pa, axial in outer fibres"""
     wall_stress: Annotated[Positive, In("Pa")] | None = None
-    """the largest permitted stress of a shell's walls in Pa"""
+    """the largest permitted local plate stress of a shell in Pa, a mean over a patch"""
     pad_pressure: Annotated[Positive, In("Pa")] | None = None
     """the largest permitted pressure of a pad in Pa"""
     first_frequency: Annotated[Positive, In("Hz")] | None = None

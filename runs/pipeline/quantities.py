@@ -14,6 +14,7 @@ from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
 from runs.case.schema import LimitsTable
 from runs.pipeline.design_results import ModelDesignResults
+from runs.pipeline.largest_loads import StaticExtreme
 from runs.pipeline.metrics import Metric, metrics, records
 from runs.pipeline.summary import ModelSummary
 
@@ -32,6 +33,9 @@ ROUND_OFF = 1.0e-12
 # Fraction of the initial vibration that remains after the decay time.
 DECAYED_SHARE = 0.1
 
+# Kinds of static results with limits: the starts of their names.
+_STATIC = {"tip": "tip", "tip_at_rest": "tip", "stress": "stress", "pad_pressure": "pad"}
+
 # Classes whose annotated fields are quantities, too.
 _RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
 
@@ -42,8 +46,8 @@ QUANTITIES = (
     Metric("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
     Metric("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
     Metric("contact_force", "N", "contact force", TO_KILO, "kN"),
-    Metric("stress", "Pa", "stress", TO_MEGA, "MPa"),
-    Metric("wall_stress", "Pa", "wall stress", TO_MEGA, "MPa"),
+    Metric("stress", "Pa", "bending stress", TO_MEGA, "MPa"),
+    Metric("wall_stress", "Pa", "local plate stress", TO_MEGA, "MPa"),
     Metric("pad_pressure", "Pa", "pad pressure", TO_MEGA, "MPa"),
     Metric("damage", "1", "damage", 1.0, "–", logarithmic=True),
     Metric("first_frequency", "Hz", "first frequency", 1.0, "Hz"),
@@ -195,25 +199,30 @@ def case_limits(table: LimitsTable | None) -> list[Limit]:
     ]
 
 
-def static_limit_lines(table: LimitsTable | None, tips: Sequence[float]) -> Iterator[str]:
-    """Yield a sentence on each limit of a case; limits of the tip are compared with static values.
+def static_limit_lines(
+    table: LimitsTable | None, extremes: Sequence[StaticExtreme]
+) -> Iterator[str]:
+    """Yield a sentence on each limit of a case, with the static result where there is one.
 
     Args:
         table: limits of the case.
-        tips: largest static tip deflection in m; empty without an equilibrium.
+        extremes: extreme static results; empty without an equilibrium.
     """
     for limit in case_limits(table):
-        if not tips or limit.quantity.name not in ("tip", "tip_at_rest"):
+        kind, at_rest = _STATIC.get(limit.quantity.name), limit.quantity.name == "tip_at_rest"
+        values = [abs(one.largest) for one in extremes if one.name.partition(", ")[0] == kind]
+        if not values:
             yield f"Limit {limit}: a run decides."
             continue
-        tip = abs(tips[0])
-        static = f"the static tip deflection (maximum load) is {limit.format(tip)}"
-        if not limit.is_met_by(tip):
+        largest, title = max(values), limit.quantity.title
+        what = title if at_rest else f"static {title} (maximum load)"
+        static = f"the {what} is {limit.format(largest)}"
+        if not limit.is_met_by(largest):
             yield f"caution: the limit {limit} is exceeded: {static}"
-        elif limit.quantity.name == "tip":
-            yield f"Limit {limit}: {static}, and the motion adds to it; a run decides."
+        elif at_rest:
+            yield f"Limit {limit}: met, {limit.format(largest)}."
         else:
-            yield f"Limit {limit}: met, {limit.format(tip)}."
+            yield f"Limit {limit}: {static}, and the motion adds to it; a run decides."
 
 
 def check_limits(results: Results) -> Iterator[LimitCheck]:

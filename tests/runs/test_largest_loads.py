@@ -16,7 +16,9 @@ from geometry.profiles import hexagon
 from geometry.section import BoxSection
 from protractile.cases import run_case
 from runs.case.build import build_boom
+from runs.case.checked_case import CheckedCase
 from runs.case.conversion import convert_to_si
+from runs.check import check_case
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.largest_loads import (
     BeamStates,
@@ -167,6 +169,22 @@ def test_statics_include_a_released_load_up_to_its_release(tmp_path: Path) -> No
     static = statics(case, build_boom(case))
     assert static is not None
     assert sum(one.force for one in reactions(static.with_play)) == pytest.approx(2000.0, rel=1e-6)
+
+
+def test_check_compares_limits_with_static_stresses_and_pads(tmp_path: Path) -> None:
+    """Reference: by hand, 2000 N · 14 m at 0.204 m off the axis; the lever rule for a pad."""
+    limits = "[limits]\nstress = 2e7\npad_pressure = 2e6\nwall_stress = 2e8\n"
+    case = read_case(tmp_path, boom_of(RAMP) + limits)
+    inertia = build_boom(case).segments[0].second_moment_of_area
+    stress = f"{1e-6 * 2000.0 * 14.0 * 0.204 / inertia:.4g} MPa"
+    pressure = f"{1e-6 * 2000.0 * (14.0 - 6.1) / 1.8 / 0.02:.4g} MPa"
+    assert [line for line in check_case(CheckedCase(case)).lines if "imit " in line] == [
+        "caution: the limit bending stress ≤ 20 MPa is exceeded: the static bending stress "
+        f"(maximum load) is {stress}",
+        "Limit local plate stress ≤ 200 MPa: a run decides.",
+        f"Limit pad pressure ≤ 2 MPa: the static pad pressure (maximum load) is {pressure}, and "
+        "the motion adds to it; a run decides.",
+    ]
 
 
 def test_loads_are_listed_with_their_largest_values(tmp_path: Path) -> None:

@@ -376,7 +376,7 @@ def test_constant_quantity_has_no_panel(planned: Planned, sheets: list[Sheet]) -
     ]
     Path("out").mkdir()
     output.write(sweeping, outcomes, Path("out"))
-    assert [axes.get_title(loc="left") for axes in sheets[0].axes] == ["stress (MPa)"]
+    assert [axes.get_title(loc="left") for axes in sheets[0].axes] == ["bending stress (MPa)"]
     (axes,) = sheets[0].axes
     assert axes.yaxis.get_major_formatter().get_offset() == ""
 
