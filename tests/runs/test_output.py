@@ -1,26 +1,30 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Folder of a run: its files, its report, and unique names of columns."""
+"""Folder of a run: its files, its report, its summary, and unique names of columns."""
 
 import csv
 import json
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
+from pydantic import ValidationError
 
 from protractile.cases import change
 from runs.case import reading as case_file
 from runs.client import judge
+from runs.folder.cache import Cache
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run
 from runs.pipeline.static_results import place_names
+from runs.pipeline.summary import Summary
 from runs.report.output import write, write_csv, write_report
 from runs.report.pages import Addition
 from tests.runs.case_texts import shipped
-from tests.runs.summaries import finished
+from tests.runs.summaries import finished, model_summary, summary_of
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 
@@ -130,3 +134,51 @@ def test_a_folder_of_before_gets_its_cautions(run: Run, folder: Path) -> None:
         "than 5 %: small-displacement theory is not valid; check units and loads"
     )
     assert told.replace("'", "&#39;") in (folder / "report.html").read_text(encoding="utf-8")
+
+
+# Of runs before summaries had types, all their keys among them.
+EARLIER = Path(__file__).parent / "data" / "summary.json"
+
+
+def content() -> dict[str, Any]:
+    found: dict[str, Any] = json.loads(EARLIER.read_text(encoding="utf-8"))
+    return found
+
+
+def test_keys_and_values_are_unchanged() -> None:
+    """Reference: the stored file, to the last digit and in its order."""
+    text = json.dumps(content(), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+    assert str(Summary.load(EARLIER)) == text
+
+
+def test_a_summary_comes_back_from_a_cache(tmp_path: Path) -> None:
+    summary = Summary.load(EARLIER)
+    Cache(tmp_path).store("a", summary)
+    assert str(Cache(tmp_path).load("a", Summary)) == str(summary)
+
+
+def test_values_that_are_not_finite_are_null() -> None:
+    nan, infinite = float("nan"), float("inf")
+    model = model_summary(first_contact=nan, first_peak={"tip": (nan, nan)})
+    model.mesh_error = infinite
+    found = json.loads(str(summary_of({"boom": model})))["models"]["boom"]
+    assert (found["first_contact"], found["first_peak"]["tip"]) == (None, [None, None])
+    assert found["mesh_error"] is None
+    assert "step_error" not in found
+
+
+@pytest.mark.parametrize(
+    ("model", "key", "wrong"),
+    [
+        ("shell", "steps", None), ("shell", "kind", 3), ("kantorovich-4", "ensemble", {}),
+        ("beam-fe-bonded", "first_peak", {"tip": [1.0]}), ("shell", "stress", {"von_mises": 1.0}),
+        ("shell", "colour", "red"),
+    ],
+)  # fmt: skip
+def test_another_version_s_is_refused(tmp_path: Path, model: str, key: str, wrong: Any) -> None:
+    other = content()
+    other["models"][model][key] = wrong
+    (tmp_path / "summary.json").write_text(json.dumps(other), encoding="utf-8")
+    with pytest.raises(ValidationError) as refused:
+        Summary.load(tmp_path / "summary.json")
+    assert refused.value.errors()[0]["loc"][:3] == ("models", model, key)
