@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Errors in a case file: text of the coarse case, its replacement, and the expected message."""
 
-from tests.runs.coarse_case import CONTACT, FROM_EXPONENT, adding, replacing
+from tests.runs.case_texts import CONTACT, FROM_EXPONENT, adding, replacing
 
 # Keys and types, and missing keys.
 BOX = "section = { height = 0.49, width = 0.33, flange = 0.0065, web = 0.0065 }"

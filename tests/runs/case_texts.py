@@ -2,7 +2,7 @@
 """Common parts of case files for several tests, and their reading and refusal."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -13,6 +13,10 @@ from runs.case import reading
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 
+COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
+CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact = "))
+# From the law of its joint on, for slips in several lines of it.
+FROM_EXPONENT = COARSE[COARSE.index("exponent = 2.0") :]
 STEEL = """
 [material]
 youngs_modulus = 2.1e11
@@ -117,3 +121,17 @@ def refusal(folder: Path, content: str | bytes) -> str:
     with pytest.raises(BadInput) as refused:
         read_case(folder, content)
     return str(refused.value).removeprefix(f"{folder / 'case.toml'}: ")
+
+
+# Input error: text of the case, its replacement, and the expected message.
+Slip = tuple[str, str, str]
+
+
+def replacing(text: str, slips: Mapping[str, str]) -> list[Slip]:
+    """Return input errors: a text of the case, its replacement, and the expected message."""
+    return [(text, slip, line) for slip, line in slips.items()]
+
+
+def adding(text: str, slips: Mapping[str, str]) -> list[Slip]:
+    """Return input errors by lines added below a text of the case."""
+    return replacing(text, {f"{text}\n{slip}": line for slip, line in slips.items()})

@@ -17,8 +17,7 @@ from runs.case.schema import Case
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 from studies.reference_models.statics import static_response
-from tests.runs.case_texts import CLAMPED, REST, STEEL, elements, read_case, refusal, table
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import CLAMPED, COARSE, REST, STEEL, elements, read_case, refusal, table
 
 CANTILEVER = f"""
 title = "One segment"

@@ -29,8 +29,7 @@ from runs.report.output import write
 from runs.report.pages import Addition
 from studies.motions import move
 from studies.working_load import Point, set_point
-from tests.runs.case_texts import elements, read_case, table
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, elements, read_case, table
 
 pytestmark = pytest.mark.slow
 

@@ -21,8 +21,7 @@ from runs.case.kinds.shell import Shell
 from runs.case.reading import load, select
 from runs.case.schema import Case, EnsembleTable, case_schema
 from tests.runs.bad_edits import BAD_EDITS
-from tests.runs.case_texts import joint, read_case, refusal, refused, shipped, table
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, joint, read_case, refusal, refused, shipped, table
 from tests.touching import contact_laws
 
 

@@ -27,8 +27,7 @@ from runs.pipeline.estimates import (
     sweep_cost,
 )
 from runs.sweep import points as sweep_points
-from tests.runs.case_texts import edited, refused, shipped
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, edited, refused, shipped
 from tests.runs.summaries import printed
 
 ROOT = Path(__file__).parents[2]

@@ -13,8 +13,7 @@ from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.sweep.points import plan
 from tests.beam_model.exact import bonded_frequencies
-from tests.runs.case_texts import STEEL, box, edited, elements, refused, table
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, STEEL, box, edited, elements, refused, table
 from tests.system.run_folder import protractile
 
 LAW = {"stations": ["tail", "head"], "play": 0.006, "stiffness": 1e9, "exponent": 1.0}

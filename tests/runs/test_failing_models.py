@@ -19,7 +19,7 @@ from runs.paper.rules import judge
 from runs.pipeline import run
 from runs.pipeline.models import MotionPlan
 from runs.pipeline.results import Results
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE
 from tests.system.run_folder import protractile
 
 pytestmark = pytest.mark.usefixtures("few_figures", "unprinted")

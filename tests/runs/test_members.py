@@ -27,8 +27,7 @@ from runs.pipeline.summary import EnsembleSummary
 from runs.report.figures import draw
 from runs.report.output import write
 from runs.report.pages import Addition
-from tests.runs.case_texts import refusal, shipped
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, refusal, shipped
 from tests.runs.summaries import finished
 
 SERIES = ["kantorovich-4", "kantorovich-5"]

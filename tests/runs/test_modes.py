@@ -23,8 +23,7 @@ from protractile.cases import run_case
 from runs.case.kinds import KINDS
 from runs.pipeline.modes import Mode, match_modes, modes
 from runs.pipeline.section_forces import LoadedModel
-from tests.runs.case_texts import read_case, refusal
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, read_case, refusal
 from tests.runs.test_actions import CANTILEVER
 
 BOX = BoxSection(height=0.30, width=0.20, flange=0.006, web=0.006)

@@ -20,8 +20,7 @@ from runs.pipeline.static_results import positions, station_loads
 from runs.pipeline.summary import Summary
 from runs.report.result_tables import pad_table
 from runs.report.summary_table import summary_table
-from tests.runs.case_texts import elements, read_case, refusal
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, elements, read_case, refusal
 from tests.runs.summaries import motion_of, printed_check
 from tests.touching import contact_laws
 

@@ -14,8 +14,7 @@ from geometry.section import BoxSection, Section
 from runs.case.build import build_boom
 from runs.case.reading import load
 from runs.pipeline.models import build
-from tests.runs.case_texts import edited, refused
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, edited, refused
 from tests.system.run_folder import protractile
 
 # The two segments' numbers as beams.

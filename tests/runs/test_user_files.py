@@ -16,8 +16,7 @@ from runs.case.units import Unit
 from runs.case.user_files import MAX_BYTES, check_not_working_folder
 from runs.folder.files import MANIFEST
 from runs.pipeline.results import prepare
-from tests.runs.case_texts import refused
-from tests.runs.coarse_case import COARSE
+from tests.runs.case_texts import COARSE, refused
 
 GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'
 
