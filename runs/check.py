@@ -194,8 +194,10 @@ def _segments(case: Case, boom: Boom) -> Table:
         _spans(case.system, [one.ends for one in segments]),
         column("mass", "kg/m", [one.mass_per_length for one in segments]),
         column("I_y", "m^4", [one.second_moment_of_area for one in segments]),
-        column("rotary\ninertia", "kg m", [one.rotary_inertia for one in segments], ".3g"),
-        Column("section h x b,\nplates t, mm", boxes),
+        column(
+            "rotary inertia\nper length", "kg m", [one.rotary_inertia for one in segments], ".3g"
+        ),
+        Column("h × b of\nmid-lines, t of\nflange / web, mm", boxes),
     ]
     return Table("Segments", columns)
 
@@ -203,7 +205,7 @@ def _segments(case: Case, boom: Boom) -> Table:
 def _size(section: Section) -> str:
     """Return two lines of text: height and width of a section, then its plate thicknesses."""
     size, plates = str(section).rsplit(" x ", 1)
-    return f"{size}\nt {plates}"
+    return f"{size.replace(' x ', ' × ')}\nt {plates}"
 
 
 def _stiffeners(boom: Boom, system: System) -> Table:
@@ -238,7 +240,7 @@ def _joints(case: Case, boom: Boom) -> Table:
         free = "unknown"
         if outer.section is not None and inner.section is not None:
             height, width = room(joint, outer, inner)
-            free = f"{1e3 * height:.1f} high\n{1e3 * width:.1f} wide"
+            free = f"{1e3 * height:.1f} above + below\n{1e3 * width:.1f} right + left"
         cells = (
             f"{inner.name} in {outer.name}",
             f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
@@ -248,9 +250,11 @@ def _joints(case: Case, boom: Boom) -> Table:
             _friction(joint),
         )
         rows.append(cells)
-    sizes = f"overlap\n{m}", f"stations\n{m}", "clearance\nmm", "free gap\nmm"
+    sizes = f"overlap\n{m}", f"stations\n{m}", "clearance\nmm", "gap without pads\nmm"
     headings = ("joint", *sizes, "friction")
-    return Table.of_rows("", "Joints", headings, rows)
+    inside = "The centre of a pad at the end of the overlap lies half its length inside."
+    notes = [inside] if any(joint.padded for joint in boom.joints) else []
+    return Table.of_rows("", "Joints", headings, rows, notes)
 
 
 def _clearances(joint: Joint) -> Iterator[str]:
@@ -277,10 +281,14 @@ def _friction(joint: Joint) -> str:
 def _models(case: Case, boom: Boom) -> Table:
     rows = []
     for model in case.models:
-        laws = {str(joint.contact) for joint in model.model_boom(boom).boom.joints}
-        contact = "bonded" if model.bonded else "; ".join(sorted(laws))
+        joints = model.model_boom(boom).boom.joints
+        laws = dict.fromkeys(str(joint.contact) for joint in joints)
+        if len(laws) > 1:
+            names = [boom.segments[joint.inner].name for joint in joints]
+            laws = {f"{n}: {one.contact}": None for n, one in zip(names, joints, strict=True)}
+        contact = "bonded" if model.bonded else "\n".join(laws)
         rows.append((model.name, model.kind, model.describe(), contact))
-    headings = ("model", "kind", "description", "contact (k in N/mⁿ)")
+    headings = ("model", "kind", "description", "contact of inner\nsegment, k in N/mⁿ")
     return Table.of_rows("", "Models", headings, rows)
 
 
@@ -306,7 +314,7 @@ def _masses(boom: Boom, system: System) -> Table:
 
 
 def axial_forces(boom: Boom, static: Statics | None) -> Table:
-    """Return the table of each segment's extreme axial force, positive in compression.
+    """Return the table of each segment's extreme axial force, positive in tension.
 
     Args:
         boom: boom of the case.
@@ -318,12 +326,12 @@ def axial_forces(boom: Boom, static: Statics | None) -> Table:
     extremes = [_extreme_axial_force(boom, i, state) for i in range(len(boom.segments))]
     columns = [
         Column("segment", [one.name for one in boom.segments]),
-        Column("axial force", without_round_off([force for force, _ in extremes]), ".4g", "kN"),
-        Column("axial stress", [stress for _, stress in extremes], ".4g", "MPa"),
+        Column("axial force", without_round_off([-force for force, _ in extremes]), ".4g", "kN"),
+        Column("axial stress", [stress and -stress for _, stress in extremes], ".4g", "MPa"),
     ]
     note = "Extreme values over all extensions; cylinder forces at t = 0."
     notes = [note] if boom.cylinders else []
-    return Table("Extreme axial forces, compression positive", columns, notes)
+    return Table("Extreme axial forces, tension positive", columns, notes)
 
 
 def _extreme_axial_force(
@@ -425,11 +433,15 @@ def _reactions(state: StaticState, system: System) -> Table:
     moments: list[Cell] = [one.moment if abs(one.moment) > _NO_MOMENT else "" for one in reactions]
     along: list[Cell] = [one or "" for one in without_round_off([one.along for one in reactions])]
     depths: list[Cell] = ["" if one.depth is None else one.depth for one in reactions]
+    lugs = {(state.boom.segments[one.segment].name, one.x) for one in state.boom.cylinders}
+    places = [one.segment + ", lug" * ((one.segment, one.x) in lugs) for one in reactions]
     columns = [
-        Column("segment", [one.segment for one in reactions]),
+        Column("segment", places),
         Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in reactions]),
-        Column("force", without_round_off([one.force for one in reactions]), ".4g", "kN"),
-        *([Column("axial force", along, ".4g", "kN")] if any(along) else []),
+        Column(
+            "transverse\nforce", without_round_off([one.force for one in reactions]), ".4g", "kN"
+        ),
+        *([Column("axial\nforce", along, ".4g", "kN")] if any(along) else []),
         Column("moment", moments, ".4g", "kN m"),
         Column("contact\npenetration", depths, ".3g", "mm"),
     ]
@@ -455,7 +467,8 @@ def _cylinders(state: StaticState, system: System) -> Table:
         Column(f"lever arm\n{system.label('m')}", arms, ".5g"),
         Column("force", [cylinder_force(state, 1 + i) for i in range(len(cylinders))], ".4g", "kN"),
     ]
-    return Table("Cylinders at rest, t = 0", columns)
+    note = "Cylinder forces are positive in compression."
+    return Table("Cylinders at rest, t = 0", columns, [note] if cylinders else [])
 
 
 def _static_lines(
@@ -481,8 +494,8 @@ def _static_lines(
         f"play {milli(bonded.tip)} mm."
     )
     yield (
-        f"First natural frequency, joints in contact, {_BEAMS}: {number(hertz, 4)} Hz; without "
-        f"play {number(bonded_hertz, 4)} Hz."
+        f"First natural frequency, joints in contact, {_BEAMS}{walls}: {number(hertz, 4)} Hz; "
+        f"without play {number(bonded_hertz, 4)} Hz."
     )
     causes = "Play and the walls under pads rotate" if padded else "Play rotates"
     rest = beam.farthest

@@ -271,10 +271,9 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
     if any(joint.padded for joint in boom.joints):
         more.append("Local plate stresses are not included; a run with a shell has them.")
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
-    kinds = (
-        "Stresses are bending stresses, axial in outer fibres. Contact forces act on the outer "
-        "segment, upwards where positive."
-    )
+    kinds = "Stresses are bending stresses, axial in outer fibres."
+    if any(one.name.startswith("contact") for one in extremes):
+        kinds += " Contact forces act on the outer segment, upwards where positive."
     return Table(title, columns, [beam_note(boom), kinds, *more])
 
 

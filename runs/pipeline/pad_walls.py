@@ -50,11 +50,11 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     better = sorted((there / tip, there, what) for there, what in remedies)
     better = [one for one in better if one[0] < HELPFUL]
     if better:
-        listed = "; ".join(f"{what} ({milli(there)} mm)" for _, there, what in better)
         yield (
             "Remedies, with the static tip deflection under these loads (a run with a shell gives "
-            f"their local plate stresses): {listed}."
+            "their local plate stresses):"
         )
+        yield from (f"- {milli(there)} mm: {what}" for _, there, what in better)
 
 
 def wall_part(beam: BeamStates) -> float | None:
@@ -107,8 +107,8 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     bearing = f"pads that bear on the corners, bears = 'corner'{without}"
     yield bearing, _with_pads(boom, lambda *_: corner)
     collars = (
-        "collars on both segments at each pad, as thick as the walls, over half the height of the "
-        "box to both sides; two of them per joint obstruct telescoping"
+        "collars as thick as the walls on both segments at each pad, along x over half the height "
+        "of the box to both sides (two of them per joint obstruct telescoping)"
     )
     yield collars, _with_collars(boom)
 

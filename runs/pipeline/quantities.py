@@ -220,7 +220,10 @@ def static_limit_lines(
         if not limit.is_met_by(largest):
             yield f"caution: the limit {limit} is exceeded: {static}"
         elif at_rest:
-            yield f"Limit {limit}: met, {limit.format(largest)}."
+            yield (
+                f"Limit {limit}: met in this case, {limit.format(largest)}; `protractile prove` "
+                "compares the combinations with it."
+            )
         else:
             yield f"Limit {limit}: {static}, and the motion adds to it; a run decides."
 

@@ -14,6 +14,7 @@ from runs.pipeline.combinations import combination_tables
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.metrics import records
 from runs.pipeline.motion_results import Peak
+from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.proofs import proof_table
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import StaticResult
@@ -158,6 +159,7 @@ def mode_table(results: Results) -> Table:
     notes = (
         "The modes keep the contacts of the static state at t = 0: closed ones stay closed, open "
         "ones stay open.",
+        *filter(None, [rigid_wall_note(results.completed_models, results.boom)]),
     )
     return Table("Modes in the static state at t = 0", columns, notes, "modes")
 

@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 ROOMY, NARROW = 115, 40
 WIDE = 180
 # Spaces at which no line breaks, for example between a number and its unit.
-_KEPT_SPACE = re.compile(r"(?<=\d) (?=[^\W\d]{1,3}\b|[%×])|(?<=×) (?=\d)|(?<=[=≤≥]) (?=[−\d])")
+_KEPT_SPACE = re.compile(
+    r"(?<=\d) (?=[^\W\d]{1,3}\b|[%×])|(?<=×) (?=\d)|(?<=\b\w) (?=[=≤≥])|(?<=[=≤≥]) (?=[−\d])"
+)
 
 # Conversion factors from SI units to units of headings; all other units are SI units.
 _FACTORS = {"%": TO_PERCENT, "mm": TO_MILLI, "mrad": TO_MILLI, "ms": TO_MILLI, "µs": TO_MICRO}

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 
 from rich.console import Console
 
+from geometry.typography import TO_PERCENT
 from runs.client import show
 from runs.pipeline.combinations import combination_tables
 from runs.pipeline.pad_walls import rigid_wall_note
@@ -38,6 +39,9 @@ SHOWN = {
     "energy residual\nof the work": "energy residual\nof the work",
     "computing time\ns": "computing\ntime, s",
 }
+
+# Short name of the governing kind of utilisation.
+_GOVERNING = {"plate": "plate", "outer fibre": "bending", "pad": "pad", "detail": "fatigue"}
 
 
 def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
@@ -107,21 +111,31 @@ def result_table(results: Results) -> Table:
     if not pads:
         contacts = [largest_peak(designs[name], "contact force") for name in names]
         forces = [one.largest if one else None for one in contacts]
-    used = [[one.value or 0.0 for one in utilisations(results, n).values()] for n in names]
+    used = [utilisations(results, name).values() for name in names]
+    governing = [max(several, key=lambda one: one.value or 0.0, default=None) for several in used]
+    shares = [
+        f"{TO_PERCENT * one.value:.3g} {_GOVERNING[one.part]}" if one and one.value else None
+        for one in governing
+    ]
     tips = [farthest(results.trajectories["tip"].sel(model=name).values) for name in names]
     columns = [
         Column("model", names),
-        Column("static tip\nt = 0", [tip[0] if tip else None for tip in static], ".1f", "mm"),
-        Column("static tip\nmax. load", highest, ".1f", "mm"),
+        Column("tip, static\nt = 0", [tip[0] if tip else None for tip in static], ".1f", "mm"),
+        Column("tip, max.\nload", highest, ".1f", "mm"),
         Column("dynamic\ntip", tips, ".1f", "mm"),
         Column("factor\nφ", [one.factor if one else None for one in peaks], ".3g"),
         Column("first\nmode", [m[0].frequency if m else None for m in modes], ".3g", "Hz"),
-        Column("pad\nforce" if pads else "contact\nforce", forces, ".3g", "kN"),
-        Column("utilis-\nation", [max(one, default=0.0) or None for one in used], ".3g", "%"),
+        Column("one pad" if pads else "contact\nforce", forces, ".3g", "kN"),
+        Column("utilisation", shares, "", "%"),
     ]
     columns = [one for one in columns if any(cell is not None for cell in one.cells)]
     models = [model for model in results.completed_models if model.name in names]
-    notes = [*filter(None, [rigid_wall_note(models, results.boom)])]
+    notes = [
+        "φ: maximum in motion over the static value under the maximum load."
+        + " One pad: largest force of one pad of a pair." * bool(pads)
+        + " Utilisation: of the governing strength." * any(shares),
+        *filter(None, [rigid_wall_note(models, results.boom)]),
+    ]
     return Table(f"Results: {results.case.title}", columns, notes)
 
 

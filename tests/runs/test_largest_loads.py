@@ -244,8 +244,7 @@ def test_statics_name_their_model_and_fit_a_terminal(tmp_path: Path) -> None:
     assert (
         "These are estimates by a Timoshenko beam with the compliance of walls under\n"
         "pads.\n"
-        "Stresses are bending stresses, axial in outer fibres. Contact forces act on the\n"
-        "outer segment, upwards where positive.\n"
+        "Stresses are bending stresses, axial in outer fibres.\n"
         "Local plate stresses are not included; a run with a shell has them."
     ) in shown
 

@@ -123,8 +123,8 @@ class Shell(ModelTable):
 
     def describe(self) -> str:
         places = {
-            "near webs": "at pads, without pads on lines near webs",
-            "across": "on lines across the flanges",
+            "near webs": "at pads (without pads: lines near webs)",
+            "across": "on lines across flanges",
         }
         line = places.get(self.contact_line, "over the surface of the overlap")
         return f"mesh {self.mesh_size:g} m, contact {line}"
