@@ -75,8 +75,9 @@ SHOWN_MODES = 3
 # Distance of a section from a jump of the axial force, as a fraction of the segment length.
 _BESIDE = 1.0e-9
 
-# Damping ratio, and moment in N·m, below which values count as zero.
-_ROUND_OFF, _NO_MOMENT = 1.0e-12, 1.0e-3
+# Damping ratio, and moment as a fraction of the largest force times the length of the boom, below
+# which values count as zero.
+_ROUND_OFF, _NO_MOMENT = 1.0e-12, 1.0e-7
 
 _BEAMS = "in the beam estimate"
 
@@ -329,7 +330,9 @@ def axial_forces(boom: Boom, static: Statics | None) -> Table:
         Column("axial force", without_round_off([-force for force, _ in extremes]), ".4g", "kN"),
         Column("axial stress", [stress and -stress for _, stress in extremes], ".4g", "MPa"),
     ]
-    note = "Extreme values over all extensions; cylinder forces at t = 0."
+    note = "Cylinder forces are those at t = 0."
+    if boom.telescopes:
+        note = "Extreme values over all extensions; cylinder forces at t = 0."
     notes = [note] if boom.cylinders else []
     return Table("Extreme axial forces, tension positive", columns, notes)
 
@@ -430,7 +433,9 @@ def _shaper_lines(preview: Preview) -> Iterator[str]:
 def _reactions(state: StaticState, system: System) -> Table:
     """Return the table of support reactions, contact forces and contact penetrations."""
     reactions = list(contact_and_support_reactions(state).values())
-    moments: list[Cell] = [one.moment if abs(one.moment) > _NO_MOMENT else "" for one in reactions]
+    forces = [one.force for one in reactions]
+    least = _NO_MOMENT * max(map(abs, forces), default=0.0) * state.boom.length
+    moments: list[Cell] = [one.moment if abs(one.moment) > least else "" for one in reactions]
     along: list[Cell] = [one or "" for one in without_round_off([one.along for one in reactions])]
     depths: list[Cell] = ["" if one.depth is None else one.depth for one in reactions]
     lugs = {(state.boom.segments[one.segment].name, one.x) for one in state.boom.cylinders}
@@ -438,9 +443,7 @@ def _reactions(state: StaticState, system: System) -> Table:
     columns = [
         Column("segment", places),
         Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in reactions]),
-        Column(
-            "transverse\nforce", without_round_off([one.force for one in reactions]), ".4g", "kN"
-        ),
+        Column("transverse\nforce", without_round_off(forces), ".4g", "kN"),
         *([Column("axial\nforce", along, ".4g", "kN")] if any(along) else []),
         Column("moment", moments, ".4g", "kN m"),
         Column("contact\npenetration", depths, ".3g", "mm"),
@@ -489,13 +492,14 @@ def _static_lines(
     )
     padded = any(joint.padded for joint in state.boom.joints)
     walls = ", with the compliance of walls under pads" if padded else ""
+    without = "with bonded joints and rigid walls:" if padded else "without play"
     yield (
-        f"Static tip deflection (t = 0) {_BEAMS}{walls}: {milli(state.tip)} mm; without "
-        f"play {milli(bonded.tip)} mm."
+        f"Static tip deflection (t = 0) {_BEAMS}{walls}: {milli(state.tip)} mm; {without} "
+        f"{milli(bonded.tip)} mm."
     )
     yield (
         f"First natural frequency, joints in contact, {_BEAMS}{walls}: {number(hertz, 4)} Hz; "
-        f"without play {number(bonded_hertz, 4)} Hz."
+        f"{without} {number(bonded_hertz, 4)} Hz."
     )
     causes = "Play and the walls under pads rotate" if padded else "Play rotates"
     rest = beam.farthest

@@ -20,6 +20,9 @@ from runs.pipeline.strength import Life
 from runs.pipeline.turning import CraneDrives, Hoisting
 from runs.pipeline.wall_buckling import WallBuckling
 
+# Fraction of the value with play below which a value without play is near zero.
+_LEAST = 0.01
+
 
 @dataclass(frozen=True, slots=True)
 class ModelDesignResults:
@@ -85,8 +88,8 @@ class PlayDifference:
 
     @property
     def share(self) -> float | None:
-        """The increase as a fraction of the value without play; None if this value is zero."""
-        return self.increase / self.bonded if self.bonded else None
+        """The increase as a fraction of the value without play; None if this value is near zero."""
+        return self.increase / self.bonded if self.bonded > _LEAST * self.with_play else None
 
 
 @dataclass(frozen=True, slots=True)

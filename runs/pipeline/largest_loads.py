@@ -34,7 +34,7 @@ from runs.report.tables import Column, Table
 # Elements of the longest segment. The error of stresses under a uniform load is below 0.1 %.
 _ELEMENTS = 20
 # Fraction of the largest result of a unit that is displayed as 0.
-_NEGLIGIBLE = 1.0e-5
+_NEGLIGIBLE = 1.0e-4
 
 
 class StaticExtreme(NamedTuple):

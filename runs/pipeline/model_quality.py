@@ -18,8 +18,10 @@ from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.trajectory import PointwiseDifferences
 from geometry.axial import moving_force
 from geometry.boom import Boom
-from geometry.typography import TO_PERCENT, join_words, with_minus_signs
+from geometry.typography import TO_PERCENT, join_words
 from runs.case.actions import series_notes
+from runs.case.kinds.model import select_kind
+from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
 from runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
@@ -37,7 +39,7 @@ from runs.pipeline.static_results import bulge_cautions
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.summary import Comparisons, Summary, WholeRun
 from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
-from runs.report.formatting import number
+from runs.report.formatting import number, signed_percent
 
 # Members whose tips differ by more than this fraction of the range have diverged.
 _DIVERGED = 0.2
@@ -181,10 +183,6 @@ def _percent(part: float) -> str:
     return f"{TO_PERCENT * part:.2g} %"
 
 
-def _signed_percent(part: float) -> str:
-    return f"{with_minus_signs(f'{TO_PERCENT * part:+.2g}')} %"
-
-
 def _agreement(design: DesignResults) -> Iterator[str]:
     """Yield a sentence on the deviations of each other model with play from the reference."""
     if design.modes is None:
@@ -194,16 +192,16 @@ def _agreement(design: DesignResults) -> Iterator[str]:
     for name, matches in design.modes.matches.items():
         other, parts = design.models[name], []
         if (off := static_deviation(reference_results, other)) is not None:
-            parts.append(f"{_signed_percent(off)} in the static tip deflection")
+            parts.append(f"{signed_percent(off)} in the static tip deflection")
         if (first := matches[0]) is not None:
-            parts.append(f"{_signed_percent(first.off)} in the first frequency")
+            parts.append(f"{signed_percent(first.off)} in the first frequency")
         if (
             reference_results.motion is not None
             and other.motion is not None
             and reference_results.motion.peaks[0].largest
         ):
             ratio = other.motion.peaks[0].largest / reference_results.motion.peaks[0].largest
-            parts.append(f"{_signed_percent(ratio - 1.0)} in the maximum tip deflection")
+            parts.append(f"{signed_percent(ratio - 1.0)} in the maximum tip deflection")
         if parts:
             yield f"{name} differs from {reference} by {join_words(parts)}."
 
@@ -262,7 +260,7 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
         ),
         *_large_displacements(case, boom, data),
         *swing_cautions(case, data),
-        *_numerical(summary),
+        *_numerical(summary, case),
         *series_notes(case),
     ]
 
@@ -324,8 +322,14 @@ def _large_displacements(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[s
             )
 
 
-def _numerical(summary: Summary) -> Iterator[str]:
+def _numerical(summary: Summary, case: Case) -> Iterator[str]:
     """Yield cautions on errors of reductions and meshes."""
+    # Shells whose mesh follows from contact_tolerance near contacts.
+    refined = {
+        one.name
+        for one in select_kind(Shell, case.models)
+        if one.contact_tolerance != "any" and one.contact_line != "surface"
+    }
     for name, model in summary.models.items():
         if (error := model.reduction_errors.get("contact_compliance") or 0.0) > MAX_RELATIVE_ERROR:
             yield (
@@ -337,5 +341,6 @@ def _numerical(summary: Summary) -> Iterator[str]:
         if (error := model.mesh_error or 0.0) > MAX_RELATIVE_ERROR:
             yield (
                 f"caution: the mesh of {name} causes an error of {TO_PERCENT * error:.2g} % of the "
-                "local contact compliance; give a smaller mesh_size"
+                "local contact compliance; give a smaller "
+                f"{'contact_tolerance' if name in refined else 'mesh_size'}"
             )

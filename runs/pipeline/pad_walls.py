@@ -16,9 +16,9 @@ from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.proportions import CHECK_UNITS
 from runs.report.formatting import milli
 
-# Share of the tip deflection above which remedies are listed, and fraction to which a listed
-# remedy reduces the tip deflection at least.
-LARGE_SHARE, HELPFUL = 0.1, 0.98
+# Share of the tip deflection below which walls do not matter, share above which remedies are
+# listed, and fraction to which a listed remedy reduces the tip deflection at least.
+_NO_SHARE, LARGE_SHARE, HELPFUL = 5.0e-4, 0.1, 0.9
 # Share of the tip deflection above which walls under pads govern it.
 GOVERNING_SHARE = 0.5
 
@@ -36,7 +36,7 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     """
     boom, rest = beam.boom, beam.farthest
     tip, time, part = rest.tip, rest.time, wall_part(beam)
-    if part is None:
+    if part is None or abs(part) < _NO_SHARE:
         return
     share = part * tip
     caution = "caution: walls" if part > GOVERNING_SHARE else "Walls"
@@ -110,7 +110,8 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
         "collars as thick as the walls on both segments at each pad, along x over half the height "
         "of the box to both sides (two of them per joint obstruct telescoping)"
     )
-    yield collars, _with_collars(boom)
+    if (changed := _with_collars(boom)) != boom:
+        yield collars, changed
 
 
 def _sizes(joint: Joint) -> tuple[PadSize, ...]:
@@ -135,26 +136,23 @@ def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) 
 
 
 def _with_collars(boom: Boom) -> Boom:
-    """Return the boom with collars at all pads.
+    """Return the boom with collars at all pads, each as thick as the wall.
 
-    A new collar is as thick as the wall and extends half the height of the section on both sides
-    of the station. The thickness of the wall is added to an existing collar.
+    A new collar extends half the height of the section on both sides of the station. Where there is
+    a collar, it stays.
     """
     segments = list(boom.segments)
     for joint in (joint for joint in boom.joints if joint.padded):
         for index in (joint.outer, joint.inner):
             for x in joint.stations:
-                segments[index] = _thicken(segments[index], x)
+                segments[index] = _with_collar(segments[index], x)
     return replace(boom, segments=tuple(segments))
 
 
-def _thicken(segment: Segment, x: float) -> Segment:
+def _with_collar(segment: Segment, x: float) -> Segment:
     section = segment.section_at(x)
     reach, thickness = 0.5 * section.size("z"), section.face("z", 1).thickness
     start, end = max(segment.start, x - reach), min(segment.end, x + reach)
-    there = [one for one in segment.collars if one.span[0] < end and one.span[1] > start]
-    collars = [one for one in segment.collars if one not in there]
-    collars += [replace(one, thickness=one.thickness + thickness) for one in there]
-    if not there:
-        collars.append(Collar((start, end), thickness))
-    return replace(segment, collars=tuple(collars))
+    if any(one.span[0] < end and one.span[1] > start for one in segment.collars):
+        return segment
+    return replace(segment, collars=(*segment.collars, Collar((start, end), thickness)))

@@ -377,9 +377,10 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
         mass, weightless = 0.0, False
         if payload is not None:
             mass, weightless = payload.mass, case.gravity is None and payload.gravity == 0.0
-        if mass and weighs(force, mass) and not weightless:
+        constant = isinstance(load.history, Step)
+        if constant and mass and weighs(force, mass) and not weightless:
             yield (
-                f"{where}: {force:g} N at the tip is the weight of the payload, which acts "
+                f"{where}: if {force:g} N at the tip is the weight of the payload, it acts "
                 "already; leave it out"
             )
         elif isclose(-force, mass, rel_tol=SAME_WEIGHT):

@@ -63,6 +63,11 @@ def percent(part: float, digits: int = 3) -> str:
     return f"{number(TO_PERCENT * part, digits)} %"
 
 
+def signed_percent(part: float, digits: int = 2) -> str:
+    """Return a fraction in percent, with its sign."""
+    return f"{'+' if part > 0.0 else ''}{percent(part, digits)}"
+
+
 def fixed(value: float | None, decimals: int, factor: float = 1.0) -> str:
     """Return a number times a factor, with a given number of decimals; ``NONE`` for None."""
     if value is None or not math.isfinite(value):

@@ -19,7 +19,7 @@ from runs.pipeline.proofs import proof_table
 from runs.pipeline.results import Results
 from runs.pipeline.static_results import StaticResult
 from runs.report.figure_context import extension_note
-from runs.report.formatting import amount, number, without_round_off
+from runs.report.formatting import ROUND_OFF, amount, number, without_round_off
 from runs.report.model_tables import metric_columns
 from runs.report.tables import Cell, Column, Table
 
@@ -112,6 +112,9 @@ def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
 def _reaction_table(results: Results) -> Table:
     design = results.summary.design
     reactions = design.reactions
+    largest = max((abs(one.force) for one in reactions), default=0.0)
+    least = ROUND_OFF * largest * results.boom.length
+    moments = without_round_off([one.moment for one in reactions], least)
     bonded = {(one.segment, one.x): one.force for one in design.reactions_bonded}
     beside = [bonded.get((one.segment, one.x)) for one in reactions]
     lugs = {(results.boom.segments[one.segment].name, one.x) for one in results.boom.cylinders}
@@ -123,7 +126,7 @@ def _reaction_table(results: Results) -> Table:
         Column("support or cylinder lug", places),
         Column("transverse force", [one.force for one in reactions], ".4g", "kN"),
         *_force_column("axial force", [one.along for one in reactions], ".4g", "kN"),
-        *_force_column("moment", [one.moment for one in reactions], ".3g", "kN m"),
+        *_force_column("moment", moments, ".3g", "kN m"),
         Column("transverse force,\nwithout play", beside, ".4g", "kN"),
     )
     notes = (

@@ -20,7 +20,7 @@ from runs.pipeline.quantities import check_limits, decay_time
 from runs.pipeline.results import Results
 from runs.pipeline.strength import Utilisation, utilisations
 from runs.report.figure_context import farthest, tip_directions
-from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent
+from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent, signed_percent
 from runs.report.result_tables import is_negligible, times
 from runs.report.tables import Column, Table
 from shell_model.stress.history import BAND
@@ -119,11 +119,7 @@ def deviation_note(results: Results) -> str:
         if not model.bonded and model.name != reference
     ]
     offs = {name: static_deviation(design[reference], design[name]) for name in loose}
-    deviations = [
-        f"{name} {with_minus_signs(f'{TO_PERCENT * off:+.2g}')} %"
-        for name, off in offs.items()
-        if off is not None
-    ]
+    deviations = [f"{name} {signed_percent(off)}" for name, off in offs.items() if off is not None]
     if not deviations:
         return ""
     behind = [name for name in results.summary.models if name not in results.main_models]

@@ -19,6 +19,7 @@ from PIL import Image
 from protractile.cases import run_case
 from runs.case import toml
 from runs.case.build import build_boom
+from runs.case.kinds.shell import Shell
 from runs.paper.rules import judge
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import Verdict, addition, print_verdicts
@@ -287,6 +288,14 @@ POOR_MESH = (
 def test_cautions_against_poor_shell(results: Results, changes: dict[str, Any], line: str) -> None:
     name = str(results.trajectories["model"].values[0])
     assert told(changed(results, name, **changes)) == ([line.format(name)] if line else [])
+
+
+def test_a_mesh_that_follows_its_tolerance_needs_a_smaller_one(results: Results) -> None:
+    """Reference: exact words."""
+    name = str(results.trajectories["model"].values[0])
+    case = results.case.model_copy(update={"models": (Shell(name=name),)})
+    poor = replace(changed(results, name, mesh_error=0.34), case=case)
+    assert told(poor)[-1] == POOR_MESH.format(name).replace("mesh_size", "contact_tolerance")
 
 
 def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:

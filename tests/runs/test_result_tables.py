@@ -14,6 +14,7 @@ from runs.pipeline.pads import PadLoad
 from runs.pipeline.results import Results
 from runs.pipeline.statics import Reaction
 from runs.pipeline.strength import HAS_RAINFLOW, Life, WallStress
+from runs.report.formatting import signed_percent
 from runs.report.result_tables import (
     mode_table,
     play_table,
@@ -114,6 +115,15 @@ def test_play_is_said_in_a_sentence(results: Results) -> None:
     assert rows["bending stress, inner"]["%"] == "−10"
     assert rows["bending stress, inner"]["without play"] == "100 MPa"
     assert rows["static tip deflection (maximum load)"]["with play"] == "150 mm"
+
+
+def test_percentages_are_plain_numbers(results: Results) -> None:
+    """Reference: by hand. An increase from nearly nothing has no percentage."""
+    near_zero = PlayDifference("torque at the support", "outer at 0 m", "N m", 404.0, 1.0)
+    told = answering(results, play=[PlayEffect(PLAYED, [near_zero])])
+    (row,) = cells(play_table(told)).values()
+    assert (row["play adds"], row["%"]) == ("0.403 kN m", "–")
+    assert [signed_percent(part) for part in (1.0, -0.0123, 0.0)] == ["+100 %", "−1.2 %", "0 %"]
 
 
 def test_tables_of_rest_name_their_loads(results: Results) -> None:

@@ -19,6 +19,7 @@ from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
 from dynamics.gap_system import GapSystem
 from geometry.fields import Distance
+from runs import CASES
 from runs.case.build import build_boom
 from runs.case.checked_case import CheckedCase
 from runs.case.load_tables import LoadTable
@@ -169,11 +170,32 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
         "- -317.9 mm: pads that bear on the corners, bears = 'corner'",
         "- -333 mm: collars as thick as the walls on both segments at each pad, along x over half "
         "the height of the box to both sides (two of them per joint obstruct telescoping)",
-        "- -347.8 mm: pads half as wide (width), at twice the pressure",
     ]
     (load,) = case.loads
     sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})
     assert pad_wall_sentences(sudden) == [share.replace("0.1 s", "0 s"), *remedies]
+
+
+def test_remedies_leave_out_collars_that_are_there(tmp_path: Path) -> None:
+    """Reference: by construction. Collars of half a millimetre, along all segments."""
+    text = (CASES / "lift.toml").read_text("utf-8")
+    collars = 'collars = [{ span = ["tail", "head"], thickness = 5e-4 }]\nsection ='
+    case = read_case(tmp_path, text.replace("section =", collars))
+    remedies = " ".join(pad_wall_sentences(case))
+    assert "bears = 'corner'" in remedies
+    assert "collars" not in remedies
+
+
+def test_walls_on_corners_have_no_share(tmp_path: Path) -> None:
+    """Reference: by construction, pads on the corners of boxes; exact words without telescoping."""
+    text = (CASES / "lift.toml").read_text("utf-8")
+    case = read_case(tmp_path, text.replace("pad = {", 'pad = { bears = "corner",'))
+    assert pad_wall_sentences(case) == []
+    shown = check_case(CheckedCase(case))
+    (notes,) = (one.notes for one in shown.tables if one.title.startswith("Extreme axial forces"))
+    assert notes == ["Cylinder forces are those at t = 0."]
+    without = "with bonded joints and rigid walls:"
+    assert sum(without in line for line in shown.lines) == 2
 
 
 def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) -> None:
