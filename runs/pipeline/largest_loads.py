@@ -23,6 +23,7 @@ from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.model import select_kind
 from runs.case.schema import Case
 from runs.case.units import System
+from runs.pipeline.load_table import release_note
 from runs.pipeline.models import MotionPlan, build_on
 from runs.pipeline.proportions import CHECK_UNITS, tip_cautions
 from runs.pipeline.section_forces import LoadedModel
@@ -267,7 +268,8 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         ]
     if any(used):
         columns.append(Column("utilisation", used, ".3g", "%"))
-    more = ["Extensions are those at t = 0."] if boom.telescopes else []
+    more = [*filter(None, [release_note(case)])]
+    more += ["Extensions are those at t = 0."] if boom.telescopes else []
     if any(joint.padded for joint in boom.joints):
         more.append("Local plate stresses are not included; a run with a shell has them.")
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")

@@ -55,6 +55,13 @@ def load_table(case: Case, boom: Boom) -> Table:
     return Table("Loads", columns)
 
 
+def release_note(case: Case) -> str:
+    """Return a sentence on static results at t = 0; empty if no load is released."""
+    dropped = case.hoist is not None and case.hoist.dropped
+    released = dropped or any(load.released for load in case.loads)
+    return "Static results at t = 0 are those before the release." if released else ""
+
+
 def _format_value(value: float, unit: str, system: System) -> str:
     return f"{number(system.of(value, unit), 4)} {system.label(unit)}"
 

@@ -11,6 +11,7 @@ import numpy as np
 from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, join_words, with_minus_signs
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
+from runs.pipeline.load_table import release_note
 from runs.pipeline.low_pass import mean_period
 from runs.pipeline.model_quality import static_deviation
 from runs.pipeline.motion_results import Peak
@@ -251,7 +252,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
             "Station: place x where two segments may touch; the centre of a pad at the end of the "
             "overlap lies half its length inside."
         )
-    yield from filter(None, [rigid_wall_note(models, results.boom)])
+    yield from filter(None, [release_note(results.case), rigid_wall_note(models, results.boom)])
     if any(title.startswith("Tip travel") for title in rows):
         yield "Tip travel: largest displacement of the tip from its position at t = 0."
     if any("×" in cell for cells in rows.values() for cell in cells):
