@@ -91,7 +91,8 @@ def reduce_boom(
     full = replace(assemble_boom(boom, options, comm, stages), helper=helper)
     telescoping = None
     if boom.telescopes:
-        fewer = replace(options, krylov=replace(options.krylov, moments=MOMENTS))
+        krylov = replace(options.krylov, moments=MOMENTS, tolerance=None)
+        fewer = replace(options, krylov=krylov)
         reduce = partial(_reduce, boom, full, fewer, stages)
         test = options.krylov.tests[0]
         telescoping = TelescopingShell(boom, full, options.mesh_size, reduce, test)
@@ -186,7 +187,8 @@ def _reduce(
     krylov, observed = options.krylov, [output.operator for output in full.observed.values()]
     at_surface = options.contact_line == "surface"
     if at_surface:
-        krylov = replace(krylov, shifts=options.surface.shifts, moments=options.surface.moments)
+        surface = options.surface
+        krylov = replace(krylov, shifts=surface.shifts, moments=surface.moments, tolerance=None)
     with stages.stage("reduction") as progress:
         inputs = [
             SegmentInputs(

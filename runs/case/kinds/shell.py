@@ -79,13 +79,11 @@ class Shell(ModelTable):
     contact_tolerance: ContactTolerance = 0.02
     """the permitted relative error of the local compliance of walls, for which the mesh is refined
     at contacts, or 'any' for a uniform mesh"""
-    modes: Modes | None = None
-    """the greatest number of coordinates of each segment, or 'auto' to choose it by the tolerance;
-    unless given, three moments at four frequencies determine it, with a relative error of about
-    1e-8"""
-    tolerance: Part = 1.0e-6
+    modes: Modes = "auto"
+    """the greatest number of coordinates of each segment, or 'auto' to choose it by the tolerance"""
+    tolerance: Part = 5.0e-4
     """with modes = 'auto', the largest relative error of the reduced shell's response to contact
-    forces and loads"""
+    forces and loads; telescoping shells and contact over a surface do not use it"""
     contact_line: Literal["near webs", "across", "surface"] = "near webs"
     """where the walls may touch: at the stations near the webs, at the stations across the flanges,
     or over the surface of the whole overlap"""
@@ -114,7 +112,7 @@ class Shell(ModelTable):
                 f"the shell {self.name!r} touches over the whole overlap, which changes as it "
                 "telescopes; leave contact_line out"
             )
-        if self.modes is not None:
+        if self.modes != "auto":
             return (
                 f"the shell {self.name!r} needs its own number of coordinates for all extensions; "
                 "leave modes out"
