@@ -377,8 +377,7 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
         mass, weightless = 0.0, False
         if payload is not None:
             mass, weightless = payload.mass, case.gravity is None and payload.gravity == 0.0
-        constant = isinstance(load.history, Step)
-        if constant and mass and weighs(force, mass) and not weightless:
+        if mass and weighs(force, mass) and not weightless:
             yield (
                 f"{where}: if {force:g} N at the tip is the weight of the payload, it acts "
                 "already; leave it out"

@@ -187,7 +187,7 @@ ARM_MISTAKES = {
     "file with another suffix": ("gust.csv", "gust.xlsx"),
     "payload in kN": ("mass = 280.0", "mass = 2.8"),
     "payload in N": ("mass = 280.0", "mass = 2746.0"),
-    "tolerance in percent": ("tolerance = 5e-4", "tolerance = 5"),
+    "tolerance in percent": ('kind = "shell"\n', 'kind = "shell"\ntolerance = 5\n'),
     "root hinged": ('kind = "clamped"', 'kind = "hinged"'),
     "middle as large as root": ("height = 0.29, width = 0.21", "height = 0.34, width = 0.26"),
     "detail category in Pa": ("detail_category = 23.0", "detail_category = 23e6"),
