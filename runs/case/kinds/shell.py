@@ -80,7 +80,7 @@ class Shell(ModelTable):
     """the permitted relative error of the local compliance of walls, for which the mesh is refined
     at contacts, or 'any' for a uniform mesh"""
     modes: Modes = "auto"
-    """the greatest number of coordinates of each segment, or 'auto' to choose it by the tolerance"""
+    """the greatest number of coordinates of each segment, or 'auto' for what the tolerance needs"""
     tolerance: Part = 5.0e-4
     """with modes = 'auto', the largest relative error of the reduced shell's response to contact
     forces and loads; telescoping shells and contact over a surface do not use it"""
