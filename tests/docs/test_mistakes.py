@@ -71,9 +71,15 @@ LIFT_MISTAKES = {
     "tail and head of load": ('x = "head"\nmagnitude', 'x = "tail"\nmagnitude'),
     "gravity twice": ("angle = 45.0 }", "angle = 45.0, acceleration = 19.62 }"),
     "gravity in mm/s2": ("angle = 45.0 }", "angle = 45.0, acceleration = 9810.0 }"),
-    "cage also as a force across": ("magnitude = -1595.0", "magnitude = -1040.0"),
-    "cage also as a force": ("magnitude = -1595.0", "magnitude = -1471.5"),
-    "cage also as a force with g of 10": ("magnitude = -1595.0", "magnitude = -1500.0"),
+    "cage also as a force across": with_table(
+        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -1040.0'
+    ),
+    "cage also as a force": with_table(
+        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -1471.5'
+    ),
+    "cage also as a force with g of 10": with_table(
+        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -1500.0'
+    ),
     "cage also as a mass": (
         "section = { height = 0.256",
         'masses = [{ x = "head", mass = 150 }]\nsection = { height = 0.256',
