@@ -449,13 +449,13 @@ def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
 
 
 def static_tip(system: GapSystem) -> float:
-    """Return the static tip deflection in m under the constant loads; NaN without an equilibrium.
+    """Return the static tip deflection in m at t = 0; NaN without an equilibrium.
 
     Args:
-        system: gap system whose ``load`` includes all constant loads from t = 0 on.
+        system: gap system with all loads.
     """
     try:
-        return float(system.observers["tip"].row @ equilibrium(system, system.load))
+        return float(system.observers["tip"].row @ equilibrium(system, system.load_at(0.0)))
     except NumericsError:
         return float("nan")
 

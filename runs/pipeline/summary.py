@@ -144,7 +144,7 @@ class ModelSummary(SummaryTable):
     earlier run, it has the wall time of that run. ``first_peak`` has the first peak of each output.
     If the step is too long for an impact, ``peak_contact_force`` in N is a mean over a step, and
     ``resolving_step`` in s is short enough. ``step_error`` is the error of the tip by the step, as
-    a fraction of its range. ``static_tip`` in m is the tip deflection under the constant loads. The
+    a fraction of its range. ``static_tip`` in m is the static tip deflection at t = 0. The
     axial forces times ``critical_factor`` cause buckling with closed joints. ``stick_slip`` has the
     results of elastic drives by the names of their forces in trajectories. Shells have
     ``reduction_errors`` by kind, ``local_compliance`` in m/N, ``mesh_error`` as a fraction of it,

@@ -78,6 +78,8 @@ def test_a_released_load_leaves_the_beam_swinging(tmp_path: Path) -> None:
     assert moved == pytest.approx(held * np.cos(FIRST * time), abs=0.06 * abs(held))
     (design,) = results.summary.design.models.values()
     assert [rest.tip for rest in design.static] == pytest.approx([held, 0.0], rel=1e-6)
+    (summary,) = results.summary.models.values()
+    assert summary.static_tip == pytest.approx(held, rel=1e-6)
 
 
 def test_a_payload_hangs_from_the_tip_with_its_mass(tmp_path: Path) -> None:
