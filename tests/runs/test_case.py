@@ -58,20 +58,6 @@ def test_the_paper_case_is_the_paper() -> None:
     assert case.joints[0].law("z") == PowerContact(1e13, 2.0)
 
 
-def test_inferred_sections_have_the_beam_s_numbers_and_the_joint_s_play() -> None:
-    """Reference: analytic, area and second moment of the plates themselves."""
-    boom = build_boom(shipped("paper"))
-    for segment in boom.segments:
-        assert segment.section.mass_per_length(7850.0) == pytest.approx(
-            segment.mass_per_length, rel=1e-9
-        )
-        assert segment.section.second_moment_of_area == pytest.approx(
-            segment.second_moment_of_area, rel=1e-9
-        )
-    outer, inner = (segment.section for segment in boom.segments)
-    assert free_room(outer, inner)[0] == pytest.approx(0.014, rel=1e-9)
-
-
 def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(tmp_path: Path) -> None:
     """Reference: analytic, a thin box: A = 2(h + b)t, J ≈ A h²/12 (1 + 3/r)/(1 + 1/r)."""
     given = "section = { height = 0.6, width = 0.4, flange = 0.001, web = 0.001 }"

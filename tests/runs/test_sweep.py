@@ -77,14 +77,6 @@ def test_values_are_set_at_their_keys(planned: Planned) -> None:
     ]
 
 
-def test_the_play_is_varied_alone(planned: Planned) -> None:
-    """Reference: the inferred boxes for the play of 14 mm."""
-    own = [segment.section for segment in build_boom(case_file.load("case.toml")).segments]
-    for point in planned("joint.play=0,0.007,0.014", models=["timoshenko"]).points:
-        assert [segment.section for segment in build_boom(point.case).segments] == own
-        assert point.case.joints[0].play == point.values[0]
-
-
 def test_sections_are_inferred_with_the_play_of_the_case(planned: Planned) -> None:
     """Reference: the boxes of a case file with another ratio and the play of 14 mm."""
     text = Path("case.toml").read_text(encoding="utf-8")
