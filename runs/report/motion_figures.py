@@ -31,7 +31,7 @@ DISSIPATED = (0.75, 0.45, 0.2)
 
 
 # Direction of each tip displacement in titles and captions.
-DIRECTIONS = {"tip": "", "tip_lateral": ", lateral (y)"}
+DIRECTIONS = {"tip": ", vertical (z)", "tip_lateral": ", lateral (y)"}
 
 
 def tip(run: FigureContext) -> list[Figure]:
@@ -45,7 +45,7 @@ def tip(run: FigureContext) -> list[Figure]:
             _members(run, axes, name, place)
         if limit := _limit(run, place):
             axes.axhline(limit, label="limit", **theme.LIMIT)
-        way = DIRECTIONS[place]
+        way = DIRECTIONS[place] * (len(run.tips) > 1)
         caption = f"Deflection of the tip{way}, all models.{_accuracy_note(run, place)}"
         title, stem = f"Tip{way}: {_largest_deflection(run, place)}", place.replace("_", "-")
         figures.append(run.finish(sheet, axes, stem, title, caption, chart=_chart(run, place)))
@@ -81,11 +81,12 @@ def close_up(run: FigureContext) -> list[Figure]:
     axes.plot([], [], "v", color=theme.INK, ms=8, label="first peak")
     axes.set_ylabel("deflection (mm)")
     axes.margins(y=0.08)
-    title, marked = f"Tip{DIRECTIONS[place]}, first {end:g} s", "Triangles mark each model's"
+    way = DIRECTIONS[place] * (len(run.tips) > 1)
+    title, marked = f"Tip{way}, first {end:g} s", "Triangles mark each model's"
     if contacts:
         title += f": the segments first touch at {min(contacts):.2f} s"
         marked = "Circles mark the first contact of each model, triangles its"
-    caption = f"Close-up of the tip. {marked} first peak."
+    caption = f"Close-up of the tip{way}. {marked} first peak."
     if peakless:
         caption += f" No peak within {run.case.time.duration:g} s: {', '.join(peakless)}."
     return [run.finish(sheet, axes, "tip-close-up", title, caption)]
@@ -184,7 +185,7 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
         if run.regular or run.ensembles is not None or place != run.tips[0]:
             return ""
         return (
-            " After the first contacts, motion with play may be chaotic: then all curves are one "
+            " After the first contacts, motion with play may be chaotic: then each curve is one "
             "of many possible motions. An ensemble of motions with slightly different data (table "
             "`ensemble`) shows whether the motion is chaotic."
         )

@@ -88,7 +88,14 @@ def test_check_prints_inferred_boxes(protractile: Protractile) -> None:
     """Reference: non-regression, the boxes that :mod:`geometry.section` infers."""
     answer = protractile("check case.toml")
     assert (answer.status, answer.err) == (0, "")
-    for part in ("488.9 × 325.9", "463.6 × 270.6", "± 7", "2 + 3 basis", "bonded", "mesh 0.25 m"):
+    for part in (
+        "488.9 × 325.9",
+        "463.6 × 270.6",
+        "± 7",
+        "2 + 3 functions",
+        "bonded",
+        "mesh 0.25 m",
+    ):
         assert part in answer.out
 
 

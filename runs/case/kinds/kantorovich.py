@@ -57,7 +57,7 @@ class Kantorovich(CalibratedTable):
         super().check(where, model_boom)
 
     def describe(self) -> str:
-        return f"{' + '.join(map(str, self.terms))} basis functions ({self.base} set)"
+        return f"series of {' + '.join(map(str, self.terms))} functions ({self.base} set)"
 
     def segments(self, boom: Boom) -> list[SegmentModel]:
         rotary_inertia = self.rotary_inertia or self.calibrated_by is not None
