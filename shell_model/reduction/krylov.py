@@ -21,6 +21,9 @@ from shell_model.segment.solver import ShiftedSolver, times
 # Fraction of a vector's length below which the part beyond the basis is round-off.
 _DEPENDENT = 1.0e-9
 
+# Number of modes that are tested together: a block of solutions takes a third of the time.
+_BATCH = 16
+
 # Maximum number of blocks at each shift; more blocks do not reduce the error.
 _MAX_MOMENTS = 12
 
@@ -318,13 +321,14 @@ def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSol
     the order of the square of this bound.
     """
     accurate = np.asarray(omega2 == 0.0)
-    for i in np.flatnonzero(~accurate):
-        shape = shapes[:, i : i + 1]
-        residual = times(shell.stiffness, shape) - omega2[i] * times(shell.mass, shape)
-        residual[~shell.free] = 0.0
-        bound2 = float((residual.T @ solve(residual))[0, 0])
-        off = np.sqrt(max(bound2, 0.0) * (omega2[i] + solve.sigma))
-        accurate[i] = off <= 2.0e-3 * omega2[i]
-        if not accurate[i]:
+    elastic = np.flatnonzero(~accurate)
+    for batch in np.split(elastic, range(_BATCH, elastic.size, _BATCH)):
+        residuals = times(shell.stiffness, shapes[:, batch])
+        residuals -= omega2[batch] * times(shell.mass, shapes[:, batch])
+        residuals[~shell.free] = 0.0
+        bounds2 = np.einsum("ij,ij->j", residuals, solve(residuals))
+        off = np.sqrt(np.maximum(bounds2, 0.0) * (omega2[batch] + solve.sigma))
+        accurate[batch] = np.logical_and.accumulate(off <= 2.0e-3 * omega2[batch])
+        if not accurate[batch].all():
             break
     return accurate
