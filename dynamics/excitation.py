@@ -39,7 +39,7 @@ class MotionLaw(History, Protocol):
     """Length or angle over time, with its time derivatives."""
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the derivative of the order 1 or 2 at each time in s, in the shape of ``time``."""
+        """Return the first or second time derivative (``order``), in the shape of ``time`` in s."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,7 +166,7 @@ class PiecewiseLinear:
         return np.asarray(np.interp(time, self.times, self.values))
 
     def rate(self, time: Array, order: int) -> Array:
-        """Return the derivative of the order 1 or 2; the second one is 0, also at kinks."""
+        """Return the first or second time derivative; the second one is 0, also at kinks."""
         slopes = np.concatenate([[0.0], np.diff(self.values) / np.diff(self.times), [0.0]])
         return np.asarray((2 - order) * slopes[np.searchsorted(self.times, time)])
 

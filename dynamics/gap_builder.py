@@ -81,8 +81,8 @@ class GapBuilder(Generic[R]):
         """Add a contact row for each point (side, weight, displacement operator).
 
         A point of side 1 has contact at positive displacements only, of side −1 at negative ones
-        only, with the law times the weight. A point of side 0 has contact at both, with the whole
-        law. A side on which the law has no contact has no row.
+        only, with the law times the weight. A point of side 0 has contact at both signs, with the
+        law unweighted. A side on which the law has no contact has no row.
 
         Args:
             station: index of the station.

@@ -241,7 +241,7 @@ def _joints(case: Case, boom: Boom) -> Table:
         free = "unknown"
         if outer.section is not None and inner.section is not None:
             height, width = room(joint, outer, inner)
-            free = f"{1e3 * height:.1f} above + below\n{1e3 * width:.1f} right + left"
+            free = f"{1e3 * height:.1f} in height\n{1e3 * width:.1f} in width"
         cells = (
             f"{inner.name} in {outer.name}",
             f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
@@ -253,7 +253,7 @@ def _joints(case: Case, boom: Boom) -> Table:
         rows.append(cells)
     sizes = f"overlap\n{m}", f"stations\n{m}", "clearance\nmm", "gap without pads\nmm"
     headings = ("joint", *sizes, "friction")
-    inside = "The centre of a pad at the end of the overlap lies half its length inside."
+    inside = "A pad at the end of the overlap has its centre half a pad length inside the overlap."
     notes = [inside] if any(joint.padded for joint in boom.joints) else []
     return Table.of_rows("", "Joints", headings, rows, notes)
 
@@ -397,7 +397,7 @@ def _damping_ratios(preview: Preview) -> Table:
         cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model), fillvalue="")
         rows.append((_beam_name(model), *(cell for _, cell in [*cells][:SHOWN_MODES])))
     headings = ("model", *(f"mode {number}" for number in range(1, SHOWN_MODES + 1)))
-    walls = "Walls under pads are rigid here, unlike in the other estimates."
+    walls = "In this table walls under pads are rigid, also for shells."
     notes = [walls] if any(joint.padded for joint in boom.joints) else []
     return Table.of_rows("", "Damping ratios, joints in contact", headings, rows, notes)
 

@@ -195,7 +195,7 @@ class LifeTable(CaseTable):
 
 
 class BucklingTable(CaseTable):
-    """Data of the buckling analysis of walls, in the static state with the farthest tip."""
+    """Data of the buckling analysis of walls, in the state of largest static tip deflection."""
 
     modes: Count = 1
     """the number of buckling modes of the walls of each segment of a shell; beams have estimates by

@@ -192,7 +192,7 @@ class Draft:
         return low, high
 
     def _range_that_fits(self, place: Place, value: float, low: float, high: float) -> list[float]:
-        """Return the part of a range in which a number of a joint fits the segments."""
+        """Return the values in a range at which the joint still fits its segments."""
         joint = self.boom.joints[int(place.steps[1])]
         outer, inner = (self.boom.segments[number] for number in (joint.outer, joint.inner))
         match place.steps[2:]:

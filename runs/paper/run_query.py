@@ -181,7 +181,7 @@ def options(model: Model, *ignored: str) -> dict[str, Any]:
 
 
 def final_differences(first: Array, second: Array, last: Mask) -> Array:
-    """Return the largest differences (num_members,) at the last times, over the larger range.
+    """Return the largest differences (num_members,) at the last times, divided by the larger range.
 
     Args:
         first: curves (num_members, num_times) of one model.

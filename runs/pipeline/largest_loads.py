@@ -290,10 +290,8 @@ def least_of_units(extremes: Iterable[StaticExtreme]) -> dict[str, float]:
 def beam_note(boom: Boom) -> str:
     """Return a sentence on the model of the statics."""
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
-    walls = (
-        " with the compliance of walls under pads" if any(one.padded for one in boom.joints) else ""
-    )
-    return f"These are estimates by a{'' if theory == 'Timoshenko' else 'n'} {theory} beam{walls}."
+    walls = ", with elastic walls under pads," if any(one.padded for one in boom.joints) else ""
+    return f"A separate {theory} beam{walls} gives these estimates."
 
 
 def in_units(value: float, unit: str, system: System) -> str:

@@ -107,8 +107,8 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     bearing = f"pads that bear on the corners, bears = 'corner'{without}"
     yield bearing, _with_pads(boom, lambda *_: corner)
     collars = (
-        "collars as thick as the walls on both segments at each pad, along x over half the height "
-        "of the box to both sides (two of them per joint obstruct telescoping)"
+        "collars on both segments at each pad, as thick as the walls, half the height of the box "
+        "along x to each side of the pad (two of the collars of a joint block telescoping)"
     )
     if (changed := _with_collars(boom)) != boom:
         yield collars, changed

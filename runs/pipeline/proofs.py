@@ -33,8 +33,8 @@ from shell_model.stress.history import BAND
 
 # Definition of a proof, for the notes of tables.
 DEFINITION = (
-    "A proof compares the design effect, the left side below, with the limit design value, the "
-    "right side (EN 13001-3-1)."
+    "A proof compares the design effect, left of ≤ in the formulas below, with the limit design "
+    "value, right of ≤ (EN 13001-3-1)."
 )
 # Note if no shell proves the local plate stress.
 _NO_SHELL = "Local plate stress is not proved: use a shell (protractile prove --shell)."
@@ -68,7 +68,7 @@ KINDS: Mapping[str, Kind] = {
         "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ, χ: reduction factors at the slenderness "
         "√(α_ult,k/α_cr), α_cr by panel formulas (EN 1993-1-5, 10)",
         "a thicker, narrower or stiffened wall there",
-        "stress over reduction factor ",
+        "stress divided by its reduction factor, ",
     ),
     "buckling": Kind(
         "plate buckling, shell",
@@ -175,7 +175,7 @@ class Proofs(NamedTuple):
             " of the combinations" if governs.combination else ""
         )
         text = f"{failed} of {what} fail" if failed else f"All {what} are satisfied"
-        text += "; local plate stress is not proved" if _NO_SHELL in self.notes else ""
+        text += "; none covers local plate stress" if _NO_SHELL in self.notes else ""
         change = f". Remedy: {governs.remedy}" if failed else ""
         return f"{text}. Governing: {governs.text(system)}{change}."
 
@@ -239,7 +239,7 @@ def _wall_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Itera
 def _wall_text(name: str) -> str:
     """Return the name of a wall as text; walls of one side are numbered upwards."""
     side, _, number = name.partition("-")
-    return f"{side} wall" + (f" {number} from below" if number else "")
+    return f"{side} wall" + (f", plate {number} from the bottom" if number else "")
 
 
 def reduced_stress(

@@ -296,8 +296,8 @@ def stress_history(run: FigureContext) -> list[Figure]:
             f"Largest von Mises stress of {name!r} at either face within {stress.band:g} m of "
             "stations, supports, lugs and loads, in each interval of "
             f"{run.time[-1] / time.size:.2g} s. The local plate stress converges with mesh "
-            "refinement. The stress of one element grows with it beside a contact line: use it "
-            "only for place and time."
+            "refinement. Beside a contact line, the stress of one element grows with refinement: "
+            "use it only to find place and time."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))
     return figures

@@ -67,8 +67,8 @@ def model_table(results: Results) -> Table:
         )
     if resolving := [model.resolving_step for model in models if _is_unresolved(model)]:
         notes.append(
-            "≥: the impact is shorter than six steps at its time, which may exceed the shortest "
-            "step; the force is the largest mean over a step. A constant step, time.step = "
+            "≥: the impact lasts less than six of the steps in use then, so that its peak is "
+            "larger; the force is the largest mean over a step. A constant step, time.step = "
             f"{min(filter(None, resolving)):.1e}, would resolve it."
         )
     if any(model.peak_contact_force and model.contact_changes for model in models):
@@ -127,9 +127,9 @@ def step_table(results: Results) -> Table:
         Column("contact changes", [model.contact_changes for model in models]),
     ]
     notes = [
-        "Step error: sum over windows of about a period of the slowest mode; each adds the largest "
-        "difference of its deflections from those with twice the step. In chaotic motion no step "
-        "size converges. Contact changes: openings and closings."
+        "Step error: the largest difference from the deflections with twice the step in each "
+        "window of about a period of the slowest mode, summed over the windows. In chaotic "
+        "motion no step size converges. Contact changes: openings and closings."
     ]
     tried = [model.steps_for_peaks for model in models]
     within = next((steps for steps in tried if steps), None)
@@ -198,7 +198,7 @@ def lateral_peak_table(results: Results) -> Table | None:
             Column(f"{way}, difference from {reference}", differences, ".2g", "%"),
         ]
     notes = [f"–: no peak within {results.case.time.duration:g} s."]
-    return Table("First peaks of the tip in space", columns, notes, "space")
+    return Table("First vertical and lateral peaks of the tip", columns, notes, "space")
 
 
 def buckling_table(results: Results) -> Table | None:
@@ -241,10 +241,11 @@ def wall_table(results: Results) -> Table:
     )
     largest = [f"{name}: {_largest(results.boom, stress)}" for name, stress in shells.items()]
     means = (
-        "Resultants of each wall in the row of elements next to x on the tip side, at the end of a "
-        "segment in the last row. Positive: axial force in tension; shear force on the part near "
-        "the base, upwards in walls steeper than 45°, towards larger y in others; moment about the "
-        "y-axis through the centroid of the whole section, with tension at the top."
+        "Resultants of each wall in the first row of elements from x towards the tip; at the tip "
+        "end of a segment, in the last row. Positive: axial force in tension; shear force on the "
+        "part near the base, upwards in walls steeper than 45°, towards larger y in others; "
+        "moment about the y-axis through the centroid of the whole section, with tension at the "
+        "top."
     )
     title = "Section forces of walls at the instant of the largest stress"
     return Table.of_rows("walls", title, columns, rows, (*largest, means))

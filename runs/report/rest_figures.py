@@ -70,9 +70,9 @@ def at_rest(run: FigureContext) -> list[Figure]:
     if bonded and not rests.keys() & set(run.bonded):
         lines["without play"] = rest_lines(bonded[0], "without play", theme.PLAY_FREE)
     caption = (
-        "Static state with the farthest tip: deflection and section forces. Positive: normal force "
-        "in tension, shear force upwards on the part towards the base, moment with tension at the "
-        "top. In an overlap each segment has its own curve."
+        "Static state with the largest tip deflection: deflection and section forces. Positive: "
+        "normal force in tension, shear force that acts upwards on the part nearer the base, "
+        "moment with tension at the top. In an overlap each segment has its own curve."
         + initial_position_note(run.case)
         + extension_note(run.case, rests.values())
     )

@@ -93,7 +93,7 @@ def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
         Column("resulting tip deflection", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
     )
     note = "The rotation is due to play and contact compliance, in a shell also to wall compliance."
-    title = "Static state with the farthest tip: rotation of joints by play and local compliance"
+    title = "Static state with the largest tip deflection: rotation of joints by play and walls"
     return Table(title, columns, (note + as_extended,), "tilts")
 
 
@@ -105,7 +105,7 @@ def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
         if forces:
             columns.append(Column(name, [forces.get(place) for place in places], ".4g", "kN"))
     note = "Forces on the outer segment, positive upwards, lateral ones towards larger y."
-    title = "Static state with the farthest tip: contact forces"
+    title = "Static state with the largest tip deflection: contact forces"
     return Table(title, columns, (note + as_extended,), "pressed")
 
 
@@ -411,7 +411,8 @@ def buckling_table(results: Results) -> Table:
         ("panel at x", ".4g", "m"),
     )
     notes = (
-        "Factor of all loads at which a wall buckles, in the static state with the farthest tip; "
+        "Factor of all loads at which a wall buckles, in the static state with the largest tip "
+        "deflection; "
         "walls are elastic and flat. Shell: pads included; extrapolated from two meshes, of which "
         "the finer one has the mesh error. Panel formulas: long, simply supported walls without "
         "pads.",
@@ -446,7 +447,8 @@ def life_table(results: Results) -> Table:
         columns.append(Column("damage of the life", [one.life_damage for one in lives], ".3g"))
     notes = [
         "Rainflow ranges of the bending stress where it varies most. Damage-equivalent "
-        "range: one cycle of this range causes the damage of a run, on an S-N curve of slope 3."
+        "range: one cycle of this range does the damage of all cycles of a run, on an S-N curve of "
+        "slope 3; it may exceed the largest range."
     ]
     if len(columns) > 6:
         notes.append("Runs to failure: number of runs until the damage is 1; empty without damage.")

@@ -354,7 +354,7 @@ def describe_one(results: Results, path: Path) -> Figure:
         segment = results.boom.segments[int(mode["segment"]) - 1].name
         caption = (
             f"The first buckling mode of the walls of {segment!r} in {model!r}, where they move "
-            "most, in the static state with the farthest tip. The amplitude is arbitrary."
+            "most, in the static state with the largest tip deflection. The amplitude is arbitrary."
         )
         return Figure(path, f"Buckling of {segment}", caption)
     seen = _NAME.fullmatch(name.removesuffix(path.suffix))
@@ -377,10 +377,11 @@ def describe_one(results: Results, path: Path) -> Figure:
         "stress": (
             f"Stress at the overlap{which}",
             f"Von Mises stresses in {state}. Upper picture: whole boom; lower picture: "
-            f"{pair}, cut open. Colours and circle: nodal averages of the larger value of both "
-            "faces. They grow with mesh refinement beside a line of contact: no design values, "
-            "unlike the local plate stress in the tables. Values beyond the end of the scale have "
-            "its darkest colour. The factors above the picture magnify displacements and play.",
+            f"{pair}, cut open. Colours: the larger stress of both faces, averaged at nodes; the "
+            "circle marks the maximum. They grow with mesh refinement beside a line of contact: no "
+            "design values, unlike the local plate stress in the tables. Values beyond the end of "
+            "the scale have its darkest colour. The factors above the picture magnify "
+            "displacements and play.",
         ),
         "overlap": (
             f"Overlap{which}",

@@ -246,11 +246,11 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     yield f"{'; '.join(described)}."
     yield "Tip: deflection perpendicular to the axis of the unloaded boom."
-    yield "Maximum load: largest value over the static states at the extremes of the loads in time."
+    yield "Maximum load: static states at the extremes of the loads in time; the largest counts."
     if not all(joint.bonded for joint in results.boom.joints):
         yield (
-            "Station: place x where two segments may touch; the centre of a pad at the end of the "
-            "overlap lies half its length inside."
+            "Station: place x where two segments may touch. A pad at the end of the overlap has "
+            "its centre half a pad length inside the overlap."
         )
     yield from filter(None, [release_note(results.case), rigid_wall_note(models, results.boom)])
     if any(title.startswith("Tip travel") for title in rows):
@@ -294,8 +294,8 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
-            f"Stresses of single elements are larger ({join_words(most)}; positions: notes of the "
-            "section forces of walls). They grow with mesh refinement: no design values."
+            f"Stresses of single elements are larger ({join_words(most)}; positions: note "
+            "below the section forces of walls). They grow with mesh refinement: no design values."
         )
 
 
@@ -358,7 +358,8 @@ def limit_table(results: Results) -> Table | None:
     ]
     first = results.main_models[0]
     notes = [
-        f"The limits apply to this run of {first}, or of the next model if {first} has no value. "
+        f"The tick judges {first} in this run, or the first model with a value if {first} has "
+        "none. "
         "`protractile prove` compares the combinations with them."
     ]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])

@@ -120,10 +120,10 @@ def result_table(results: Results) -> Table:
     tips = [farthest(results.trajectories["tip"].sel(model=name).values) for name in names]
     columns = [
         Column("model", names),
-        Column("tip, static\nt = 0", [tip[0] if tip else None for tip in static], ".1f", "mm"),
-        Column("tip, max.\nload", highest, ".1f", "mm"),
+        Column("static tip\nt = 0", [tip[0] if tip else None for tip in static], ".1f", "mm"),
+        Column("static tip\nmax. load", highest, ".1f", "mm"),
         Column("dynamic\ntip", tips, ".1f", "mm"),
-        Column("factor\nφ", [one.factor if one else None for one in peaks], ".3g"),
+        Column("φ", [one.factor if one else None for one in peaks], ".3g"),
         Column("first\nmode", [m[0].frequency if m else None for m in modes], ".3g", "Hz"),
         Column("one pad" if pads else "contact\nforce", forces, ".3g", "kN"),
         Column("utilisation", shares, "", "%"),

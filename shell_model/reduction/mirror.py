@@ -141,7 +141,7 @@ def cell_mesh(mesh: PlatedMesh, mirrors: Sequence[Direction]) -> PlatedMesh:
 
 
 def _sorted(triangles: Indices, thickness: Array) -> tuple[Indices, Array]:
-    """Return triangles with sorted points, and thicknesses, in an order by these points."""
+    """Sort the points of each triangle, then order triangles and thicknesses by these points."""
     corners = np.sort(triangles, axis=1)
     order = np.lexsort(corners.T)
     return corners[order], thickness[order]

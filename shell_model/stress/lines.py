@@ -25,7 +25,9 @@ _BANDS = 60
 
 
 def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
-    """Return the line of each segment, with band boundaries at supports, loads and contacts."""
+    """Return rows of deflection and section forces along each segment, as a line with bands.
+
+    Bands end at supports, loads and contacts."""
     unit_states = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )

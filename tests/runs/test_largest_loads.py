@@ -245,8 +245,8 @@ def test_statics_name_their_model_and_fit_a_terminal(tmp_path: Path) -> None:
     assert "time of   utilisation" in shown
     assert "Static results at t = 0 and under the maximum loads" in shown
     assert (
-        "These are estimates by a Timoshenko beam with the compliance of walls under\n"
-        "pads.\n"
+        "A separate Timoshenko beam, with elastic walls under pads, gives these\n"
+        "estimates.\n"
         "Stresses are bending stresses, axial in outer fibres.\n"
         "Local plate stresses are not included; a run with a shell has them."
     ) in shown

@@ -130,7 +130,7 @@ def test_tables_of_rest_name_their_loads(results: Results) -> None:
     """Reference: by hand. The moment of a hinge is round-off, compared with 5 kN m of a clamp."""
     bears = [Reaction("outer", x, 1e3, m, None) for x, m in ((0.0, 5e3), (3.0, 1.6e-7))]
     tables = rest_tables(answering(results, reactions=bears))
-    titles = 2 * ["Static state with the farthest tip"] + ["Static state at t = 0"]
+    titles = 2 * ["Static state with the largest tip deflection"] + ["Static state at t = 0"]
     assert [table.title.partition(":")[0] for table in tables] == titles
     assert [row[2] for row in tables[-1].rows] == ["5", "0"]
 

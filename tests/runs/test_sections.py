@@ -101,7 +101,7 @@ def test_check_prints_it(capsys: pytest.CaptureFixture[str]) -> None:
     )
     assert protractile("check", written([table, BOXES[1]])) == 0
     shown = capsys.readouterr().out
-    for part in ("500 × 320", "t 8 / 6", "26.0 above", "29.0 right"):
+    for part in ("500 × 320", "t 8 / 6", "26.0 in height", "29.0 in width"):
         assert part in shown
 
 

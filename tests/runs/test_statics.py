@@ -168,8 +168,9 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
         "Remedies, with the static tip deflection under these loads (a run with a shell gives "
         "their local plate stresses):",
         "- -317.9 mm: pads that bear on the corners, bears = 'corner'",
-        "- -333 mm: collars as thick as the walls on both segments at each pad, along x over half "
-        "the height of the box to both sides (two of them per joint obstruct telescoping)",
+        "- -333 mm: collars on both segments at each pad, as thick as the walls, half the height "
+        "of the box along x to each side of the pad (two of the collars of a joint block "
+        "telescoping)",
     ]
     (load,) = case.loads
     sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})
