@@ -106,7 +106,7 @@ def summary_table(results: Results) -> Table | None:
     strong = [_stress(one) for one in (*walls, *fibres) if one and (one.value or 0.0) >= NEAR]
     strong += [pads[name] for name, pad in hardest.items() if (pad.utilisation or 0.0) >= NEAR]
     strong += [number(damage) for damage in damages if (damage or 0.0) >= NEAR]
-    return Table("Design results", columns, [" ".join(_notes(results, rows))], "summary", strong)
+    return Table("Design results", columns, [*_notes(results, rows)], "summary", strong)
 
 
 def deviation_note(results: Results) -> str:
@@ -288,7 +288,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if "Local plate stress, maximum (utilisation), MPa" in rows:
         yield (
             "Local plate stress: von Mises stress with plate bending, mean over half the width of "
-            f"a wall, within {BAND:g} m of a station or support along x."
+            f"a wall, within {BAND:g} m of a station, support, lug or load along x."
         )
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
     if shells:
