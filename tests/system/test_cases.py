@@ -41,7 +41,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     page = render(results, Addition(), figures, [])
     assert all(figure.path.exists() for figure in figures)
     assert case.title in unescape(page)
-    assert ("First peaks of the tip in space" in page) == (name == "spatial")
+    assert ("First vertical and lateral peaks of the tip" in page) == (name == "spatial")
     models = results.summary.models
     assert list(models) == [model.name for model in case.models]
     assert max(model.energy_residual for model in models.values()) < 1e-3
