@@ -27,7 +27,8 @@ _BANDS = 60
 def lines(fields: xr.Dataset, boom: Boom) -> list[Line]:
     """Return rows of deflection and section forces along each segment, as a line with bands.
 
-    Bands end at supports, loads and contacts."""
+    Bands end at supports, loads and contacts.
+    """
     unit_states = fields.assign(
         state=(("time", "mode"), np.zeros((1, fields.sizes["mode"]))), time=("time", np.zeros(1))
     )
