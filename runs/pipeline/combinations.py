@@ -135,7 +135,9 @@ def combination_tables(
     limited = [one.name for one in case.combinations if "deflection" in one.proofs]
     if limited and case.limits is not None and (limit := case.limits.tip_at_rest) is not None:
         text = in_units(limit, "m", system)
-        notes.append(f"The limit of the static tip, {text}, applies to {join_words(limited)} only.")
+        notes.append(
+            f"The limit {text} of the static tip deflection applies to {join_words(limited)} only."
+        )
     moving = [one.name for one in case.combinations if one.motion]
     if moving:
         notes.append(f"In `prove` and reports, {join_words(moving)}: extremes of the motion.")

@@ -246,7 +246,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     yield f"{'; '.join(described)}."
     yield "Tip: deflection perpendicular to the axis of the unloaded boom."
-    yield "Maximum load: static states at the extremes of the loads in time; the largest counts."
+    yield "Maximum load: the largest result of the static states at the extremes of the loads."
     if not all(joint.bonded for joint in results.boom.joints):
         yield (
             "Station: place x where two segments may touch. A pad at the end of the overlap has "
@@ -360,7 +360,7 @@ def limit_table(results: Results) -> Table | None:
     notes = [
         f"The tick judges {first} in this run, or the first model with a value if {first} has "
         "none. "
-        "`protractile prove` compares the combinations with them."
+        "`protractile prove` checks the combinations against these limits."
     ]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 
