@@ -379,8 +379,8 @@ def describe_one(results: Results, path: Path) -> Figure:
             f"Von Mises stresses in {state}. Upper picture: whole boom; lower picture: "
             f"{pair}, cut open. Colours: the larger stress of both faces, averaged at nodes; the "
             "circle marks the maximum. These stresses grow with refinement beside a contact line: "
-            "no design values, unlike the local plate stress in the tables. Values beyond the end of "
-            "the scale have its darkest colour. The factors above the picture magnify "
+            "no design values, unlike the local plate stress in the tables. Values beyond the end "
+            "of the scale have its darkest colour. The factors above the picture magnify "
             "displacements and play.",
         ),
         "overlap": (
