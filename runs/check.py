@@ -6,7 +6,7 @@ Beams replace shells here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
@@ -25,9 +25,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.motion import constant_load_equilibrium
 from geometry.arrays import Array
 from geometry.axial import axial_force, moving_force_places
-from geometry.boom import Boom, Direction, Joint
-from geometry.fit import room
-from geometry.section import Section
+from geometry.boom import Boom
 from runs.case import actions
 from runs.case.checked_case import CheckedCase
 from runs.case.schema import Case, Model
@@ -63,6 +61,13 @@ from runs.pipeline.statics import (
     statics,
 )
 from runs.pipeline.turning import shaper_lines, turning_lines
+from runs.report.boom_tables import (
+    column_in_units,
+    joint_table,
+    mass_table,
+    segment_table,
+    stiffener_table,
+)
 from runs.report.formatting import milli, number, without_round_off
 from runs.report.tables import WIDE, Cell, Column, Table, print_text
 
@@ -129,11 +134,11 @@ def check_case(checked: CheckedCase) -> Check:
     advise = partial(deflection_advice, beam)
     panels = [] if beam is None else weakest_panels(beam.boom.segments, *beam.rests)
     tables = [
-        _segments(case, boom),
-        _stiffeners(boom, case.system),
-        _joints(case, boom),
+        segment_table(case, boom),
+        stiffener_table(boom, case.system),
+        joint_table(case, boom),
         _models(case, boom),
-        _masses(boom, case.system),
+        mass_table(boom, case.system),
         load_table(case, boom),
         axial_forces(boom, static),
         *([_buckling(checked)] if boom.compressed else []),
@@ -168,150 +173,22 @@ def check_case(checked: CheckedCase) -> Check:
     return Check(case.title, [table for table in tables if table.rows], lines)
 
 
-def _of(system: System, title: str, si: str, values: Sequence[float], form: str = ".4g") -> Column:
-    """Return a column in the units of the case, from values in the SI unit ``si``."""
-    return Column(f"{title}\n{system.label(si)}", [system.of(one, si) for one in values], form)
-
-
-def _spans(system: System, ends: Sequence[tuple[float, float]]) -> Column:
-    texts = [[f"{system.of(x, 'm'):g}" for x in dict.fromkeys(both)] for both in ends]
-    return Column(f"x\n{system.label('m')}", ["–".join(text) for text in texts])
-
-
 def _beam_name(model: Model) -> str:
     return f"{model.name} (beam estimate)" if model.needs_shell else model.name
-
-
-def _segments(case: Case, boom: Boom) -> Table:
-    column, segments, boxes = partial(_of, case.system), boom.segments, []
-    for table, segment in zip(case.segments, segments, strict=True):
-        box = "unknown" if segment.section is None else _size(segment.section)
-        if segment.head_section is not None:
-            box += f" to\n{_size(segment.head_section)}"
-        inferred = table.section is None and segment.section is not None
-        boxes.append(f"{box}, inferred" if inferred else box)
-    columns = [
-        Column("segment", [one.name for one in segments]),
-        _spans(case.system, [one.ends for one in segments]),
-        column("mass", "kg/m", [one.mass_per_length for one in segments]),
-        column("I_y", "m^4", [one.second_moment_of_area for one in segments]),
-        column(
-            "rotary inertia\nper length", "kg m", [one.rotary_inertia for one in segments], ".3g"
-        ),
-        Column("h × b of\nmid-lines, t of\nflange / web, mm", boxes),
-    ]
-    return Table("Segments", columns)
-
-
-def _size(section: Section) -> str:
-    """Return two lines of text: height and width of a section, then its plate thicknesses."""
-    size, plates = str(section).rsplit(" x ", 1)
-    return f"{size.replace(' x ', ' × ')}\nt {plates}"
-
-
-def _stiffeners(boom: Boom, system: System) -> Table:
-    """Return the table of stiffeners, for segments with sections."""
-    rows: list[tuple[str, str, tuple[float, float], float, float]] = []
-    for segment in boom.segments:
-        if segment.section is None:
-            continue
-        for one in segment.collars:
-            area = segment.mean_width(one) * one.length
-            name = ", ".join(("collar", *one.walls))
-            rows.append((name, segment.name, one.span, one.thickness, area))
-        for plate in segment.diaphragms:
-            area, ends = segment.section_at(plate.x).enclosed_area, (plate.x, plate.x)
-            rows.append(("diaphragm", segment.name, ends, plate.thickness, area))
-    density = {one.name: one.material.density for one in boom.segments}
-    columns = [
-        Column("stiffener", [row[0] for row in rows]),
-        Column("segment", [row[1] for row in rows]),
-        _spans(system, [row[2] for row in rows]),
-        Column("thickness", [row[3] for row in rows], ".3g", "mm"),
-        _of(system, "mass", "kg", [density[row[1]] * row[3] * row[4] for row in rows], ".3g"),
-    ]
-    return Table("Stiffeners", columns)
-
-
-def _joints(case: Case, boom: Boom) -> Table:
-    system, m = case.system, case.system.label("m")
-    rows = []
-    for joint in boom.joints:
-        outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
-        free = "unknown"
-        if outer.section is not None and inner.section is not None:
-            height, width = room(joint, outer, inner)
-            free = f"{1e3 * height:.1f} in height\n{1e3 * width:.1f} in width"
-        cells = (
-            f"{inner.name} in {outer.name}",
-            f"{system.of(min(outer.end, inner.end) - max(outer.start, inner.start), 'm'):g}",
-            ", ".join(f"{system.of(x, 'm'):g}" for x in joint.stations),
-            "bonded" if joint.bonded else "\n".join(_clearances(joint)),
-            free,
-            _friction(joint),
-        )
-        rows.append(cells)
-    sizes = f"overlap\n{m}", f"stations\n{m}", "clearance\nmm", "gap without pads\nmm"
-    headings = ("joint", *sizes, "friction")
-    inside = "A pad at the end of the overlap has its centre half a pad length inside the overlap."
-    notes = [inside] if any(joint.padded for joint in boom.joints) else []
-    return Table.of_rows("", "Joints", headings, rows, notes)
-
-
-def _clearances(joint: Joint) -> Iterator[str]:
-    """Yield texts of the clearances of a joint in mm, along z, and in 3-D booms also along y."""
-    sides: Mapping[Direction, tuple[str, str]] = {"z": ("above", "below"), "y": ("right", "left")}
-    for direction, names in sides.items():
-        if direction == "y" and joint.lateral_play is None:
-            return
-        both = [1e3 * clearance for clearance in joint.clearances(direction)]
-        parts = [f"{one:g} {name}" for one, name in zip(both, names, strict=True)]
-        text = ("lateral " if direction == "y" else "") + f"± {both[0]:g}"
-        yield text if both[0] == both[1] else ", ".join(parts)
-
-
-def _friction(joint: Joint) -> str:
-    if joint.friction == 0.0:
-        return "none"
-    forces = ", ".join(f"{force:g}" for force in joint.normal_forces) + " N"
-    return (
-        f"{joint.friction:g}, normal force {forces if any(joint.normal_forces) else 'of contacts'}"
-    )
 
 
 def _models(case: Case, boom: Boom) -> Table:
     rows = []
     for model in case.models:
         joints = model.model_boom(boom).boom.joints
-        laws = dict.fromkeys(str(joint.contact) for joint in joints)
-        if len(laws) > 1:
+        laws = [str(joint.contact) for joint in joints]
+        if len({*laws}) > 1:
             names = [boom.segments[joint.inner].name for joint in joints]
-            laws = {f"{n}: {one.contact}": None for n, one in zip(names, joints, strict=True)}
-        contact = "bonded" if model.bonded else "\n".join(laws)
+            laws = [f"{name}: {law}" for name, law in zip(names, laws, strict=True)]
+        contact = "bonded" if model.bonded else "\n".join(dict.fromkeys(laws))
         rows.append((model.name, model.kind, model.describe(), contact))
     headings = ("model", "kind", "description", "contact of inner\nsegment, k in N/mⁿ")
     return Table.of_rows("", "Models", headings, rows)
-
-
-def _masses(boom: Boom, system: System) -> Table:
-    """Return the table of masses of each segment with its attachments, and their sum."""
-    segments = boom.segments
-    plain_masses = [one.mass_per_length * one.length for one in segments]
-    masses = [one.mass for one in segments]
-    moments = [
-        mass * segment.mass_centre + sum(point.mass * point.x for point in segment.all_masses)
-        for mass, segment in zip(plain_masses, segments, strict=True)
-    ]
-    whole, moment = sum(masses), sum(moments)
-    centres = [one / mass for one, mass in zip(moments, masses, strict=True)]
-    attached = [mass - part for mass, part in zip(masses, plain_masses, strict=True)]
-    columns = [
-        Column("segment", [*(one.name for one in segments), "all"]),
-        _of(system, "own mass", "kg", [*plain_masses, sum(plain_masses)]),
-        _of(system, "attached mass", "kg", [*attached, whole - sum(plain_masses)]),
-        _of(system, "centre of mass x", "m", [*centres, moment / whole]),
-    ]
-    return Table("Masses", columns)
 
 
 def axial_forces(boom: Boom, static: Statics | None) -> Table:
@@ -466,7 +343,7 @@ def _cylinders(state: StaticState, system: System) -> Table:
     columns = [
         Column("cylinder of", [segments[one.segment].name for one in cylinders]),
         Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in cylinders]),
-        _of(system, "length", "m", [one.length for one in cylinders], ".5g"),
+        column_in_units(system, "length", "m", [one.length for one in cylinders], ".5g"),
         Column(f"lever arm\n{system.label('m')}", arms, ".5g"),
         Column("force", [cylinder_force(state, 1 + i) for i in range(len(cylinders))], ".4g", "kN"),
     ]

@@ -60,7 +60,7 @@ KINDS: Mapping[str, Kind] = {
     "patch": Kind(
         "local plate stress",
         "σ_v ≤ f_y/γ; mean von Mises stress of the shell over half the width of a wall, within "
-        f"{BAND:g} m of a station or support along x",
+        f"{BAND:g} m of a station, support, lug or load along x",
         "a collar or thicker walls there, longer pads, or pads nearer the webs",
     ),
     "plate": Kind(

@@ -222,7 +222,7 @@ def static_limit_lines(
         elif at_rest:
             yield (
                 f"Limit {limit}: met in this case, {limit.format(largest)}; `protractile prove` "
-                "compares the combinations with it."
+                "checks the combinations against it."
             )
         else:
             yield f"Limit {limit}: {static}, and the motion adds to it; a run decides."

@@ -359,8 +359,7 @@ def limit_table(results: Results) -> Table | None:
     first = results.main_models[0]
     notes = [
         f"The tick judges {first} in this run, or the first model with a value if {first} has "
-        "none. "
-        "`protractile prove` checks the combinations against these limits."
+        "none. `protractile prove` checks the combinations against these limits."
     ]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 

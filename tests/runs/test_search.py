@@ -233,7 +233,7 @@ def test_check_compares_limits_with_the_tip_at_rest() -> None:
     rests = "the static tip deflection (maximum load) is 16 mm"
     assert limit_sentences(loose) == [
         "Limit static tip deflection (maximum load) ≤ 20 mm: met in this case, 16 mm; `protractile "
-        "prove` compares the combinations with it.",
+        "prove` checks the combinations against it.",
         f"Limit tip deflection ≤ 20 mm: {rests}, and the motion adds to it; a run decides.",
         "Limit first frequency ≥ 3.4 Hz: a run decides.",
     ]
