@@ -4,11 +4,13 @@
 The function spaces are (29)–(31) of the paper. The paper's functions are powers of x, which are
 numerically dependent from about ten terms on. Here products of the lowest function and Legendre
 polynomials span the same spaces. The complete basis has all polynomials that the supports admit.
+Its rigid motions alone describe a segment as a rigid body on elastic supports and contacts.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from operator import attrgetter
 from typing import Literal
@@ -309,3 +311,38 @@ def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Lege
     lowest = seed.convert(kind=Legendre, domain=domain)
     functions = [lowest * Legendre.basis(k, domain=domain) for k in range(terms)]
     return [function / np.abs(function.coef).max() for function in functions]
+
+
+def rigid_segment(segment: Segment) -> SegmentModel:
+    """Return the model of a segment that moves without deformation.
+
+    It has the rigid motions that rigid supports admit, possibly none, with the stiffness of elastic
+    supports and the inertia of point masses.
+    """
+    components: dict[Motion, Component] = {"z": _rigid_motion(segment)}
+    if segment.lateral is not None:
+        components["y"] = _rigid_motion(segment.turned())
+        turns = segment.rigid_twists
+        components["twist"] = kantorovich_twist(segment, turns) if turns else _no_motion()
+    return SegmentModel(components)
+
+
+def count_rigid_motions(segment: Segment) -> int:
+    """Return the number of rigid motions along z that rigid supports admit."""
+    held = sum((s.stiffness is None) + (s.kind == "clamped") for s in segment.supports)
+    return max(0, 2 - held)
+
+
+def _rigid_motion(segment: Segment) -> Component:
+    motions = count_rigid_motions(segment)
+    if motions == 0:
+        return _no_motion()
+    straight = kantorovich_bending(segment, motions, "complete", rotary_inertia=True)
+    return replace(straight, curvature=None)
+
+
+def _no_motion() -> Component:
+    none, empty = np.zeros(0), np.zeros((0, 0))
+    return Component(
+        empty, empty, empty, none, none, lambda x: none, 0, lambda x: none, rotation_load=none
+    )

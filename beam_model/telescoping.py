@@ -13,10 +13,9 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from beam_model.component import BeamSegment, SegmentModel
-from dynamics.drive.row_table import MovingAxialForce, RowTable
-from dynamics.drive.travel import Travel
 from dynamics.excitation import HistorySum
 from dynamics.gap_builder import GapBuilder
+from dynamics.travel import MovingAxialForce, RowTable, Travel
 from geometry.arrays import Array
 from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom

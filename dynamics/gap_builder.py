@@ -16,9 +16,9 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, DryFriction
-from dynamics.drive.travel import RowKind
 from dynamics.excitation import Excitation, History, InitialImpulse, ReleasedLoad
 from dynamics.gap_system import GapSystem, Observer
+from dynamics.travel import RowKind
 
 R = TypeVar("R")
 L = TypeVar("L")

@@ -23,9 +23,9 @@ import numpy as np
 
 from dynamics.arrays import Array, Indices
 from dynamics.contact import ContactLaw, DryFriction
-from dynamics.drive.travel import ROW_KINDS, Travel
 from dynamics.excitation import Excitation, is_constant
 from dynamics.second_order import soften_modes
+from dynamics.travel import ROW_KINDS, Travel
 
 
 class Observer(NamedTuple):

@@ -28,12 +28,11 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, PowerContact
-from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import RowKind, Travel
 from dynamics.excitation import Excitation, History, MotionLaw, PiecewiseLinear
 from dynamics.frame_motion import FrameMotion, PathAcceleration
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.trajectory import Trajectory
+from dynamics.travel import RowKind, RowTable, Travel
 
 # Ratio of the stiffnesses of ground and rope.
 _GROUND = 100.0

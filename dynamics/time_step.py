@@ -18,8 +18,6 @@ import numpy as np
 
 from dynamics.arrays import Array
 from dynamics.contact import contact_limits
-from dynamics.drive.stick_slip import ELASTIC_DRIVE_VARIABLES, move_segment
-from dynamics.drive.travel import Travel
 from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, check_energy
 from dynamics.excitation import History
 from dynamics.failure import NumericsError
@@ -38,7 +36,9 @@ from dynamics.kernels.modal_flow import Flow, compliance, modal_flow
 from dynamics.kernels.row_forces import row_laws, row_problem
 from dynamics.kernels.telescoping import add_axial_forces, moving_axial_forces, moving_rows
 from dynamics.motion import Motion
+from dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES, move_segment
 from dynamics.trajectory import DRIVE_VARIABLES, Output, Trajectory
+from dynamics.travel import Travel
 
 # Maximum number of halvings of a step whose forces do not converge.
 _HALVINGS = 10

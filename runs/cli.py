@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 # Each command imports its own libraries, since all libraries together take seconds to load.
-from runs.process import ending, progress, ranks, terminal
+from runs.process import ending, ranks, terminal
 from runs.process.terminal import Terminal, printable
 
 if TYPE_CHECKING:
@@ -144,7 +144,7 @@ def run(
             folder = prepare(out or f"runs/out/{Path(case).stem}", case)
             with (
                 atomic_folder(folder) as part,
-                progress.display([model.name for model in effective.models]) as report_progress,
+                terminal.display([model.name for model in effective.models]) as report_progress,
             ):
                 renderers = () if no_pictures else ("runs.report.snapshots", "pyvista.plotting")
                 context = RunContext(comm, report_progress, cache, cache, helper, renderers)
@@ -293,7 +293,7 @@ def sweep(
         with members.rank_executor(comm) if several else workers.workers(None) as pool:
             if pool is None:
                 return 0
-            with progress.display() as report_progress:
+            with terminal.display() as report_progress:
                 cache = None if no_cache else Cache.of_user()
 
                 def run_plan(plan: Plan) -> list[Outcome]:
@@ -346,7 +346,7 @@ def frequencies(
             return 0
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         sweep_runs.prepare(folder, case)
-        with progress.display() as report_progress:
+        with terminal.display() as report_progress:
             data = charts.gather(plan, charts.measure(cases, comm, cache, report_progress))
         charts.write(data, folder)
         print(printable(str(folder / f"{charts.NAME}.csv")))
@@ -397,7 +397,7 @@ def prove(
     from runs.case.kinds.model import BuildContext
     from runs.folder.cache import Cache
 
-    with ranks.end_all_ranks_on_error(comm), progress.display([shell]) as report_progress:
+    with ranks.end_all_ranks_on_error(comm), terminal.display([shell]) as report_progress:
         stages = partial(report_progress, shell)
         context = BuildContext(comm, stages, None if no_cache else Cache.of_user())
         return print_proofs(checked, case, Terminal(), (shells[shell], context))

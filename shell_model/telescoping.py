@@ -3,10 +3,18 @@
 
 A Krylov basis for pad forces at all extensions would be large. But pads excite few modes of
 segments, and springs represent the remaining compliance of walls
-(:mod:`shell_model.reduction.pad_springs`). Rows and springs are sampled at extensions one mesh size
+(:func:`springs`). Rows and springs are sampled at extensions one mesh size
 apart, with splines between them. The geometric stiffness of a moving axial force follows from the
 slope of the mean deflection, a spline between mesh lines. Local bending of walls has the geometric
 stiffness of the initial extension.
+
+At the extension s, pads with the rows B(s) have the compliance B (K + σ M)⁻¹ Bᵀ at the shift σ.
+Modes of the circular frequencies ω_i and the rows b_i(s) contribute Σ_i b_i b_iᵀ / (ω_i² + σ). The
+difference Γ(s, σ) is a compliance of walls, with small inertia up to about 1000 Hz. Springs with
+the diagonal matrix Ω_p of circular frequencies and the rows L(s) = Γ^½ X (Ω_p² + σ)^½ represent it:
+L (Ω_p² + σ)⁻¹ Lᵀ = Γ for all s at one σ (residual flexibility; MacNeal 1971). Ω_p and the
+orthogonal matrix X represent the inertia Γ′ = −dΓ/dσ by the mean of Γ^−½ Γ′ Γ^−½ = X (Ω_p² + σ)⁻¹
+Xᵀ over all extensions (Rubin 1975). The symmetric root Γ^½ is smooth in s.
 """
 
 from __future__ import annotations
@@ -14,26 +22,27 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.drive.row_table import MovingAxialForce, RowTable
-from dynamics.drive.travel import ROW_KINDS, RowKind, Travel
 from dynamics.excitation import HistorySum
 from dynamics.gap_builder import GapBuilder
 from dynamics.gap_system import GapSystem
 from dynamics.reduction import reduce_modes, with_coordinates
+from dynamics.travel import ROW_KINDS, MovingAxialForce, RowKind, RowTable, Travel
 from geometry.arrays import Array, Mask
 from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
 from geometry.telescoping import TelescopingStations, telescoping_stations
 from shell_model.boom_shell import BoomShell
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
-from shell_model.reduction.pad_springs import SLOW, PadResponses, pad_responses, springs, squared
 from shell_model.reduction.segment import ReducedSegment
+from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
+from shell_model.segment.solver import ShiftedSolver, times
 from shell_model.stress.stresses import lines_around
 
 # Maximum frequency of modes in Hz, frequency in Hz up to which all modes are kept, and minimum
@@ -46,6 +55,12 @@ _EVERY = 4
 
 # Minimum number of extensions at which rows are sampled.
 _FEWEST = 4
+
+# Frequencies in Hz: of the shift σ, between rigid and residual modes, and maximum of springs.
+SLOW, _FASTEST = 50.0, 10000.0
+
+# Fraction of the largest compliance below which the compliance of a force pattern is neglected.
+_NEGLIGIBLE = 1.0e-4
 
 
 @dataclass(frozen=True, slots=True)
@@ -315,3 +330,61 @@ def _moving_axial_forces(
     beside = np.zeros((len(rows), len(boom.directions), behind))
     table = RowTable.spline(extensions, np.concatenate([np.array(rows), beside], axis=2))
     return [MovingAxialForce(axial.force, table)]
+
+
+class PadResponses(NamedTuple):
+    """Responses (num_columns, num_columns) of a full segment to pad forces."""
+
+    compliance: Array  #: B (K + σ M)⁻¹ Bᵀ in m/N at the shift of springs
+    inertia: Array  #: B (K + σ M)⁻¹ M (K + σ M)⁻¹ Bᵀ in m s²/N, the negative derivative by σ
+    tested: Array  #: compliance in m/N at the shift for the test of springs
+
+
+def pad_responses(symmetry: SymmetryReduction, columns: Array, test: float) -> PadResponses:
+    """Return the responses to columns (num_owned, num_columns) of pads. Collective.
+
+    ``test`` is the frequency in Hz of the shift for ``tested``.
+    """
+
+    def of_class(_: int, job: Job) -> Array:
+        shell = job.shell(symmetry.cell)
+        solve = ShiftedSolver(shell, SLOW)
+        # Pads press on few nodes, so that columns are sparse.
+        loaded_rows = np.flatnonzero((job.forces != 0.0).any(axis=1))
+        forces = job.forces[loaded_rows]
+        response = solve(job.forces)
+        slow = forces.T @ response[loaded_rows], response.T @ times(shell.mass, response)
+        solve.move(test)
+        tested = forces.T @ solve(job.forces)[loaded_rows]
+        solve.destroy()
+        return np.array([*slow, tested])
+
+    start = np.zeros((3, columns.shape[1], columns.shape[1]))
+    return PadResponses(*symmetry.sum_classes(columns, start, of_class))
+
+
+def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
+    """Return springs that replace a residual compliance: ω² and rows.
+
+    ω² (num_springs,) is in rad²/s², rows (num_extensions, num_rows, num_springs) are in 1/√kg.
+    ``residual`` Γ (num_extensions, num_rows, num_rows) is in m/N, ``inertia`` Γ′ in m s²/N.
+    """
+    sizes = np.sqrt(np.einsum("wjj->j", residual) / len(residual))
+    scale = np.outer(sizes, sizes)
+    values, patterns = np.linalg.eigh(residual / scale)
+    values[values < _NEGLIGIBLE * values.max()] = 0.0
+    inverse = np.divide(1.0, np.sqrt(values), out=np.zeros_like(values), where=values > 0.0)
+    root, back = (
+        np.einsum("wij,wj,wkj->wik", patterns, one, patterns) for one in (np.sqrt(values), inverse)
+    )
+    slowness, turn = np.linalg.eigh((back @ (inertia / scale) @ back).mean(axis=0))
+    shifted = 1.0 / np.maximum(slowness, 1.0 / squared(_FASTEST))
+    pulls = root @ turn
+    kept = np.abs(pulls).max(axis=(0, 1)) > _NEGLIGIBLE
+    rows = sizes[:, None] * pulls * np.sqrt(shifted)
+    return (shifted - squared(SLOW))[kept], rows[..., kept]
+
+
+def squared(frequency: float) -> float:
+    """Return ω² in rad²/s² of a frequency in Hz."""
+    return float((2.0 * np.pi * frequency) ** 2)

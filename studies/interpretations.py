@@ -21,7 +21,7 @@ import numpy as np
 
 from beam_model.kantorovich import Base
 from dynamics.failure import NumericsError
-from dynamics.predictability.ensemble import perturbations
+from dynamics.predictability import perturbations
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.kinds.kantorovich import Kantorovich

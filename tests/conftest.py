@@ -19,7 +19,7 @@ from dynamics.contact import PowerContact
 from geometry.boom import Boom, Joint, Material, Segment, Support
 from geometry.section import infer_inner_section, infer_outer_section
 from runs.folder.cache import VARIABLE
-from runs.process import progress
+from runs.process import terminal
 from tests.space import in_space
 from tests.unprinted import blank
 
@@ -59,7 +59,7 @@ def _moves(item: pytest.Function) -> bool:
 @pytest.fixture(autouse=True)
 def _no_hurry(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make the output of commands independent of the machine's speed."""
-    monkeypatch.setattr(progress, "EVERY", inf)
+    monkeypatch.setattr(terminal, "EVERY", inf)
 
 
 @pytest.fixture(scope="session")

@@ -16,9 +16,17 @@ from numba import njit
 from dynamics.arrays import Array
 from dynamics.kernels.compiled import LOOP, SUMS, borrow
 from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
-from dynamics.kernels.row_forces import Laws, Problem, contact_response, solve_contact_forces
+from dynamics.kernels.row_forces import (
+    Laws,
+    Problem,
+    contact_energy,
+    contact_response,
+    solve_contact_forces,
+    term_energy,
+    term_force,
+    term_slope,
+)
 from dynamics.kernels.telescoping import AxialForces, MovingRows, add_axial_forces, move_rows
-from dynamics.kernels.terms import contact_energy, term_energy, term_force, term_slope
 from dynamics.trajectory import Output
 
 # Indices in ``State.tally``. From the index of the work on, they have the order of

@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from dynamics.drive.stick_slip import ELASTIC_DRIVE_VARIABLES
 from dynamics.energy import DRIVEN_ENERGIES
 from dynamics.excitation import InitialImpulse, ReleasedLoad
+from dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES
 from dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
 from geometry.axial import Thrust, with_compression
 from geometry.boom import (

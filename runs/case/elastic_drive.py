@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from dataclasses import replace
 from math import pi
 
-from dynamics.drive.stick_slip import ElasticDrive
 from dynamics.gap_system import GapSystem
+from dynamics.stick_slip import ElasticDrive
 from geometry.boom import Boom, BoomError
 from geometry.telescoping import drives_below, telescoping_stations
 from runs.case.contact import JointTable

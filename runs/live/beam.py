@@ -1,22 +1,24 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Results of a beam for the live page: static results, then the motion.
+"""Results of a beam for the live page: static results, then the motion, and a figure of the boom.
 
 If the cache has a shell of the same geometry, the beam is calibrated by it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
+from matplotlib.path import Path
 
 from dynamics.failure import NumericsError
 from dynamics.integrator import FixedStep
 from dynamics.trajectory import Trajectory
+from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.typography import TO_MILLI
 from runs.case.build import build_boom
@@ -26,7 +28,6 @@ from runs.case.kinds.model import BuiltModel
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.folder.cache import Cache, key
-from runs.live.boom_figure import boom_figure
 from runs.live.controls import Draft
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
@@ -38,10 +39,16 @@ from runs.pipeline.proportions import proportion_cautions
 from runs.pipeline.quantities import check_limits
 from runs.pipeline.results import Results, label
 from runs.pipeline.section_forces import LoadedModel
-from runs.pipeline.static_results import extended_positions, instants, positions
+from runs.pipeline.static_results import (
+    Diagram,
+    StaticResult,
+    extended_positions,
+    instants,
+    positions,
+)
 from runs.pipeline.strength import FibreStress, fibre_forces, largest_stresses
 from runs.pipeline.summary import Summary
-from runs.report import theme
+from runs.report import symbols, theme
 from runs.report.charts import Chart, Curve
 from runs.report.formatting import number
 from runs.report.rest_figures import chart_along, rest_lines
@@ -49,6 +56,7 @@ from runs.report.summary_table import summary_table, utilisation_verdict
 
 if TYPE_CHECKING:
     from beam_model.calibration import Calibration
+
 
 # Heights in pixels: of a panel of a chart, and of the axis below the panels.
 _PANEL, _BELOW = 150, 60
@@ -58,6 +66,27 @@ _LOADS = ("payload", "gravity", "loads", "axial", "base", "hoist", "slew", "luff
 
 # The last calibration, by the cache key of its shell.
 _LAST: dict[str, Calibration] = {}
+
+# Smallest deflection of the tip in the figure, as a fraction of the length of the boom.
+_SHOWN = 0.03
+
+# Plotly marker of each symbol, and clockwise rotation of the marker in degrees.
+_MARKERS: Mapping[Path, tuple[str, float]] = {
+    symbols.FORCE_DOWN: ("arrow", 180.0),
+    symbols.FORCE_UP: ("arrow", 0.0),
+    symbols.FORCE_BACK: ("arrow", 270.0),
+    symbols.FORCE_ON: ("arrow", 90.0),
+    symbols.AWAY: ("circle-x-open", 0.0),
+    symbols.TOWARDS: ("circle-open-dot", 0.0),
+    symbols.MOMENT: ("star-triangle-up-open", 0.0),
+    symbols.CLOCKWISE: ("star-triangle-down-open", 0.0),
+    symbols.PAYLOAD: ("circle", 0.0),
+    symbols.PINNED: ("triangle-up", 0.0),
+    symbols.CLAMPED: ("line-ns-open", 0.0),
+    symbols.ELASTIC: ("diamond-tall-open", 0.0),
+    symbols.REST_ABOVE: ("square-open", 0.0),
+    symbols.REST_BELOW: ("square-open", 0.0),
+}
 
 
 def beam_results(
@@ -237,3 +266,107 @@ def _calibration(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration
             boom, loaded_shell.system, loaded_shell.probe_responses, beam.segments
         )
     return _LAST.get(name)
+
+
+def boom_figure(case: Case, boom: Boom, rest: StaticResult) -> dict[str, Any]:
+    """Return the figure of the deflected boom at its luffing angle.
+
+    Args:
+        case: case with supports and loads.
+        boom: boom of the case.
+        rest: static results of a beam.
+    """
+    visible = _SHOWN * boom.length / max(abs(rest.tip), 1e-12)
+    factor = max(1.0, float(f"{min(visible, 1e6):.1g}"))
+    angle = 0.0 if case.gravity is None else case.gravity.angle
+    traces = [
+        *_segments(boom, rest, factor),
+        *_cylinders(boom),
+        *_symbols(case, boom, rest, factor),
+    ]
+    turn = np.radians(angle)
+    matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    for trace in traces:
+        trace["x"], trace["y"] = matrix @ np.array([trace.pop("along"), trace.pop("across")])
+        if "marker" in trace:
+            trace["marker"]["angle"] -= angle * trace.pop("turns")
+    title = "to scale" if factor == 1.0 else f"to scale, deflection × {factor:g}"
+    axis = {"showgrid": False, "zeroline": False, "ticksuffix": " m"}
+    layout = {
+        "title": {"text": f"At rest under the maximum load, {title}", "font": {"size": 14}},
+        "template": "none",
+        "font": {"family": "system-ui, sans-serif", "size": 13, "color": theme.INK},
+        "showlegend": False,
+        "margin": {"l": 50, "r": 12, "t": 36, "b": 30},
+        "xaxis": axis,
+        "yaxis": axis | {"scaleanchor": "x"},
+        "height": 380,
+    }
+    return {"data": traces, "layout": layout}
+
+
+def _segments(boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[str, Any]]:
+    """Yield the traces of the undeformed axis, then of each segment from tip to base."""
+    yield {
+        "along": [boom.segments[0].start, boom.tip],
+        "across": [0.0, 0.0],
+        "mode": "lines",
+        "line": {"color": theme.FAINT, "dash": "dash", "width": 1},
+        "hoverinfo": "skip",
+    }
+    for index in reversed(range(len(boom.segments))):
+        segment, diagram = boom.segments[index], rest.diagrams[index]
+        x = np.array(diagram.x)
+        ends = np.array([symbols.edges(boom, segment, end) for end in segment.ends])
+        low, high = (_deflection(diagram, factor) + np.interp(x, segment.ends, z) for z in ends.T)
+        color = theme.segment_color(index)
+        yield {
+            "along": [*x, *x[::-1], x[0]],
+            "across": [*low, *high[::-1], low[0]],
+            "mode": "lines",
+            "fill": "toself",
+            "fillcolor": f"{color}40",
+            "line": {"color": color, "width": 1.2},
+            "name": segment.name,
+            "text": segment.name,
+            "hoverinfo": "text",
+            "hoveron": "fills",
+        }
+
+
+def _deflection(diagram: Diagram, factor: float) -> Array:
+    zero = [0.0] * len(diagram.x)
+    return factor * np.array(diagram.curves.get("deflection", zero))
+
+
+def _cylinders(boom: Boom) -> Iterator[dict[str, Any]]:
+    for cylinder in boom.cylinders:
+        yield {
+            "along": [cylinder.x, cylinder.ground[0]],
+            "across": [-cylinder.depth, cylinder.ground[1]],
+            "mode": "lines",
+            "line": {"color": theme.INK, "width": 4},
+            "text": f"cylinder, {number(cylinder.length, 4)} m",
+            "hoverinfo": "text",
+        }
+
+
+def _symbols(case: Case, boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[str, Any]]:
+    for symbol in symbols.boom_symbols(case, boom):
+        diagram, x = rest.diagrams[symbol.segment], np.array(symbol.places)
+        shift = np.interp(x, diagram.x, _deflection(diagram, 0.0 if symbol.grounded else factor))
+        shape, rotation = _MARKERS[symbol.path]
+        yield {
+            "along": x,
+            "across": shift + np.array([symbol.z(boom, place) for place in symbol.places]),
+            "mode": "markers",
+            "marker": {
+                "symbol": shape,
+                "angle": rotation,
+                "size": 18 if len(x) == 1 else 10,
+                "color": symbol.color,
+            },
+            "turns": symbol.turns,
+            "text": symbol.meaning,
+            "hoverinfo": "text",
+        }

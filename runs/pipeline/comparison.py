@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.arrays import Array
-from dynamics.predictability.horizon import SHARES, ensemble_horizons
+from dynamics.predictability import SHARES, ensemble_horizons
 from dynamics.trajectory import PointwiseDifferences
 from runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 
@@ -103,7 +103,7 @@ def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "
     """Compare the ensembles of two models.
 
     Args:
-        one: ensemble of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        one: ensemble of :func:`dynamics.predictability.integrate_ensemble`.
         other: ensemble of the other model at the same times.
         cutoff: cut-off of the slow motion in Hz.
         observer: name of the compared output.

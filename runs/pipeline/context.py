@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from runs.folder.cache import Cache
-from runs.process.progress import Progress
+from runs.process.terminal import Progress
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from beam_model.statics import telescoping_system
-from dynamics.drive.stick_slip import ElasticDrive
-from dynamics.drive.travel import Travel
 from dynamics.gap_system import GapSystem
+from dynamics.stick_slip import ElasticDrive
+from dynamics.travel import Travel
 from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.drive import max_speed

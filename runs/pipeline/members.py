@@ -16,8 +16,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.integrator import FixedStep, Integrator
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import Vary
-from dynamics.predictability.horizon import SHARES, ensemble_horizons, measure_horizons
+from dynamics.predictability import SHARES, Vary, ensemble_horizons, measure_horizons
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case.schema import TimeTable
@@ -88,7 +87,7 @@ def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> Ensembl
     """Return the summary of the ensemble of a model.
 
     Args:
-        ensemble: ensemble of :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        ensemble: ensemble of :func:`dynamics.predictability.integrate_ensemble`.
         peaks: peaks of the slow motion of the tip; None without a cut-off.
     """
     shares = zip(SHARES, ensemble_horizons(ensemble), strict=True)

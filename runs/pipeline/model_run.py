@@ -16,7 +16,7 @@ import xarray as xr
 from beam_model.calibration import Calibration, Stiffness
 from dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability import integrate_ensemble
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Segment
 from runs.case import toml

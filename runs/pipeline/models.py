@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.drive.row_table import ChangingAxialForce, RowTable
-from dynamics.drive.travel import Travel
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.hanging_load import HangingLoad
 from dynamics.line import Line
 from dynamics.motion import Motion, build_motion
 from dynamics.trajectory import Trajectory
+from dynamics.travel import ChangingAxialForce, RowTable, Travel
 from geometry.boom import Boom
 from runs.case.build import build_boom
 from runs.case.elastic_drive import with_elastic_drives

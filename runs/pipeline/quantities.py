@@ -71,7 +71,7 @@ def measure(results: Results, model: str) -> Quantities:
     fibre; the wall stress of a shell is a mean over a patch. The pad pressure is the maximum over
     pads and time. The damage is the fatigue damage at the governing place. The decay time belongs
     to the first mode. :class:`runs.pipeline.residual_vibration.ResidualVibration` defines the
-    residual vibration, and :class:`dynamics.drive.stick_slip.StickSlip` defines force and slip of
+    residual vibration, and :class:`dynamics.stick_slip.StickSlip` defines force and slip of
     elastic drives.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)

@@ -13,11 +13,11 @@ from typing import Annotated
 
 import numpy as np
 
-from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium_at
 from dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
+from dynamics.travel import Travel
 from geometry.arrays import Array, Indices
 from geometry.typography import TO_MILLI
 from runs.case.drive import resolving_times

@@ -15,11 +15,11 @@ from itertools import zip_longest
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium_at
 from dynamics.excitation import Excitation
 from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.gap_system import GapSystem
+from dynamics.travel import Travel
 from geometry.arrays import Array, Indices
 from geometry.boom import Boom
 from geometry.contact_places import contact_centres

@@ -15,8 +15,8 @@ from typing import Annotated, NamedTuple
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 from pydantic_core import to_jsonable_python
 
-from dynamics.drive.stick_slip import StickSlip
 from dynamics.failure import NumericsError
+from dynamics.stick_slip import StickSlip
 from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.schema import EnsembleTable
 from runs.pipeline.comparison import Comparison
@@ -58,7 +58,7 @@ class EnsembleSummary(SummaryTable):
     slow_peaks: SlowPeaks | None
 
     def horizon(self, share: float) -> float | None:
-        """Return the horizon in s for one of :data:`dynamics.predictability.horizon.SHARES`."""
+        """Return the horizon in s for one of :data:`dynamics.predictability.SHARES`."""
         return self.horizons[f"{share:g}"]
 
 
@@ -67,7 +67,7 @@ class Predictability(SummaryTable):
 
     ``times`` (num_relatives, num_shares) in s belong to relative changes of the data, ``of_step``
     (num_shares,) in s to a finer time step. ``rate`` (num_shares,) is the growth rate in 1/s. The
-    other fields are those of :class:`dynamics.predictability.horizon.Horizons`.
+    other fields are those of :class:`dynamics.predictability.Horizons`.
     """
 
     relatives: list[float]

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from dynamics.predictability.horizon import SHARES
+from dynamics.predictability import SHARES
 from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
 from runs.pipeline.metrics import metrics

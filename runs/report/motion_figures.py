@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from dynamics.energy import DRIVEN_ENERGIES, energy_residual
-from dynamics.predictability.horizon import SHARES
+from dynamics.predictability import SHARES
 from geometry.arrays import Array
 from geometry.typography import TO_MILLI
 from runs.report import theme

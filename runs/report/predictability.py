@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from dynamics.predictability.horizon import SHARES
+from dynamics.predictability import SHARES
 from geometry.typography import TO_MILLI, with_minus_signs
 from runs.pipeline.comparison import Comparison, PeakDifferences
 from runs.pipeline.low_pass import SlowPeaks

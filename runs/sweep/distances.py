@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from dynamics.failure import NumericsError
-from dynamics.predictability.ensemble import EnsembleMember, Vary, run_members
-from dynamics.predictability.horizon import SHARES, horizon
+from dynamics.predictability import SHARES, EnsembleMember, Vary, horizon, run_members
 from geometry.arrays import Array
 from geometry.typography import TO_PERCENT
 from runs.case.build import build_boom

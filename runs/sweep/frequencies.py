@@ -25,7 +25,7 @@ from runs.case.schema import Case, Model
 from runs.folder.files import atomic_path, folder_lock, modified_folder
 from runs.pipeline.context import ignore_progress
 from runs.pipeline.results import CONVENTIONS
-from runs.process.progress import Progress
+from runs.process.terminal import Progress
 from runs.report.tables import Column, Table
 from runs.sweep.figures import draw_frequencies
 from runs.sweep.points import Plan

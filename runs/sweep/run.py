@@ -24,8 +24,7 @@ from runs.pipeline.context import RunContext
 from runs.pipeline.quantities import Quantities, measure
 from runs.pipeline.run import run_case
 from runs.process.ending import when_interrupted
-from runs.process.progress import Progress
-from runs.process.terminal import message, say, shorten
+from runs.process.terminal import Progress, message, say, shorten
 from runs.process.workers import end
 from runs.sweep.distances import Features, comparison_end
 from runs.sweep.points import Plan

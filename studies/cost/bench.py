@@ -24,7 +24,7 @@ from rich.console import Console
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability import integrate_ensemble
 from geometry.arrays import Array
 from runs import CASES
 from runs.case import reading as case_file

@@ -12,7 +12,7 @@ from scipy.integrate import odeint, solve_ivp
 
 from dynamics.contact import contact_terms
 from dynamics.gap_system import GapSystem
-from dynamics.kernels.terms import term_force
+from dynamics.kernels.row_forces import term_force
 from geometry.arrays import Array
 from studies.motions import OUTPUT_STEP
 

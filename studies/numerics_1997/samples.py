@@ -18,7 +18,7 @@ import numpy as np
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import perturbations, vary_motion
+from dynamics.predictability import perturbations, vary_motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from runs.case.build import build_boom

@@ -22,7 +22,7 @@ from dynamics.contact_term import Terms
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import LOOP
-from dynamics.kernels.terms import contact_energy, term_force, term_slope
+from dynamics.kernels.row_forces import contact_energy, term_force, term_slope
 from dynamics.motion import Motion
 from dynamics.trajectory import Output, Trajectory
 

@@ -19,7 +19,7 @@ from dynamics.contact import ContactLaw, DryFriction, contact_terms
 from dynamics.contact_term import Terms
 from dynamics.failure import NumericsError
 from dynamics.kernels.compiled import LOOP
-from dynamics.kernels.terms import contact_energy
+from dynamics.kernels.row_forces import contact_energy
 from geometry.arrays import Array
 
 _ROUNDS = 1000

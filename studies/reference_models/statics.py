@@ -9,8 +9,8 @@ import numpy as np
 
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
+from geometry.polygon import ShearFlow
 from geometry.section import Offset, Plate
-from geometry.shear_flow import ShearFlow
 
 
 def static_response(system: GapSystem, force: Array) -> Array:

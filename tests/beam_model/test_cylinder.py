@@ -10,8 +10,7 @@ import pytest
 
 from beam_model.boom_modes import BoomModes
 from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import Base, kantorovich_segments
-from beam_model.rigid import rigid_segment
+from beam_model.kantorovich import Base, kantorovich_segments, rigid_segment
 from beam_model.segment_model import gap_system
 from beam_model.statics import static_state
 from dynamics.contact import PowerContact

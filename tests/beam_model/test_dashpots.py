@@ -12,7 +12,7 @@ from pydantic import ValidationError
 from beam_model.boom_modes import BoomModes
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
-from beam_model.rigid import rigid_segment
+from beam_model.kantorovich import rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.damping import closed_contact_damping

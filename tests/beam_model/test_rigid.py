@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from beam_model.boom_modes import BoomModes
-from beam_model.rigid import rigid_segment
+from beam_model.kantorovich import rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium

@@ -9,8 +9,7 @@ import pytest
 from beam_model.boom_modes import critical_factor
 from beam_model.component import Motion, SegmentModel
 from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
-from beam_model.rigid import rigid_segment
+from beam_model.kantorovich import kantorovich_segments, rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium

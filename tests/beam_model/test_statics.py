@@ -9,9 +9,8 @@ import pytest
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
+from beam_model.kantorovich import kantorovich_segments, rigid_segment
 from beam_model.lines import lines
-from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system
 from beam_model.statics import NodeReaction, net_reactions, static_state
 from dynamics.contact import PowerContact

@@ -10,9 +10,8 @@ from beam_model.boom_modes import critical_factor
 from beam_model.component import SegmentModel
 from beam_model.elements import Theory
 from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
+from beam_model.kantorovich import kantorovich_segments, rigid_segment
 from beam_model.lines import lines
-from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Step

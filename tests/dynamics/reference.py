@@ -8,12 +8,11 @@ from scipy.integrate import solve_ivp
 
 from dynamics.arrays import Array
 from dynamics.contact import PowerContact
-from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import ROW_KINDS
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
+from dynamics.travel import ROW_KINDS, RowTable
 from tests.modal import modal_system
 
 # Half the distance in s over which the speed of a drive is measured.

@@ -18,22 +18,20 @@ from dynamics.excitation import Excitation, Sine
 from dynamics.failure import NumericsError
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import (
+from dynamics.predictability import (
+    EARLY,
     EnsembleMember,
+    Growth,
+    Horizons,
     Vary,
     check_varied,
+    ensemble_horizons,
+    horizon,
     integrate_ensemble,
+    measure_horizons,
     perturbations,
     run_members,
     vary_motion,
-)
-from dynamics.predictability.horizon import (
-    EARLY,
-    Growth,
-    Horizons,
-    ensemble_horizons,
-    horizon,
-    measure_horizons,
 )
 from dynamics.trajectory import Trajectory
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
@@ -123,7 +121,7 @@ from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability import integrate_ensemble
 from tests.dynamics.two_stops import CHAOTIC
 
 with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:

@@ -9,8 +9,6 @@ import pytest
 from scipy.linalg import eigh
 
 from dynamics.contact import PowerContact
-from dynamics.drive.row_table import MovingAxialForce, RowTable
-from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import PiecewiseLinear, SCurve
 from dynamics.gap_system import GapSystem
@@ -19,6 +17,7 @@ from dynamics.kernels.telescoping import (
     moving_axial_forces,
 )
 from dynamics.motion import Motion
+from dynamics.travel import MovingAxialForce, RowTable, Travel
 from tests.dynamics.reference import errors_in_the_step, runge_kutta, slopes
 from tests.modal import modal_system
 

@@ -15,8 +15,12 @@ from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.kernels import march
-from dynamics.kernels.row_forces import row_laws, row_problem, solve_contact_forces
-from dynamics.kernels.terms import discrete_gradient
+from dynamics.kernels.row_forces import (
+    discrete_gradient,
+    row_laws,
+    row_problem,
+    solve_contact_forces,
+)
 from dynamics.motion import Motion
 from tests.modal import modal_system
 

@@ -10,8 +10,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from dynamics.arrays import Array
-from dynamics.drive.stick_slip import DriveMotion, ElasticDrive, move_segment
 from dynamics.excitation import PiecewiseLinear, SCurve, Stroke
+from dynamics.stick_slip import DriveMotion, ElasticDrive, move_segment
 from runs.pipeline.drives import critical_speed
 
 MASS, STIFFNESS, FRICTION = 500.0, 1.0e5, 1000.0

@@ -11,8 +11,6 @@ import pytest
 
 from dynamics.arrays import Array
 from dynamics.contact import ContactLaw, DryFriction, PowerContact
-from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import (
     Excitation,
@@ -26,6 +24,7 @@ from dynamics.excitation import (
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
+from dynamics.travel import RowTable, Travel
 from tests.dynamics.reference import end_of, table_slope, with_rates
 from tests.dynamics.test_moving_thrust import pressed_along
 

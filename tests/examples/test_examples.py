@@ -13,7 +13,7 @@ import pytest
 import protractile as pt
 from dynamics.integrator import FixedStep, simulate
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability import integrate_ensemble
 from tests.dynamics.two_stops import CHAOTIC
 
 EXAMPLES = Path(__file__).parents[2] / "examples"

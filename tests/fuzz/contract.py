@@ -34,7 +34,7 @@ MOST_CPU = 60
 OUT, ERR = ".stdout", ".stderr"
 
 
-# What runs/process/progress.py says of what takes long.
+# What runs/process/terminal.py says of what takes long.
 PROGRESS = re.compile(r".+: .+ (started|finished|took \d+ s|\d+ %, \d+ s left)")
 
 

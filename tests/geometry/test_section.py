@@ -16,7 +16,7 @@ from scipy.spatial import cKDTree
 from geometry.boom import Boom, BoomError
 from geometry.mesh import mesh_segment
 from geometry.plating import plain_thickness
-from geometry.polygon import PolygonSection
+from geometry.polygon import PolygonSection, ShearFlow
 from geometry.section import (
     BoxSection,
     Direction,
@@ -25,7 +25,6 @@ from geometry.section import (
     infer_inner_section,
     infer_outer_section,
 )
-from geometry.shear_flow import ShearFlow
 from geometry.walls import free_room
 from studies.reference_models.statics import shear_centre
 from tests.geometry.test_polygon import ALL, HEXAGON, OCTAGON, TRAPEZOID, U

@@ -21,8 +21,7 @@ import xarray as xr
 from dynamics.contact import PowerContact
 from dynamics.gap_system import Observer
 from geometry.boom import Boom
-from runs.folder.cache import Cache, key
-from runs.folder.records import read, write
+from runs.folder.cache import Cache, key, read_record, write_record
 from runs.process.terminal import shorten
 
 ROOT = Path(__file__).parents[2]
@@ -196,9 +195,9 @@ Kind = TypeVar("Kind")
 
 def again(thing: Any, kind: type[Kind]) -> Kind:
     file = BytesIO()
-    write(thing, file)
+    write_record(thing, file)
     file.seek(0)
-    return read(file, kind)
+    return read_record(file, kind)
 
 
 @pytest.mark.parametrize(
@@ -254,7 +253,7 @@ class Stranger(NamedTuple):
 @pytest.mark.parametrize("thing", [Path("a"), np.array([None]), len, {1}, Stranger(Path("a"))])
 def test_objects_other_than_data_are_not_stored(thing: object) -> None:
     with pytest.raises(TypeError, match="cannot be kept: it is no data"):
-        write(thing, BytesIO())
+        write_record(thing, BytesIO())
 
 
 @pytest.mark.parametrize(
@@ -262,7 +261,7 @@ def test_objects_other_than_data_are_not_stored(thing: object) -> None:
     [
         '{"record": ["os", "system"], "parts": {"command": "false"}}',
         '{"record": ["pathlib", "Path"], "parts": {}}',
-        '{"record": ["runs.folder.records", "Path"], "parts": {}}',
+        '{"record": ["runs.folder.cache", "Path"], "parts": {}}',
         '{"record": ["runs.folder.cache", "json"], "parts": {}}',
         '{"record": ["tests.runs.test_records", "Stranger"], "parts": {"path": ""}}',
         '{"record": ["dynamics.contact", "PowerContact"], "parts": {"stiffness": -1.0}}',
@@ -272,7 +271,7 @@ def test_objects_other_than_data_are_not_stored(thing: object) -> None:
 )  # fmt: skip
 def test_bad_records_are_refused(text: str) -> None:
     with pytest.raises((ValueError, TypeError)):
-        read(BytesIO(f"{text}\n".encode()), PowerContact)
+        read_record(BytesIO(f"{text}\n".encode()), PowerContact)
 
 
 @pytest.mark.parametrize("record", [b"", b'{"array": [1]}\n'])
@@ -284,7 +283,9 @@ def test_a_pickle_is_not_run(record: bytes) -> None:
     array = BytesIO()
     np.save(array, np.array([Harm()]), allow_pickle=True)
     with pytest.raises(ValueError, match=r"codec can't decode|Object arrays cannot be loaded"):
-        read(BytesIO(record + (array.getvalue() if record else pickle.dumps(Harm()))), np.ndarray)
+        read_record(
+            BytesIO(record + (array.getvalue() if record else pickle.dumps(Harm()))), np.ndarray
+        )
 
 
 def test_a_record_of_another_class_is_refused(paper_law: PowerContact) -> None:

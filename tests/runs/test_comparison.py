@@ -11,7 +11,7 @@ import xarray as xr
 from scipy.stats import norm
 
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import integrate_ensemble
+from dynamics.predictability import integrate_ensemble
 from dynamics.trajectory import PointwiseDifferences
 from protractile.cases import change
 from runs.case import reading as case_file

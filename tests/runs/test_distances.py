@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure as Sheet
 
-from dynamics.predictability.horizon import measure_horizons
+from dynamics.predictability import measure_horizons
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case import reading as case_file

@@ -15,7 +15,7 @@ from runs.case.hoist import HoistTable, WindTable, with_initial_slack
 from runs.case.load_tables import LoadTable
 from runs.case.reading import select
 from runs.case.schema import Case, EnsembleTable, StartTable
-from runs.pipeline.bonded import bonded_system
+from runs.pipeline.evaluation import bonded_system
 from runs.pipeline.models import build
 from tests.runs.case_texts import refusal, shipped
 from tests.runs.summaries import static_tip

@@ -10,9 +10,8 @@ import pytest
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
+from beam_model.kantorovich import kantorovich_segments, rigid_segment
 from beam_model.lines import lines
-from beam_model.rigid import rigid_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.damping import closed_contact_modes

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from runs import CASES
-from runs.process import ending, progress
+from runs.process import ending, terminal
 from runs.process.terminal import LONGEST, message, shorten
 
 ROOT = Path(__file__).parents[2]
@@ -80,10 +80,10 @@ def test_the_middle_goes_and_both_ends_stay() -> None:
 def test_progress_shows_stage_and_remaining_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: by hand. After 40 % in 12 s, 18 s remain; nothing is printed again within 5 s."""
     every = 5.0
-    monkeypatch.setattr(progress, "EVERY", every)
+    monkeypatch.setattr(terminal, "EVERY", every)
     said: list[str] = []
     times: list[float] = [0.0]
-    lines = progress.Lines(["beam", "shell"], said.append, lambda: times[-1])
+    lines = terminal.Lines(["beam", "shell"], said.append, lambda: times[-1])
     for now, model, stage, part in (
         (0.0, "beam", "build", 0.0),
         (0.1, "beam", "build", 1.0),

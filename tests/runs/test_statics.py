@@ -13,11 +13,10 @@ import pytest
 import xarray as xr
 
 from dynamics.contact import PowerContact
-from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import Travel
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
 from dynamics.gap_system import GapSystem
+from dynamics.travel import RowTable, Travel
 from geometry.fields import Distance
 from runs import CASES
 from runs.case.build import build_boom
@@ -26,8 +25,8 @@ from runs.case.load_tables import LoadTable
 from runs.case.reading import select
 from runs.case.schema import Case, StopTable
 from runs.check import check_case
-from runs.pipeline.bonded import bonded_system
 from runs.pipeline.design_results import DesignResults, PlayDifference
+from runs.pipeline.evaluation import bonded_system
 from runs.pipeline.model_quality import cautions, quality_notes
 from runs.pipeline.models import build
 from runs.pipeline.section_forces import LoadedModel

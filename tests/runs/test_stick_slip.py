@@ -11,13 +11,12 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure as Sheet
 
 from dynamics.contact import PowerContact
-from dynamics.drive.row_table import RowTable
-from dynamics.drive.travel import Travel
 from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, SCurve, Sine
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import simulate
 from dynamics.trajectory import Trajectory
+from dynamics.travel import RowTable, Travel
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom

@@ -25,7 +25,7 @@ from geometry.joint import Drive
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.local_compliance import compliance, local_compliance
 from shell_model.reduced_shell import ReducedShell, reduce_boom
-from shell_model.reduction.pad_springs import SLOW, springs, squared
+from shell_model.telescoping import SLOW, springs, squared
 from tests.dynamics.reference import table_slope
 from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
 from tests.touching import touching

@@ -89,10 +89,10 @@ def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: s
 # The command, which prints every stage.
 TELLING = """
 from protractile.__main__ import main
-from runs.process import progress
+from runs.process import terminal
 
 if __name__ == "__main__":
-    progress.EVERY = 0.0
+    terminal.EVERY = 0.0
     main()
 """
 

@@ -6,7 +6,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from beam_model.component import SegmentModel
-from beam_model.rigid import count_rigid_motions, rigid_segment
+from beam_model.kantorovich import count_rigid_motions, rigid_segment
 from geometry.boom import Boom, BoomError
 from runs.case.kinds.model import BeamTable, ModelBoom, Surrogate
 

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Predictability horizons: the time for which a motion can be predicted, and its limits.
+"""Predictability: ensembles of runs with slightly changed data, and horizons.
 
-A small relative change ε of the data makes two runs diverge as ε exp(λ t). They reach a given
-distance at T(ε) = T(1) − ln(ε)/λ, so that data a thousand times more accurate extend the horizon
-only by ln(1000)/λ (Lorenz 1963, *Deterministic nonperiodic flow*). This holds for small distances.
-So the growth rate λ is determined at a small fraction of the range; larger fractions may be reached
-at about the same time for any ε. In a linear system the distance stays proportional to ε.
+If impacts make a motion chaotic, a single run is a sample. Only what all members of an ensemble
+have in common is a property of the system.
+
+A horizon is the time for which a motion can be predicted. A small relative change ε of the data
+makes two runs diverge as ε exp(λ t). They reach a given distance at T(ε) = T(1) − ln(ε)/λ, so that
+data a thousand times more accurate extend the horizon only by ln(1000)/λ (Lorenz 1963,
+*Deterministic nonperiodic flow*). This holds for small distances. So the growth rate λ is
+determined at a small fraction of the range; larger fractions may be reached at about the same time
+for any ε. In a linear system the distance stays proportional to ε.
 """
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
-from concurrent.futures import Executor
+from concurrent.futures import Executor, ThreadPoolExecutor
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Literal
@@ -22,8 +28,12 @@ import xarray as xr
 from dynamics.arrays import Array
 from dynamics.integrator import AdaptiveStep, Integrator
 from dynamics.motion import Motion
-from dynamics.predictability.ensemble import EnsembleMember, Vary, check_varied, run_members
 from dynamics.trajectory import Trajectory
+
+Vary = Literal["load", "clearance", "velocity"]
+
+# Stored variables of each member. Whole trajectories would need too much memory.
+MEMBER_VARIABLES = ("tip", "head", "contact_force")
 
 # Fractions of the range at which two curves become distinguishable, and at which they are
 # independent.
@@ -35,6 +45,170 @@ EARLY = 1.0e-4
 _PARTS = 0.25, 1.0
 # Share of the progress of each fraction, for the large changes and again for the small ones.
 _STAGE = 0.5 / len(_PARTS)
+
+
+@dataclass(frozen=True, slots=True)
+class EnsembleMember:
+    """One run of an ensemble."""
+
+    motion: Motion  #: motion without changes
+    vary: Vary  #: name of the changed data
+    change: float  #: relative change
+    integrator: Integrator  #: integrator of the motion
+    variables: Sequence[str] = MEMBER_VARIABLES  #: names of the variables to store
+
+    def shorten(self, part: float) -> EnsembleMember:
+        """Return the member with a fraction of its duration, in whole output steps."""
+        outputs = max(1, round(part * self.motion.outputs))
+        return replace(
+            self, motion=replace(self.motion, duration=outputs * self.motion.output_step)
+        )
+
+
+def perturbations(members: int, relative: float, seed: int) -> Array:
+    """Return relative changes (members,): 0 for member 0, others uniform within ±relative."""
+    changes = np.random.default_rng(seed).uniform(-relative, relative, members)
+    changes[0] = 0.0
+    return changes
+
+
+def vary_motion(motion: Motion, vary: Vary, factor: float) -> Motion:
+    """Return the motion with the varied data multiplied by ``factor``."""
+    system = motion.system
+    if vary == "load":
+        excitations = [replace(x, load=factor * x.load) for x in system.excitations]
+        load = factor * system.load
+        return replace(motion, system=replace(system, load=load, excitations=excitations))
+    if vary == "clearance":
+        laws = [law.scale_clearances(factor) for law in system.laws]
+        return replace(motion, system=replace(system, laws=laws))
+    return replace(motion, velocity=factor * motion.velocity)
+
+
+def check_varied(motion: Motion, vary: Vary) -> None:
+    """Check that the varied data are not all zero.
+
+    Raises:
+        ValueError: all varied data are zero.
+    """
+    system = motion.system
+    loads = [system.load, *(x.load for x in system.excitations)]
+    varied: dict[Vary, bool] = {
+        "load": any(load.any() for load in loads),
+        "clearance": any(law.scale_clearances(2.0) != law for law in system.laws),
+        "velocity": bool(motion.velocity.any()),
+    }
+    if not varied[vary]:
+        raise ValueError(f"the {vary} is zero, so that no relative change moves it")
+
+
+def run_members(
+    members: Sequence[EnsembleMember],
+    executor: Executor | None = None,
+    progress: Callable[[float], None] | None = None,
+) -> list[xr.Dataset]:
+    """Return the stored variables and ``energy_residual`` of each member, computed in parallel.
+
+    The result does not depend on the executor.
+
+    Args:
+        executor: executor of threads or processes; one thread per core unless given.
+        progress: callback that receives the completed fraction, 0 to 1.
+
+    Raises:
+        NumericsError: a member cannot be computed.
+    """
+    threads = ThreadPoolExecutor(len(os.sched_getaffinity(0)))
+    runs = list[xr.Dataset]()
+    with threads if executor is None else nullcontext(executor) as pool:
+        # If an error ends the loop, the iterator cancels the remaining members.
+        for run in pool.map(_run, members):
+            runs.append(run)
+            if progress is not None:
+                progress(len(runs) / len(members))
+    return runs
+
+
+def _run(member: EnsembleMember) -> xr.Dataset:
+    run = member.integrator(vary_motion(member.motion, member.vary, 1.0 + member.change))
+    return _select_variables(run, member.variables)
+
+
+def _select_variables(run: Trajectory, names: Sequence[str]) -> xr.Dataset:
+    kept = run.data[[name for name in names if name in run.data]]
+    return kept.assign(energy_residual=((), run.energy_residual, {"units": "1"}))
+
+
+def integrate_ensemble(
+    motion: Motion,
+    members: int,
+    relative: float,
+    seed: int,
+    vary: Vary,
+    integrator: Integrator | None = None,
+    executor: Executor | None = None,
+    progress: Callable[[float], None] | None = None,
+    unchanged: Trajectory | None = None,
+) -> xr.Dataset:
+    """Return the motions of an ensemble, computed on all cores.
+
+    >>> kicked = Motion(ball, duration=1.0, velocity=[3.0])
+    >>> ensemble = integrate_ensemble(kicked, members=3, relative=1e-3, seed=1, vary="velocity")
+    >>> dict(ensemble.sizes)
+    {'member': 3, 'time': 1001, 'station': 1}
+
+    Args:
+        motion: motion of member 0, without changes.
+        members: number of members, at least two.
+        relative: largest relative change, positive.
+        seed: seed of the changes; the same seed gives the same members on every machine.
+        vary: changed data, all by the same factor: the loads, all clearances, or the initial
+            velocity.
+        integrator: integrator of member 0, :class:`AdaptiveStep` unless given; the other members
+            use its steps.
+        executor: executor as in :func:`run_members`; for MPI, the pool of ``mpi4py.futures``.
+        progress: callback that receives the completed fraction, 0 to 1.
+        unchanged: trajectory of member 0, if it is available.
+
+    Returns:
+        A dataset with dims ``member``, ``time``, ``station``: ``tip``, ``head`` and
+        ``contact_force`` if available, and ``energy_residual`` (member); coordinate ``change``
+        (member), relative. Attributes: ``vary``, ``relative``, ``seed``, ``integrator``, and
+        ``step`` in s of member 0.
+
+    Raises:
+        ValueError: an argument is out of its range, or the varied data are zero.
+        NumericsError: a member cannot be computed.
+    """
+    if members < 2:
+        raise ValueError(f"an ensemble must have at least 2 members, got {members}")
+    if not 0.0 < relative < 1.0:
+        raise ValueError(f"relative must be between 0 and 1, got {relative:g}")
+    check_varied(motion, vary)
+    integrator = integrator or AdaptiveStep()
+    changes = perturbations(members, relative, seed)
+    unchanged = integrator(motion) if unchanged is None else unchanged
+    same = integrator.like(unchanged)
+    others = [EnsembleMember(motion, vary, change, same) for change in changes[1:]]
+    first = _select_variables(unchanged, MEMBER_VARIABLES)
+    # The stations of a load on a rope, which are the last ones, are left out.
+    stations = slice(first.sizes.get("station"))
+    runs = [first]
+    runs += [
+        one.isel(station=stations, missing_dims="ignore")
+        for one in run_members(others, executor, progress)
+    ]
+    ensemble = xr.concat(runs, "member", combine_attrs="drop_conflicts")
+    ensemble.attrs = {
+        "vary": vary,
+        "relative": relative,
+        "seed": seed,
+        "integrator": str(integrator),
+        "step": runs[0].attrs["step"],
+    }
+    return ensemble.assign_coords(
+        member=np.arange(members), change=("member", changes, {"units": "1"})
+    )
 
 
 def horizon(members: Array, time: Array, share: float) -> float:
@@ -142,12 +316,12 @@ def measure_horizons(
     Args:
         motion: motion without changes.
         relatives: ε, each between 0 and 1.
-        vary: changed data, see :func:`dynamics.predictability.ensemble.integrate_ensemble`.
+        vary: changed data, see :func:`dynamics.predictability.integrate_ensemble`.
         partners: number of runs for each size, with changes between ε/2 and ε of either sign; the
             first change is ε.
         integrator: integrator of the unchanged run, :class:`AdaptiveStep` unless given. The other
             runs use its steps; the run with a finer step uses half of each.
-        executor: executor as in :func:`dynamics.predictability.ensemble.run_members`.
+        executor: executor as in :func:`dynamics.predictability.run_members`.
         shares: fractions of the observer's range, ascending.
         observer: name of the compared output.
         progress: callback that receives the completed fraction, 0 to 1.
