@@ -13,9 +13,8 @@ from typing import TypeVar
 
 from geometry.axial import AxialChange, moving_force_places
 from geometry.boom_checks import check_boom
-from geometry.boom_error import BoomError
 from geometry.cylinder import Cylinder
-from geometry.fields import resolve_distances
+from geometry.fields import BoomError, resolve_distances
 from geometry.joint import Joint, PadSize, SlidePad, Stop
 from geometry.load import Load
 from geometry.material import Material

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from geometry.boom_error import BoomError
 from geometry.cylinder import forces
+from geometry.fields import BoomError
 from geometry.fit import check_contact_faces, check_pads, check_room
 from geometry.joint import Joint, Stop
 from geometry.load import PartialLoad

@@ -12,8 +12,7 @@ import numpy as np
 from pydantic.dataclasses import dataclass
 
 from geometry.arrays import Array
-from geometry.boom_error import BoomError
-from geometry.fields import PART, In, NotNegative, Number, Place, Positive, SegmentRef
+from geometry.fields import PART, BoomError, In, NotNegative, Number, Place, Positive, SegmentRef
 from geometry.load import Body
 from geometry.support import Pin, Support
 

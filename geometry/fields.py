@@ -26,6 +26,15 @@ from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError
 
 
+class BoomError(ValueError):
+    """Error in the data of a boom; ``where`` is an attribute, such as ``segments[1].start``."""
+
+    def __init__(self, where: str, what: str) -> None:
+        super().__init__(f"{where}: {what}")
+        self.where = where
+        self.what = what
+
+
 class In:
     """Unit of the numbers of a field, one of :mod:`runs.case.units`.
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from itertools import combinations, product
 from typing import TYPE_CHECKING
 
-from geometry.boom_error import BoomError
+from geometry.fields import BoomError
 from geometry.joint import SIDES, Joint, PadSize, SlidePad
 from geometry.section import Direction, Side
 from geometry.segment import SAME_PLACE, Segment

@@ -13,10 +13,10 @@ from pydantic import Field, SkipValidation
 from pydantic.dataclasses import dataclass as part
 
 from geometry.arrays import Array
-from geometry.boom_error import BoomError
 from geometry.fields import (
     MOST_STATIONS,
     PART,
+    BoomError,
     Category,
     Few,
     Flag,

@@ -15,9 +15,8 @@ import numpy as np
 from pydantic.dataclasses import dataclass as part
 
 from geometry.arrays import Array
-from geometry.boom_error import BoomError
 from geometry.compression import NO_COMPRESSION, Compression
-from geometry.fields import PART, In, Place, Positive, resolve_distances
+from geometry.fields import PART, BoomError, In, Place, Positive, resolve_distances
 from geometry.material import Material
 from geometry.section import COMPONENT, Direction, Section, SectionError
 from geometry.stiffeners import Collar, Diaphragm

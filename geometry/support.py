@@ -10,8 +10,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from geometry.boom_error import BoomError
-from geometry.fields import PART, In, NotNegative, Number, Place, Positive
+from geometry.fields import PART, BoomError, In, NotNegative, Number, Place, Positive
 from geometry.section import Direction
 
 

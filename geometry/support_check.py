@@ -18,8 +18,8 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.axial import foot_thrust, pin_moments
-from geometry.boom_error import BoomError
 from geometry.cylinder import ground_lines
+from geometry.fields import BoomError
 from geometry.load import LoadedSegment
 from geometry.section import Direction
 from geometry.segment import Segment

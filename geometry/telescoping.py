@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.boom_error import BoomError
+from geometry.fields import BoomError
 from geometry.fit import check_pads_in_travel, check_room_at_extension
 from geometry.joint import Drive, Joint
 from geometry.segment import SAME_PLACE, Segment

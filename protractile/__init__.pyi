@@ -51,7 +51,7 @@ from runs.case.actions import with_weight as with_weight
 from dynamics.trajectory import Trajectory as Trajectory
 from runs.case.kinds.finite_element import BeamElements as BeamElements
 from runs.case.kinds.kantorovich import Kantorovich as Kantorovich
-from runs.case.kinds.rigid import Rigid as Rigid
+from runs.case.kinds.kantorovich import Rigid as Rigid
 from runs.case.kinds.shell import Shell as Shell
 
 # Case files, and what their runs leave
@@ -69,5 +69,5 @@ from runs.pipeline.results import Results as Results
 
 # Errors
 from dynamics.failure import NumericsError as NumericsError
-from geometry.boom_error import BoomError as BoomError
+from geometry.fields import BoomError as BoomError
 from runs.case.messages import BadInput as BadInput

@@ -12,13 +12,13 @@ import xarray as xr
 from pydantic import ValidationError
 
 from runs.case import reading
-from runs.case.checked_case import CheckedCase
 from runs.case.messages import BadInput
+from runs.case.reading import CheckedCase
 from runs.case.schema import Case
 from runs.client import judge
 from runs.folder.cache import Cache
 from runs.folder.files import atomic_folder
-from runs.pipeline.context import RunContext, ignore_progress
+from runs.pipeline.model_run import RunContext, ignore_progress
 from runs.pipeline.results import Results, prepare
 from runs.pipeline.run import run_case as run_models
 from runs.process import workers

@@ -27,7 +27,7 @@ from geometry.arrays import Array
 from geometry.axial import axial_force, moving_force_places
 from geometry.boom import Boom
 from runs.case import actions
-from runs.case.checked_case import CheckedCase
+from runs.case.reading import CheckedCase
 from runs.case.schema import Case, Model
 from runs.case.units import System
 from runs.pipeline.combinations import combination_results, combination_tables

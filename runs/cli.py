@@ -124,7 +124,7 @@ def run(
         from runs.folder.cache import Cache
         from runs.folder.files import atomic_folder
         from runs.pipeline import estimates
-        from runs.pipeline.context import RunContext
+        from runs.pipeline.model_run import RunContext
         from runs.pipeline.results import prepare
         from runs.pipeline.run import run_case
         from runs.report import output
@@ -383,7 +383,7 @@ def prove(
     from runs.case.kinds.shell import Shell
     from runs.case.messages import BadInput
     from runs.case.reading import load
-    from runs.prove import print_proofs
+    from runs.report.terminal_tables import print_proofs
 
     checked = load(case)
     if shell is None:

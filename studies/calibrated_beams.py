@@ -15,9 +15,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beam_model.section_fields import condense
 from dynamics.damping import closed_contact_modes
 from dynamics.gap_system import GapSystem
+from dynamics.reduction import condense
 from geometry.arrays import Array
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.schema import Case, Model

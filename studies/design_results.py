@@ -10,8 +10,8 @@ from mpi4py import MPI
 
 from runs import CASES
 from runs.case import reading as case_file
-from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.run import run_case
 from studies.study import Criterion, Progress, Verification, define_study
 

@@ -30,7 +30,7 @@ from runs.case.schema import Case
 from runs.folder.cache import Cache
 from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
 from runs.paper.verdicts import MARKS, Judgement
-from runs.pipeline.context import RunContext
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 from runs.report.formatting import number

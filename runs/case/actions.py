@@ -20,8 +20,7 @@ from geometry.fields import Distance, at
 from geometry.joint import BareStop
 from geometry.load import AngularAcceleration, Load, Moment, PartialLoad
 from geometry.typography import choices
-from runs.case.history import build_history
-from runs.case.load_tables import AxialTable, LoadTable, PayloadTable
+from runs.case.load_tables import AxialTable, LoadTable, PayloadTable, build_history
 from runs.case.schema import Case, GravityTable, VelocityTable
 from runs.case.segment import SegmentTable
 

@@ -19,7 +19,7 @@ from geometry.boom import Boom, BoomError, Joint, Segment
 from geometry.fields import Few, Flag, In, NotNegative, Number, Positive
 from geometry.telescoping import drives_of
 from runs.case.drive import TravelTable, max_speed
-from runs.case.history import HistoryTable, build_history
+from runs.case.load_tables import HistoryTable, build_history
 from runs.case.turning import frame_motion
 
 if TYPE_CHECKING:

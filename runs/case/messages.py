@@ -11,13 +11,11 @@ from typing import Any, get_args
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from geometry.boom_error import BoomError
-from geometry.fields import NAME, describe, fields_of, names_of
+from geometry.fields import NAME, BoomError, describe, fields_of, names_of
 from geometry.typography import choices
 from runs.case import schema
-from runs.case.history import HistoryTable
 from runs.case.kinds import KINDS
-from runs.case.load_tables import AxialTable
+from runs.case.load_tables import AxialTable, HistoryTable
 from runs.case.sections import SHAPES
 from runs.process.terminal import shorten
 

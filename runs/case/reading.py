@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Reader of case files, and the checks beyond their schema."""
+"""Reader of case files: checks beyond their schema, conversion to SI units, checked cases.
+
+Each field of the schema declares its unit.
+"""
 
 from __future__ import annotations
 
@@ -8,29 +11,31 @@ import math
 import re
 import tomllib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
+from fractions import Fraction
+from functools import cached_property
 from pathlib import Path
 from typing import Any, NamedTuple, TypeGuard
 
 import numpy as np
 from pydantic import ValidationError
 
-from geometry.boom import BoomError
+from geometry.boom import Boom, BoomError
 from geometry.fields import describe
 from geometry.typography import choices
 from runs.case.build import build_boom, check_ensemble_data, check_names
-from runs.case.checked_case import CheckedCase
 from runs.case.columns import Column, read_pairs
 from runs.case.combinations import check_combinations
 from runs.case.contact import ContactTable, table_law
-from runs.case.conversion import convert_to_si
 from runs.case.drive import TravelTable
-from runs.case.history import HistoryTable
+from runs.case.kinds.model import ModelBoom
 from runs.case.kinds.shell import check_mesh_size
-from runs.case.limits import MOST_MEMBERS, map_tables, units_of
+from runs.case.limits import MOST_MEMBERS, CaseTable, map_tables, units_of
+from runs.case.load_tables import HistoryTable
 from runs.case.messages import BadInput
 from runs.case.sanity import check_ranges
 from runs.case.schema import Case, EnsembleTable, Model, TimeTable
-from runs.case.units import System
+from runs.case.units import System, scale
 from runs.case.user_files import read_text
 
 # Maximum number of output times: the run would take too long for more.
@@ -45,6 +50,25 @@ _WHOLE = re.compile(r"[0-9]{1,9}")
 _DECIMAL_COMMA = re.compile(r"=\s*([-+]?[0-9]+),([0-9]+)")
 
 _TOO_MANY_DIGITS = "has more than 64 bits; give fewer digits, or a number as 1.0e20"
+
+
+@dataclass(frozen=True)
+class CheckedCase:
+    """A checked case. Its boom is built once, on first use."""
+
+    case: Case  #: a case with a valid boom
+    _model_booms: dict[str, ModelBoom] = field(default_factory=dict, init=False, repr=False)
+
+    @cached_property
+    def boom(self) -> Boom:
+        """The boom of the case, from :func:`runs.case.build.build_boom`."""
+        return build_boom(self.case)
+
+    def model_boom(self, model: Model) -> ModelBoom:
+        """Return the boom with the contact laws of one of the models of the case."""
+        if model.name not in self._model_booms:
+            self._model_booms[model.name] = model.model_boom(self.boom)
+        return self._model_booms[model.name]
 
 
 def load(path: str) -> Case:
@@ -389,3 +413,49 @@ def _is_finite(value: object) -> TypeGuard[float]:
     if isinstance(value, bool) or not isinstance(value, int | float):
         return False
     return math.isfinite(value)
+
+
+def convert_to_si(case: Case) -> Case:
+    """Return the case in SI units; ``shown_units`` keeps the original units for display.
+
+    Args:
+        case: a case without references to files.
+
+    Raises:
+        OverflowError: a number overflows in SI units.
+    """
+    if case.units == "SI":
+        return case
+    system = System(case.units)
+    laws = [joint.exponent for joint in case.joints]
+    exponents = {}
+    for number, model in enumerate(case.models, start=1):
+        own = [] if model.contact is None else [model.contact.exponent_of("stiffness")]
+        exponents[f"model[{number}]"] = next(iter([*own, *laws]), None) or 2.0
+
+    def convert(key: str, table: Any) -> dict[str, Any]:
+        # Defaults are in SI units.
+        if isinstance(table, CaseTable):
+            names = table.model_fields_set
+        else:
+            names = {one.name for one in fields(table) if getattr(table, one.name) != one.default}
+        exponent, converted = exponents.get(key.partition(".")[0], 2.0), {}
+        for name in names:
+            if sizes := [system.size(unit) for unit in units_of(table, name, exponent)]:
+                converted[name] = _convert_value(getattr(table, name), sizes)
+        return converted
+
+    changes = {"units": "SI", "shown_units": case.shown_units or case.units}
+    converted: Case = map_tables(case, convert).model_copy(update=changes)
+    return converted
+
+
+def _convert_value(value: Any, sizes: Sequence[Fraction]) -> Any:
+    """Return a value in SI units; of several unit sizes, each converts one item of a tuple."""
+    if isinstance(value, dict):
+        return {key: _convert_value(item, sizes) for key, item in value.items()}
+    if isinstance(value, tuple) and len(sizes) == len(value) > 1 and isinstance(value[0], float):
+        return tuple(scale(number, size) for number, size in zip(value, sizes, strict=True))
+    if isinstance(value, tuple):
+        return tuple(_convert_value(item, sizes) for item in value)
+    return scale(value, sizes[0]) if isinstance(value, float) else value

@@ -22,10 +22,10 @@ from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.typography import TO_MILLI
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.kinds.calibration import OF_MOTION, CalibratedTable
 from runs.case.kinds.model import BuiltModel
 from runs.case.kinds.shell import Shell
+from runs.case.reading import CheckedCase
 from runs.case.schema import Case
 from runs.folder.cache import Cache, key
 from runs.live.controls import Draft

@@ -19,12 +19,12 @@ from geometry.fields import describe, fields_of, is_number, names_of
 from geometry.fit import pad_room, room
 from runs.case import reading
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.limits import is_table
 from runs.case.messages import BadInput
+from runs.case.reading import CheckedCase
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
 from runs.sweep.points import hold_plates, infer_plates

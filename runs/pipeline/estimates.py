@@ -16,9 +16,9 @@ import numpy as np
 
 from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.motion import MOST_STEPS, Motion
-from runs.case.checked_case import CheckedCase
 from runs.case.kinds.model import ModelTable
 from runs.case.messages import BadInput
+from runs.case.reading import CheckedCase
 from runs.case.schema import Case, Model
 from runs.pipeline.models import build_on, initial_motion
 

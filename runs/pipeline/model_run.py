@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The run of one model: construction, motion and summary."""
+"""The run of one model: context, construction, motion and summary."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from concurrent.futures import BrokenExecutor, Executor
 from contextlib import suppress
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
 from time import perf_counter
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -23,9 +25,8 @@ from runs.case import toml
 from runs.case.kinds.model import BuildContext, BuiltModel
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case, Model
-from runs.folder.cache import key
+from runs.folder.cache import Cache, key
 from runs.pipeline import members
-from runs.pipeline.context import RunContext
 from runs.pipeline.low_pass import SlowPeaks
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.models import MotionPlan, build
@@ -38,10 +39,47 @@ from runs.pipeline.summary import (
     StationSpring,
 )
 from runs.pipeline.wall_buckling import buckle_shell, farthest_state
+from runs.process.terminal import Progress
 from shell_model.stages import Stages
+
+if TYPE_CHECKING:
+    from concurrent.futures import Executor
+
+    from mpi4py import MPI
+
 
 # Loaded wall of the outer segment, by direction and sign of the force of the inner segment.
 _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}
+
+
+def ignore_progress(model: str, stage: str, part: float) -> None:
+    """Ignore a progress report, in runs without a display of progress."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunContext:
+    """Ranks, progress reporter, caches and helper process of a run."""
+
+    #: ranks that share the shells and the ensembles; None for a case without shells
+    comm: MPI.Intracomm | None = None
+    #: callback that receives model, stage and completed fraction
+    progress: Progress = ignore_progress
+    cache: Cache | None = None  #: cache of reduced shells
+    motions: Cache | None = None  #: cache of completed motions
+    #: second process for shells and pictures if there is only one rank
+    helper: Executor | None = None
+    #: modules for pictures, which the helper imports after it has reduced a shell
+    renderers: Sequence[str] = ()
+
+    @property
+    def first_rank(self) -> bool:
+        """True for the first rank, which writes files and integrates reduced models."""
+        return self.comm is None or self.comm.rank == 0
+
+    @property
+    def alone(self) -> bool:
+        """True if no other rank waits for this one."""
+        return self.comm is None or self.comm.size == 1
 
 
 class SharedFailure(Exception):

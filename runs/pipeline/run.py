@@ -17,7 +17,6 @@ from runs.case.build import build_boom
 from runs.case.schema import Case, Model
 from runs.folder.versions import versions
 from runs.pipeline import members
-from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.evaluation import ModelEvaluation, evaluate_run
 from runs.pipeline.model_output import BeamOutput, ShellOutput
@@ -25,6 +24,7 @@ from runs.pipeline.model_quality import compare_models
 from runs.pipeline.model_run import (
     CompletedMotion,
     ModelRun,
+    RunContext,
     SharedFailure,
     failure_reason,
     run_model,

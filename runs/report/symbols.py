@@ -18,8 +18,7 @@ from geometry.boom import Boom, Segment
 from geometry.fields import at
 from geometry.section import Direction
 from runs.case import actions
-from runs.case.history import HistoryTable
-from runs.case.load_tables import LoadTable
+from runs.case.load_tables import HistoryTable, LoadTable
 from runs.case.schema import Case
 from runs.report import theme
 from runs.report.formatting import number

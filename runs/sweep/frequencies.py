@@ -23,7 +23,7 @@ from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext, ModelBoom
 from runs.case.schema import Case, Model
 from runs.folder.files import atomic_path, folder_lock, modified_folder
-from runs.pipeline.context import ignore_progress
+from runs.pipeline.model_run import ignore_progress
 from runs.pipeline.results import CONVENTIONS
 from runs.process.terminal import Progress
 from runs.report.tables import Column, Table

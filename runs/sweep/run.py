@@ -20,7 +20,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.user_files import check_not_working_folder
 from runs.folder.cache import Cache, key
-from runs.pipeline.context import RunContext
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.quantities import Quantities, measure
 from runs.pipeline.run import run_case
 from runs.process.ending import when_interrupted

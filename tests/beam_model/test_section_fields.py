@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from beam_model.calibration import elastic_compliance
-from beam_model.section_fields import condense
 from dynamics.contact import DryFriction, PowerContact
 from dynamics.gap_system import GapSystem
+from dynamics.reduction import condense
 from tests.modal import modal_system
 
 MODES = 60

@@ -13,11 +13,11 @@ from rich.console import Console
 from dynamics.equilibrium import equilibrium_at
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
+from runs.case.reading import CheckedCase
 from runs.case.schema import Case
 from runs.check import print_check
-from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import DesignResults
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run, run_case

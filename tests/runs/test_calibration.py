@@ -22,7 +22,7 @@ from runs.case.kinds.model import BuildContext, BuiltModel
 from runs.case.kinds.shell import Shell
 from runs.case.schema import Case
 from runs.folder.cache import Cache
-from runs.pipeline.context import RunContext
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.models import build
 from runs.pipeline.run import run_case as run_models
 from runs.report.output import write

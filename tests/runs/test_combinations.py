@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from runs.case.conversion import convert_to_si
+from runs.case.reading import convert_to_si
 from runs.pipeline.combinations import combination_results, combination_tables
 from runs.pipeline.largest_loads import StaticExtreme
 from tests.runs.case_texts import HINGED, box, read_case, refusal, table

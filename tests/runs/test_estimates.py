@@ -13,10 +13,10 @@ import pytest
 from runs import CASES
 from runs.case import reading as case_file
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
+from runs.case.reading import CheckedCase
 from runs.check import print_check
 from runs.pipeline.estimates import (
     Cost,

@@ -16,8 +16,7 @@ from geometry.profiles import hexagon
 from geometry.section import BoxSection
 from protractile.cases import run_case
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
-from runs.case.conversion import convert_to_si
+from runs.case.reading import CheckedCase, convert_to_si
 from runs.check import check_case
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.largest_loads import (

@@ -21,7 +21,7 @@ from runs.folder.cache import Cache
 from runs.live import beam
 from runs.live.controls import Draft
 from runs.live.server import LivePage, make_server
-from runs.pipeline.context import RunContext
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.models import build
 from runs.pipeline.run import run_case
 from runs.report.formatting import fixed

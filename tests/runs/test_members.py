@@ -17,9 +17,9 @@ from protractile.cases import change
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case, EnsembleTable
-from runs.pipeline.context import RunContext
 from runs.pipeline.low_pass import SlowPeaks, slow_peaks
 from runs.pipeline.members import PEAKS, slow_cutoff, steps_for_peaks
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
 from runs.pipeline.run import Run

@@ -11,8 +11,8 @@ from dynamics.trajectory import Trajectory
 from protractile.cases import change, run_case
 from runs.case.reading import select
 from runs.case.schema import DampingTable
-from runs.pipeline.context import RunContext
 from runs.pipeline.design_results import ModelDesignResults
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.motion_results import Peak
 from runs.pipeline.run import Run
 from runs.pipeline.run import run_case as run_models

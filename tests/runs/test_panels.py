@@ -13,7 +13,7 @@ from geometry.segment import Segment
 from runs import CASES
 from runs.case import reading
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
+from runs.case.reading import CheckedCase
 from runs.check import check_case
 from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.models import build

@@ -16,7 +16,7 @@ from protractile.cases import change
 from runs.case import reading, toml
 from runs.case.build import build_boom
 from runs.case.contact import ContactTable, JointTable
-from runs.case.conversion import convert_to_si
+from runs.case.reading import convert_to_si
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
 from runs.sweep.points import plan

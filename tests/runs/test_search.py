@@ -12,9 +12,8 @@ from scipy.stats import norm
 
 from protractile.cases import run_case
 from runs.case import reading
-from runs.case.checked_case import CheckedCase
 from runs.case.messages import BadInput
-from runs.case.reading import load
+from runs.case.reading import CheckedCase, load
 from runs.case.schema import Case
 from runs.check import check_case
 from runs.pipeline.quantities import case_limits, check_limits, decay_time, measure

@@ -20,9 +20,8 @@ from dynamics.travel import RowTable, Travel
 from geometry.fields import Distance
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.load_tables import LoadTable
-from runs.case.reading import select
+from runs.case.reading import CheckedCase, select
 from runs.case.schema import Case, StopTable
 from runs.check import check_case
 from runs.pipeline.design_results import DesignResults, PlayDifference

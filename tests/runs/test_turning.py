@@ -24,10 +24,9 @@ from geometry.support import Support
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.checked_case import CheckedCase
 from runs.case.hoist import HoistTable
 from runs.case.kinds.finite_element import BeamElements
-from runs.case.reading import load
+from runs.case.reading import CheckedCase, load
 from runs.case.schema import Case
 from runs.case.turning import LuffTable, turning_changes, turning_loads
 from runs.pipeline.estimates import Preview

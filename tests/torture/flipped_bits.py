@@ -17,7 +17,7 @@ from mpi4py import MPI
 from runs import CASES
 from runs.case import reading as case_file
 from runs.folder.cache import Cache
-from runs.pipeline.context import RunContext
+from runs.pipeline.model_run import RunContext
 from runs.pipeline.run import run_case
 from runs.process.terminal import NOTICES
 from runs.sweep import run as sweep

@@ -4,9 +4,8 @@
 from collections.abc import Mapping
 
 from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.kantorovich import Kantorovich
+from runs.case.kinds.kantorovich import Kantorovich, Rigid
 from runs.case.kinds.model import ModelTable
-from runs.case.kinds.rigid import Rigid
 from runs.case.kinds.shell import Shell
 
 # Class of each kind by its name in a case file.

@@ -105,7 +105,7 @@ class BeamElements(CalibratedTable):
         return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
     def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
-        from beam_model.section_fields import condense
+        from dynamics.reduction import condense
 
         if not self.section_fields:
             return super().motion_model(built, shell, boom)
