@@ -8,7 +8,7 @@ reduce the stiffness.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -23,6 +23,7 @@ from runs.case.units import System
 from runs.pipeline.largest_loads import (
     BeamStates,
     StaticExtreme,
+    StaticKind,
     beam_note,
     in_units,
     least_of_units,
@@ -36,18 +37,16 @@ from runs.report.tables import Column, Table
 # Mark of governing values in a table.
 _GOVERNS = "*"
 
-# Column heading of each kind of result. A key is the start of the names of these results.
-_KINDS = {
+# Column heading of each kind of result.
+_KINDS: Mapping[StaticKind, str] = {
     "tip": "tip",
     "lateral tip": "lateral\ntip",
-    "stress": "bending\nstress",
+    "bending stress": "bending\nstress",
     "pad": "pad\npressure",
     "contact": "contact\nforce",
     "cylinder force": "cylinder\nforce",
-    "foot": "foot\nreaction",
+    "foot reaction": "foot\nreaction",
 }
-# Titles of kinds in the envelope, other than their names.
-_TITLES = {"stress": "bending stress", "foot": "foot reaction"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,9 +56,9 @@ class CombinationResult:
     name: str
     extremes: list[StaticExtreme]
 
-    def largest(self, kind: str) -> StaticExtreme | None:
-        """Return the result with the largest magnitude among those of a kind of ``_KINDS``."""
-        extremes = [one for one in self.extremes if one.name.partition(", ")[0] == kind]
+    def largest(self, kind: StaticKind) -> StaticExtreme | None:
+        """Return the result with the largest magnitude among those of a kind."""
+        extremes = [one for one in self.extremes if one.kind == kind]
         return max(extremes, key=lambda one: abs(one.largest), default=None)
 
 
@@ -171,12 +170,6 @@ def _marked(one: StaticExtreme, most: float, system: System) -> str:
     return text + (_GOVERNS if abs(one.largest) == most else " " * len(_GOVERNS))
 
 
-def _title(name: str) -> str:
-    """Return the name of a result with the title of its kind: ``bending stress, fly``."""
-    kind, comma, part = name.partition(", ")
-    return f"{_TITLES.get(kind, kind)}{comma}{part}"
-
-
 def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
     """Return the table of minimum, maximum and governing combination of each result."""
     of_name: dict[str, list[tuple[StaticExtreme, str]]] = {}
@@ -189,7 +182,7 @@ def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
         max(pair, key=lambda one: abs(one[0].largest))[1] for pair in zip(least, most, strict=True)
     ]
     columns = [
-        Column("result", [_title(name) for name in of_name]),
+        Column("result", [*of_name]),
         Column("minimum", [in_units(one.largest, one.unit, system) for one, _ in least]),
         Column("maximum", [in_units(one.largest, one.unit, system) for one, _ in most]),
         Column("governing", governs),

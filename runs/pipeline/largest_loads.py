@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -38,10 +38,17 @@ _ELEMENTS = 20
 _NEGLIGIBLE = 1.0e-4
 
 
+# Kinds of static results.
+StaticKind = Literal[
+    "tip", "lateral tip", "bending stress", "pad", "contact", "cylinder force", "foot reaction"
+]
+
+
 class StaticExtreme(NamedTuple):
     """A static result at t = 0, and its extreme value over the run."""
 
-    name: str  #: name of the result, with the part of the boom
+    kind: StaticKind  #: kind of the result
+    part: str  #: part of the boom; empty if there is only one
     what: str  #: name of the result, with its location
     unit: str  #: SI unit
     initial: float  #: value at t = 0
@@ -49,6 +56,11 @@ class StaticExtreme(NamedTuple):
     time: float  #: time of the loads of this value in s
     #: utilisation of a strength by the largest value; None without a strength
     utilisation: Utilisation | None = None
+
+    @property
+    def name(self) -> str:
+        """The kind and the part, which identify the result."""
+        return ", ".join(filter(None, (self.kind, self.part)))
 
 
 class BeamStates(NamedTuple):
@@ -153,25 +165,25 @@ class BeamStates(NamedTuple):
             system: units of positions in names.
         """
         boom, rests = self.boom, self.rests
-        extremes = [_static_extreme("tip", "tip", "m", rests, [rest.tip for rest in rests])]
+        extremes = [_static_extreme("tip", "", "tip", "m", rests, [rest.tip for rest in rests])]
         if boom.spatial:
             aside = [rest.tip_lateral or 0.0 for rest in rests]
-            name = "lateral tip"
-            extremes.append(_static_extreme(name, name, "m", rests, aside))
+            extremes.append(_static_extreme("lateral tip", "", "lateral tip", "m", rests, aside))
         for segment, fibres, curves in fibre_forces(self.model, self.positions, self.time):
             forces_at_rest = {name: values[:1] for name, values in curves.items()}
             fibre, _ = largest_stresses(segment, fibres, curves, forces_at_rest, self.time)
             stress = abs(fibre.stress)
             used = Utilisation("outer fibre", segment.name, fibre.x, stress, fibre.utilisation)
-            name = f"stress, {segment.name}"
-            what = f"{name} at {system.text(fibre.x, 'm', 5)}"
-            initial = fibre.at_rest or 0.0
-            extremes.append(StaticExtreme(name, what, "Pa", initial, stress, fibre.time, used))
+            what = f"stress, {segment.name} at {system.text(fibre.x, 'm', 5)}"
+            values = fibre.at_rest or 0.0, stress, fibre.time
+            extremes.append(
+                StaticExtreme("bending stress", segment.name, what, "Pa", *values, used)
+            )
         extremes += self._at_stations(system)
         for name in rests[0].cylinders:
-            values = [rest.cylinders[name] for rest in rests]
-            label = name.replace("_", " ")
-            extremes.append(_static_extreme(label, label, "N", rests, values))
+            forces = [rest.cylinders[name] for rest in rests]
+            part, what = name.partition("-")[2], name.replace("_", " ")
+            extremes.append(_static_extreme("cylinder force", part, what, "N", rests, forces))
         return extremes
 
     def foot_extremes(self, system: System) -> Iterator[StaticExtreme]:
@@ -190,9 +202,10 @@ class BeamStates(NamedTuple):
             thrust = foot_thrust(self.boom.segments, self.boom.joints, index)
             along = parts.pop() if "normal" in line.rows else np.zeros(len(self.rests))
             whole = np.linalg.norm([*parts, thrust + along], axis=0)
-            name = f"foot, {segment.name}"
             what = f"foot reaction at {system.text(x, 'm', 5)}"
-            yield _static_extreme(name, what, "N", self.rests, whole.tolist())
+            yield _static_extreme(
+                "foot reaction", segment.name, what, "N", self.rests, whole.tolist()
+            )
 
     def _at_stations(self, system: System) -> Iterator[StaticExtreme]:
         boom, rests = self.boom, self.rests
@@ -207,26 +220,27 @@ class BeamStates(NamedTuple):
             lateral = ", lateral" if station.direction == "y" else ""
             where = f"{system.text(station.x, 'm', 5)}{lateral}"
             # Stops come after the stations of joints.
-            name, part = where, ""
+            part, inner = where, ""
             if index < len(boom.directions) * len(stations):
-                inner, number = stations[index % len(stations)]
-                part = boom.segments[inner].name
-                name = f"{part}, station {number}{lateral}"
+                number_of_inner, number = stations[index % len(stations)]
+                inner = boom.segments[number_of_inner].name
+                part = f"{inner}, station {number}{lateral}"
             if station.pressure is None:
                 forces = [load.force for load in loads]
                 what = f"contact force at {where}"
-                yield _static_extreme(f"contact, {name}", what, "N", rests, forces)
+                yield _static_extreme("contact", part, what, "N", rests, forces)
                 continue
             pressures = [load.pressure or 0.0 for load in loads]
             used = [
-                Utilisation("pad", part, load.x, load.pressure or 0.0, load.utilisation)
+                Utilisation("pad", inner, load.x, load.pressure or 0.0, load.utilisation)
                 for load in loads
             ]
-            yield _static_extreme(f"pad, {name}", f"pad at {where}", "Pa", rests, pressures, used)
+            yield _static_extreme("pad", part, f"pad at {where}", "Pa", rests, pressures, used)
 
 
 def _static_extreme(
-    name: str,
+    kind: StaticKind,
+    part: str,
     what: str,
     unit: str,
     rests: Sequence[StaticResult],
@@ -234,8 +248,8 @@ def _static_extreme(
     used: Sequence[Utilisation] = (),
 ) -> StaticExtreme:
     step = int(np.abs(values).argmax())
-    largest = values[step], rests[step].time
-    return StaticExtreme(name, what, unit, values[0], *largest, used[step] if used else None)
+    most = values[0], values[step], rests[step].time
+    return StaticExtreme(kind, part, what, unit, *most, used[step] if used else None)
 
 
 def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> Table:
@@ -274,7 +288,7 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         more.append("Local plate stresses are not included; a run with a shell has them.")
     title = "Static results at t = 0" + (" and under the maximum loads" if vary else "")
     kinds = "Stresses are bending stresses, axial in outer fibres."
-    if any(one.name.startswith("contact") for one in extremes):
+    if any(one.kind == "contact" for one in extremes):
         kinds += " Contact forces act on the outer segment, upwards where positive."
     return Table(title, columns, [beam_note(boom), kinds, *more])
 
@@ -314,7 +328,7 @@ def overload_cautions(
     far = [
         caution
         for one in extremes
-        if one.name == "tip" and one.time > 0.0
+        if one.kind == "tip" and one.time > 0.0
         for caution in tip_cautions(
             f"under the loads at t = {one.time:.4g} s", one.largest, boom, advise
         )

@@ -344,8 +344,7 @@ def _station_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> It
         used = one.utilisation
         if used is not None and used.part == "pad" and used.value:
             resistance = used.load / used.value / table.resistance.pad
-            part = one.name.removeprefix("pad, ")
-            yield Proof("pad", part, part, used.x, used.load, resistance, "Pa")
+            yield Proof("pad", one.part, one.part, used.x, used.load, resistance, "Pa")
     for number, cylinder in enumerate(beam.boom.cylinders, start=1):
         name = "cylinder" if len(beam.boom.cylinders) == 1 else f"cylinder {number}"
         force = max(abs([*rest.cylinders.values()][number - 1]) for rest in beam.rests)
@@ -358,12 +357,13 @@ def _station_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> It
 
 
 def _foot_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
-    forces = {one.name: abs(one.largest) for one in beam.foot_extremes(case.system)}
+    forces = {one.part: abs(one.largest) for one in beam.foot_extremes(case.system)}
     for segment in beam.boom.segments:
-        name = f"foot, {segment.name}"
-        if segment.foot is not None and segment.foot.pin is not None and name in forces:
+        force = forces.get(segment.name)
+        if segment.foot is not None and segment.foot.pin is not None and force is not None:
+            name = f"foot, {segment.name}"
             resistance = segment.foot.pin.resistance / table.resistance.pin
-            yield Proof("pin", name, name, segment.foot.x, forces[name], resistance, "N")
+            yield Proof("pin", name, name, segment.foot.x, force, resistance, "N")
 
 
 def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Iterator[str]:

@@ -14,7 +14,7 @@ from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
 from runs.case.schema import LimitsTable
 from runs.pipeline.design_results import ModelDesignResults
-from runs.pipeline.largest_loads import StaticExtreme
+from runs.pipeline.largest_loads import StaticExtreme, StaticKind
 from runs.pipeline.metrics import Metric, metrics, records
 from runs.pipeline.summary import ModelSummary
 
@@ -33,8 +33,13 @@ ROUND_OFF = 1.0e-12
 # Fraction of the initial vibration that remains after the decay time.
 DECAYED_SHARE = 0.1
 
-# Kinds of static results with limits: the starts of their names.
-_STATIC = {"tip": "tip", "tip_at_rest": "tip", "stress": "stress", "pad_pressure": "pad"}
+# Kinds of static results with limits, by quantity.
+_STATIC: Mapping[str, StaticKind] = {
+    "tip": "tip",
+    "tip_at_rest": "tip",
+    "stress": "bending stress",
+    "pad_pressure": "pad",
+}
 
 # Classes whose annotated fields are quantities, too.
 _RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
@@ -210,7 +215,7 @@ def static_limit_lines(
     """
     for limit in case_limits(table):
         kind, at_rest = _STATIC.get(limit.quantity.name), limit.quantity.name == "tip_at_rest"
-        values = [abs(one.largest) for one in extremes if one.name.partition(", ")[0] == kind]
+        values = [abs(one.largest) for one in extremes if one.kind == kind]
         if not values:
             yield f"Limit {limit}: a run decides."
             continue

@@ -8,7 +8,11 @@ from pathlib import Path
 import pytest
 
 from runs.case.reading import convert_to_si
-from runs.pipeline.combinations import combination_results, combination_tables
+from runs.pipeline.combinations import (
+    CombinationResult,
+    combination_results,
+    combination_tables,
+)
 from runs.pipeline.largest_loads import StaticExtreme
 from tests.runs.case_texts import HINGED, box, read_case, refusal, table
 from tests.runs.summaries import printed_check
@@ -52,6 +56,14 @@ def results(folder: Path, text: str) -> dict[str, Mapping[str, StaticExtreme]]:
         result.name: {one.name: one for one in result.extremes}
         for result in combination_results(read_case(folder, text))
     }
+
+
+def test_the_largest_of_several_cylinders_counts() -> None:
+    forces = [
+        StaticExtreme("cylinder force", part, "", "N", 0.0, force, 0.0)
+        for part, force in (("", 1e5), ("2", -3e5))
+    ]
+    assert CombinationResult("A", forces).largest("cylinder force") == forces[1]
 
 
 def by_hand(angle: float, extension: float, dead: float, people: float, wind: float) -> float:
@@ -102,7 +114,7 @@ def test_pads_and_foot_of_a_combination(tmp_path: Path) -> None:
     length = hypot(LUG - x0, -DEPTH - z0)
     force = by_hand(0.0, 2.0, 0.0, 1.1, 1.22 * WIND)
     across, along = force * (-DEPTH - z0) / length - tip, force * (LUG - x0) / length
-    assert level["foot, base"].largest == pytest.approx(hypot(across, along), rel=1e-4)
+    assert level["foot reaction, base"].largest == pytest.approx(hypot(across, along), rel=1e-4)
 
 
 def test_load_cases_alone_have_unit_factors(tmp_path: Path) -> None:
