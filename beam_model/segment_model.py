@@ -7,9 +7,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from beam_model.boom_modes import BoomModes
+from beam_model.boom_modes import BoomModes, travels
 from beam_model.component import SegmentModel
-from beam_model.telescoping import travels
 from dynamics.gap_builder import GapBuilder, OutputOperator
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array

@@ -42,9 +42,8 @@ from geometry.plating import PlatedMesh
 from shell_model import compat
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.rows import ShellContacts, ties
-from shell_model.segment.attachments import RIGID_TURN, Attachments
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.shell import Shell
+from shell_model.segment.shell import RIGID_TURN, Attachments, Shell
 from shell_model.stress.fields import vertex_displacements, wall_frame
 from shell_model.stress.stresses import ShellStress
 

@@ -35,9 +35,9 @@ from shell_model.reduction.mirror import (
     on_plane,
     symmetry_classes,
 )
-from shell_model.segment.attachments import Attachments
 from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.shell import (
+    Attachments,
     Plates,
     Shell,
     assemble_plates,

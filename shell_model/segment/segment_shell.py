@@ -15,9 +15,15 @@ from geometry.boom import Direction, Segment
 from geometry.plating import PlatedMesh
 from geometry.section import COMPONENT, Section
 from shell_model import compat
-from shell_model.segment.attachments import Attachments, masses, springs
 from shell_model.segment.cross_section import Row, SectionNodes
-from shell_model.segment.shell import Shell, assemble_plates, free_rows
+from shell_model.segment.shell import (
+    Attachments,
+    Shell,
+    assemble_plates,
+    free_rows,
+    masses,
+    springs,
+)
 from shell_model.segment.solver import times
 
 # Fraction of a load's largest value below which a value is round-off.

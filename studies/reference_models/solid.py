@@ -25,9 +25,8 @@ from geometry.boom import Material, Segment
 from geometry.section import BoxSection
 from shell_model import compat
 from shell_model.reduction.mirror import SymmetryClass, on_plane
-from shell_model.segment.attachments import Attachments
 from shell_model.segment.cross_section import Row, SectionNodes
-from shell_model.segment.shell import ON_LINE, Plates, Shell
+from shell_model.segment.shell import ON_LINE, Attachments, Plates, Shell
 
 # Length ratios of successive edges along x and around; effects decay more slowly along x.
 _GROWTH_ALONG = 3.0

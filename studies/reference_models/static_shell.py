@@ -20,9 +20,8 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Material
 from shell_model import compat
-from shell_model.segment.attachments import Attachments
 from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
-from shell_model.segment.shell import ON_LINE, Plates, Shell
+from shell_model.segment.shell import ON_LINE, Attachments, Plates, Shell
 from shell_model.segment.solver import times
 
 # Permitted residual of a solution as a fraction of the load.

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from shell_model.stress.field_series import write_field_series
+from runs.pipeline.model_output import write_field_series
 from shell_model.stress.stresses import ShellStress
 
 
