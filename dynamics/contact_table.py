@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw
-from dynamics.contact_term import Term
+from dynamics.contact import ContactLaw, Term
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,8 +12,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_solve, cholesky, eigh, solve_triangular
 
 from dynamics.arrays import Array
-from dynamics.contact import contact_terms
-from dynamics.contact_term import OfTerm, Term, Terms, force_of, slope_of
+from dynamics.contact import OfTerm, Term, Terms, contact_terms, force_of, slope_of
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 import protractile as pt
-from dynamics.contact_term import Term
+from dynamics.contact import Term
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import simulate
 

@@ -12,7 +12,7 @@ without these forces and the compliance H. In the step,
 
 A semismooth Newton method on the active rows solves the system (Alart and Curnier 1991).
 
-The formulas of force, energy and slope are in :mod:`dynamics.contact_term`. It does not import
+The formulas of force, energy and slope are in :mod:`dynamics.contact`. It does not import
 numba, since this takes longer than the check of a case.
 """
 
@@ -24,8 +24,15 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array, Indices
-from dynamics.contact import contact_limits, contact_terms
-from dynamics.contact_term import Limits, Terms, energy_of, force_of, slope_of
+from dynamics.contact import (
+    Limits,
+    Terms,
+    contact_limits,
+    contact_terms,
+    energy_of,
+    force_of,
+    slope_of,
+)
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import LOOP
 

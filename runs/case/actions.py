@@ -22,7 +22,7 @@ from geometry.load import AngularAcceleration, Load, Moment, PartialLoad
 from geometry.typography import choices
 from runs.case.load_tables import AxialTable, LoadTable, PayloadTable, build_history
 from runs.case.schema import Case, GravityTable, VelocityTable
-from runs.case.segment import SegmentTable
+from runs.case.sections import SegmentTable
 
 STANDARD_GRAVITY = 9.80665
 

@@ -31,7 +31,7 @@ from runs.case.contact import JointTable
 from runs.case.elastic_drive import check_elastic_drives
 from runs.case.hoist import check_hoist, hoist_changes
 from runs.case.schema import Case
-from runs.case.segment import SegmentTable
+from runs.case.sections import SegmentTable
 from runs.case.turning import check_turning, frame_motion, turning_changes, turning_loads
 
 # Names of outputs that every boom has.

@@ -56,7 +56,7 @@ from runs.case.load_tables import (
     PayloadTable,
     SpectrumTable,
 )
-from runs.case.segment import SegmentTable
+from runs.case.sections import SegmentTable
 from runs.case.turning import LuffTable, SlewTable
 from runs.case.units import System, SystemName
 from runs.paper.statements import CaseKeys

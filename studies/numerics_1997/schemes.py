@@ -17,8 +17,7 @@ import numpy as np
 from numba import njit
 
 from dynamics.arrays import Array
-from dynamics.contact import contact_terms
-from dynamics.contact_term import Terms
+from dynamics.contact import Terms, contact_terms
 from dynamics.energy import ENERGIES
 from dynamics.gap_system import GapSystem
 from dynamics.kernels.compiled import LOOP

@@ -15,8 +15,7 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
-from dynamics.contact import ContactLaw, DryFriction, contact_terms
-from dynamics.contact_term import Terms
+from dynamics.contact import ContactLaw, DryFriction, Terms, contact_terms
 from dynamics.failure import NumericsError
 from dynamics.kernels.compiled import LOOP
 from dynamics.kernels.row_forces import contact_energy

@@ -8,9 +8,8 @@ import pytest
 
 from dynamics import time_step
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, DryFriction, PowerContact
+from dynamics.contact import TERM, ContactLaw, DryFriction, PowerContact
 from dynamics.contact_table import TableContact
-from dynamics.contact_term import TERM
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
