@@ -98,7 +98,10 @@ def condense(system: GapSystem, most: int) -> tuple[GapSystem, Array]:
         raise ValueError("a system is condensed before it is damped")
     if system.num_modes <= most:
         return system, np.eye(system.num_modes)
-    pushes = _forces(system)
+    # Rows and load vectors (num_forces, num_modes) of all forces.
+    constant = [system.load, system.released_load, system.initial_impulse]
+    excited = [excitation.load for excitation in system.excitations]
+    pushes: Array = np.vstack([system.all_rows, *constant, *excited])
     order = _order_modes(system.omega2, pushes, round(_LOWEST_FRACTION * most))
     count = len(independent_columns((pushes * (system.omega2 > 0.0)).T).T)
     moments = int(np.clip(_BLOCK_FRACTION * most // max(count, 1), 1, MOMENTS))
@@ -117,10 +120,3 @@ def _order_modes(omega2: Array, pushes: Array, slowest: int) -> Indices:
     weights = np.where(elastic, parts / np.where(elastic, omega2, 1.0), np.inf)
     weights[np.argsort(omega2, kind="stable")[:slowest]] = np.inf
     return np.asarray(np.lexsort((omega2, -weights)))
-
-
-def _forces(system: GapSystem) -> Array:
-    """Return the rows and load vectors (num_forces, num_modes) of all forces on a system."""
-    constant = [system.load, system.released_load, system.initial_impulse]
-    excited = [excitation.load for excitation in system.excitations]
-    return np.vstack([system.all_rows, *constant, *excited])

@@ -305,18 +305,17 @@ def sweep(
             changes.write(table, folder)
             print(printable(str(folder / changes.CSV)))
             changes.print_influences(table, plan.points[0].case, rejected_keys, Terminal())
-            return sweep_runs.print_failures(plan, outcomes)
-        if samples is not None:
+        elif samples is not None:
             results = sampling.results_of(plan, outcomes)
             sampling.write(results, samples_table, folder)
             print(printable(str(folder / sampling.CSV)))
             sampling.show(results, plan, Terminal())
-            return sweep_runs.print_failures(plan, outcomes)
-        data = charts.write(plan, outcomes, folder)
-        print(printable(str(folder / charts.CSV)))
-        charts.print_ranges(data, plan, Terminal())
-        if bound is not None:
-            search.print_bracket(plan, outcomes, bound, Terminal())
+        else:
+            data = charts.write(plan, outcomes, folder)
+            print(printable(str(folder / charts.CSV)))
+            charts.print_ranges(data, plan, Terminal())
+            if bound is not None:
+                search.print_bracket(plan, outcomes, bound, Terminal())
         return sweep_runs.print_failures(plan, outcomes)
 
 

@@ -114,7 +114,9 @@ def _s2(run: RunQuery) -> Finding:
     run.last_until(INTERVAL)
     four, five = run.members(run.four_terms(), run.five_terms())
     spans = final_differences(four, five, run.time >= run.time[-1] - 1.0)
-    mean, margin = _mean(spans)
+    # Half the width of the confidence interval of the mean.
+    quantile = stdtrit(spans.size - 1, 0.5 + 0.5 * CONFIDENCE)
+    mean, margin = float(spans.mean()), float(quantile * spans.std(ddof=1) / np.sqrt(spans.size))
     return Finding(
         _above(mean, DIVERGENCE, margin),
         f"Largest difference of the tips in the last second, in the mean of {spans.size} members, "
@@ -409,12 +411,6 @@ def _above(value: float, threshold: float, margin: float) -> Judgement:
     if abs(value - threshold) <= margin:
         return "undecided"
     return "reproduced" if value > threshold else "contradicted"
-
-
-def _mean(values: Array) -> tuple[float, float]:
-    """Return the mean over the members, and half the width of its confidence interval."""
-    quantile = stdtrit(values.size - 1, 0.5 + 0.5 * CONFIDENCE)
-    return float(values.mean()), float(quantile * values.std(ddof=1) / np.sqrt(values.size))
 
 
 def _share(mask: Mask) -> tuple[float, float]:

@@ -43,12 +43,15 @@ def load_table(case: Case, boom: Boom) -> Table:
         boom: boom of the case.
     """
     rows, system = list(_rows(case, boom)), case.system
+    largest = [
+        f"{number(system.of(row.largest, row.unit), 4)} {system.label(row.unit)}" for row in rows
+    ]
     columns = [
         Column("load", [row.key for row in rows]),
         Column("on", [row.place for row in rows]),
         Column("direction", [row.direction for row in rows]),
         Column("history", [row.history for row in rows]),
-        Column("maximum", [_format_value(row.largest, row.unit, system) for row in rows]),
+        Column("maximum", largest),
         Column("maximum\nat s", ["" if row.time is None else f"{row.time:.4g}" for row in rows]),
     ]
     return Table("Loads", columns)
@@ -59,10 +62,6 @@ def release_note(case: Case) -> str:
     dropped = case.hoist is not None and case.hoist.dropped
     released = dropped or any(load.released for load in case.loads)
     return "Static results at t = 0 are those before the release." if released else ""
-
-
-def _format_value(value: float, unit: str, system: System) -> str:
-    return f"{number(system.of(value, unit), 4)} {system.label(unit)}"
 
 
 def _rows(case: Case, boom: Boom) -> Iterator[_Row]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from beam_model.statics import static_state
-from geometry.boom import Boom, Collar, Joint, Segment
+from geometry.boom import Boom, Collar, Segment
 from geometry.joint import PadSize
 from geometry.typography import join_words
 from runs.case.schema import Model
@@ -93,7 +93,11 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     def longer(pad: PadSize, longest: float) -> dict[str, Any]:
         return {"length": max(min(2.0 * pad.length, longest), pad.length)}
 
-    offset = any(pad.offset > 0.0 for joint in boom.joints for pad in _sizes(joint))
+    offset = any(
+        pad is not None and pad.offset > 0.0
+        for joint in boom.joints
+        for pad in (*joint.pads, joint.pad)
+    )
     if offset:
         yield (
             "pads beside the corners, offset left out",
@@ -112,10 +116,6 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     )
     if (changed := _with_collars(boom)) != boom:
         yield collars, changed
-
-
-def _sizes(joint: Joint) -> tuple[PadSize, ...]:
-    return (*joint.pads, *([joint.pad] if joint.pad is not None else []))
 
 
 def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) -> Boom:

@@ -78,7 +78,10 @@ def script(
     """
     _check(case, model_boom)
     boom = model_boom.boom
-    touching = _contact_points(boom)
+    # Segment and x in m of each contact point.
+    touching = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
+    for pad in pads(boom):
+        touching += [(pad.joint.inner, pad.midpoint), (pad.joint.outer, pad.midpoint)]
     stiff = boom if calibration is None else with_stiffnesses(boom, calibration.segments)
     parts = [_part(stiff, number, model, touching) for number in range(len(boom.segments))]
     data = {
@@ -131,14 +134,6 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
                 "cannot be exported to OpenSees, for which a boom must be flat and undamped, start "
                 "from rest, and have friction under given normal_forces only; leave it out",
             )
-
-
-def _contact_points(boom: Boom) -> list[tuple[int, float]]:
-    """Return segment and x in m of each contact point."""
-    places = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
-    for pad in pads(boom):
-        places += [(pad.joint.inner, pad.midpoint), (pad.joint.outer, pad.midpoint)]
-    return places
 
 
 def _part(

@@ -36,7 +36,7 @@ SAMPLES, CSV, CHART = "samples.csv", "sampling.csv", "sampling.png"
 SEED = 0
 # Quantiles in the table.
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
-# Results in the terminal and in the chart.
+# Results in the terminal and in the chart, also of sensitivities.
 SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
 # Ratio of standard deviation to mean below which a result has no scatter.
 NONE = 1.0e-9

@@ -27,14 +27,14 @@ from runs.sweep.points import (
     tables_of,
 )
 from runs.sweep.run import Outcome
+from runs.sweep.sampling import SHOWN, results_of
 from runs.sweep.variation import Variation, numbers
 
 OPTION = "--sensitivity"
 CSV = "sensitivity.csv"
 # Relative change by which each number is increased and decreased.
 CHANGE = 0.01
-# Results in the terminal, and maximum number of rows.
-SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
+# Maximum number of rows in the terminal.
 MOST_ROWS = 20
 # Relative change of a result below which it counts as round-off.
 NONE = 1.0e-7
@@ -81,17 +81,13 @@ def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
     It has a column per result and a row per key that has an effect. Rows are in descending order
     of the largest effect on the main results.
     """
-    (model,) = plan.coordinates["model"]
-    names = [one.name for one in QUANTITIES if one.charted]
-    results = pd.DataFrame(
-        [one.models.get(model, {}) for one in outcomes], columns=names, dtype=float
-    )
+    (results,) = results_of(plan, outcomes).values()
     base, below, above = results.iloc[0], results.iloc[1::2], results.iloc[2::2]
     keys = [point.label.partition("=")[0] for point in plan.points[1::2]]
     parts = (above.to_numpy() - below.to_numpy()) / (2.0 * base.abs().to_numpy())
-    table = pd.DataFrame(parts, keys, names).replace([np.inf, -np.inf], np.nan)
+    table = pd.DataFrame(parts, keys, results.columns).replace([np.inf, -np.inf], np.nan)
     table = table.mask(table.abs() < NONE, 0.0)
-    largest = table[list(SHOWN)].abs().max(axis=1)
+    largest = table.reindex(columns=SHOWN).abs().max(axis=1)
     order = largest.sort_values(ascending=False, kind="stable")
     return table.loc[order.index[order > 0.0]].dropna(axis=1, how="all")
 

@@ -78,7 +78,9 @@ def reduce_segments(
     comm = segments[0].symmetry.shell.comm
     jobs = [one.symmetry.jobs(one.inputs, one.outputs, one.probes) for one in segments]
     classes = comm.bcast([[job.symmetry_class for job in some] for some in jobs])
-    counts = comm.bcast([[_count_forces(job) for job in some] for some in jobs])
+    counts = comm.bcast(
+        [[int(np.count_nonzero(job.forces.any(axis=0))) for job in some] for some in jobs]
+    )
     if not all(any(some) for some in counts):
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
     owners = [one for one, some in zip(segments, counts, strict=True) for _ in some]
@@ -111,10 +113,6 @@ def reduce_segments(
         _join(one.symmetry, some, list(islice(results, len(some))))
         for one, some in zip(segments, classes, strict=True)
     ]
-
-
-def _count_forces(job: Job) -> int:
-    return int(np.count_nonzero(job.forces.any(axis=0)))
 
 
 def _join(
