@@ -58,16 +58,10 @@ def summary_table(results: Results) -> Table | None:
     damages = [one["detail"].load if "detail" in one else None for one in used]
     at_start, at_most, extended = (
         [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]
-        for several in zip(
-            *(
-                (
-                    one.static[:1],
-                    one.static if len(one.static) > 1 else [],
-                    one.static_extended,
-                )
-                for one in designs
-            ),
-            strict=True,
+        for several in (
+            [one.static[:1] for one in designs],
+            [one.static if len(one.static) > 1 else [] for one in designs],
+            [one.static_extended for one in designs],
         )
     )
     aside = [
