@@ -31,7 +31,7 @@ from geometry.section import BoxSection
 from runs.case.build import build_boom
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
-from runs.pipeline.proportions import static_tip
+from runs.pipeline.model_run import static_tip
 from runs.report.tables import Cell, Table
 from studies.calibrated_beams import (
     EULER,

@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from beam_model.calibration import Calibration, Stiffness
+from dynamics.equilibrium import equilibrium
 from dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.predictability import integrate_ensemble
@@ -30,7 +31,6 @@ from runs.pipeline import members
 from runs.pipeline.low_pass import SlowPeaks
 from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.models import MotionPlan, build
-from runs.pipeline.proportions import static_tip
 from runs.pipeline.summary import (
     BeamStiffness,
     CalibrationCard,
@@ -239,6 +239,18 @@ def _integrate(
                 summary.steps_for_peaks = members.steps_for_peaks(motion, peaks, cutoff)
     summary.seconds = stages.seconds
     return CompletedMotion(trajectory, summary, ensemble)
+
+
+def static_tip(system: GapSystem) -> float:
+    """Return the static tip deflection in m at t = 0; NaN without an equilibrium.
+
+    Args:
+        system: gap system with all loads.
+    """
+    try:
+        return float(system.observers["tip"].row @ equilibrium(system, system.load_at(0.0)))
+    except NumericsError:
+        return float("nan")
 
 
 def summarise_motion(

@@ -9,10 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.equilibrium import equilibrium
 from dynamics.excitation import InitialImpulse, Ramp, Step
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
 from geometry.boom import Boom
 from geometry.fit import room
 from geometry.joint import SIDES, SlidePad
@@ -77,7 +74,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
         *_sizes(case, boom),
         *_repeated_loads(case, boom),
         *_axial_forces(case, boom),
-        *_payload_without_gravity(case, boom),
+        *_missing_loads(case, boom),
         *_ineffective_inputs(case),
         *_materials(case),
         *_cylinders(case, boom),
@@ -414,8 +411,15 @@ def _axial_forces(case: Case, boom: Boom) -> Iterator[str]:
             )
 
 
-def _payload_without_gravity(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield a caution if a payload has no weight and no other downward load acts."""
+def _missing_loads(case: Case, boom: Boom) -> Iterator[str]:
+    """Yield a caution if nothing moves the boom, or if its payload weighs and it does not."""
+    amounts = [load.magnitude for load in boom.loads]
+    amounts += [one.load or (one.lateral.load if one.lateral else 0.0) for one in boom.segments]
+    if not any([*amounts, case.driven_segments, case.hoist, case.slew, case.luff]):
+        yield (
+            "load: nothing loads the boom across its axis or moves it, so that it stays at rest; "
+            "give [[load]], [gravity], [payload], [[base]], start.velocity or joint.drive"
+        )
     payload, weights = case.payload, [-segment.load for segment in boom.segments]
     weights += [-load.magnitude for load in boom.loads if load.x is None and load.direction == "z"]
     if payload and case.gravity is None and payload.gravity is None and max(weights) <= 0.0:
@@ -446,18 +450,6 @@ def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
         f"caution: time.duration: the run of {case.time.duration:g} s is shorter than one period "
         f"{where}, {1.0 / frequency:.3g} s; usual are three periods at least"
     ]
-
-
-def static_tip(system: GapSystem) -> float:
-    """Return the static tip deflection in m at t = 0; NaN without an equilibrium.
-
-    Args:
-        system: gap system with all loads.
-    """
-    try:
-        return float(system.observers["tip"].row @ equilibrium(system, system.load_at(0.0)))
-    except NumericsError:
-        return float("nan")
 
 
 def buckling_cautions(name: str, critical_factor: float | None) -> list[str]:

@@ -218,6 +218,38 @@ def test_unusual_numbers_give_cautions(tmp_path: Path, old: str, new: str, line:
     assert proportion_cautions(case, build_boom(case)) == lines
 
 
+WEIGHTS = [("gravity = { angle = 45.0 }\n", ""), ("payload = { mass = 300.0 }\n", "")]
+STILL = 'start = { state = "equilibrium" }\n'
+PUSH = f"load = [{LOAD}]\n"
+DRIVE = f"{PLAY}drive = {{ travel = -0.1, speed = 0.1 }}\n"
+AT_REST = (
+    "caution: load: nothing loads the boom across its axis or moves it, so that it stays at rest; "
+    "give [[load]], [gravity], [payload], [[base]], start.velocity or joint.drive"
+)
+
+
+@pytest.mark.parametrize(
+    ("edits", "rests"),
+    [
+        ([(PUSH, "")], True),
+        ([("-1595.0", "0.0")], True),
+        ([(PUSH, "axial = [{ force = 1e4 }]\n")], True),
+        ([], False),
+        ([(PUSH, "base = [{ direction = 'z', acceleration = 1.0, ramp = 0.1 }]\n")], False),
+        ([(f"{STILL}{PUSH}", "start.velocity = { fly = 0.1 }\n")], False),
+        ([(PUSH, ""), (PLAY, DRIVE)], False),
+    ],
+    ids=["nothing", "0 N", "along", "load", "base", "velocity", "drive"],
+)
+def test_a_boom_that_nothing_loads_gives_a_caution(
+    tmp_path: Path, edits: list[tuple[str, str]], rests: bool
+) -> None:
+    """Reference: analytic. A straight boom without a force across its axis stays straight."""
+    shown = printed_check(read_case(tmp_path, edited(LIFT, *WEIGHTS, *edits)))
+    assert (AT_REST in shown.splitlines()) == rests
+    assert not rests or "walls under pads: 0 mm; with bonded joints" in shown
+
+
 def test_run_shorter_than_a_period_gives_a_caution(tmp_path: Path) -> None:
     """Reference: the frequency in the line above."""
     shown = printed_check(read_case(tmp_path, edited(LIFT, ("duration = 3.0", "duration = 0.2"))))
