@@ -268,6 +268,8 @@ def _check_planar(case: Case) -> None:
     for number, base in enumerate(case.base, start=1):
         if base.direction == "y":
             raise BoomError(f"base[{number}].direction", remedy)
+    if case.limits is not None and case.limits.tip_lateral is not None:
+        raise BoomError("limits.tip_lateral", remedy)
     for name, velocity in case.start.velocity.items():
         for key in ("y", "lateral_turn"):
             if getattr(velocity, key) != 0.0:

@@ -215,6 +215,8 @@ class LimitsTable(CaseTable):
     """the largest permitted tip deflection in m, of the motion"""
     tip_at_rest: Annotated[Positive, In("m")] | None = None
     """the largest permitted static tip deflection in m"""
+    tip_lateral: Annotated[Positive, In("m")] | None = None
+    """the largest permitted lateral tip deflection in m, of the motion; only in space"""
     stress: Annotated[Positive, In("Pa")] | None = None
     """the largest permitted bending stress in Pa, axial in outer fibres"""
     wall_stress: Annotated[Positive, In("Pa")] | None = None

@@ -37,6 +37,7 @@ DECAYED_SHARE = 0.1
 _STATIC: Mapping[str, StaticKind] = {
     "tip": "tip",
     "tip_at_rest": "tip",
+    "tip_lateral": "lateral tip",
     "stress": "bending stress",
     "pad_pressure": "pad",
 }
@@ -48,6 +49,7 @@ _RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSumma
 QUANTITIES = (
     Metric("tip_at_rest", "m", "static tip deflection (maximum load)", TO_MILLI, "mm"),
     Metric("tip", "m", "tip deflection", TO_MILLI, "mm"),
+    Metric("tip_lateral", "m", "lateral tip deflection", TO_MILLI, "mm"),
     Metric("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
     Metric("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
     Metric("contact_force", "N", "contact force", TO_KILO, "kN"),
@@ -80,7 +82,8 @@ def measure(results: Results, model: str) -> Quantities:
     elastic drives.
     """
     time = np.asarray(results.trajectories["time"].values, dtype=float)
-    tip = np.asarray(results.trajectories["tip"].sel(model=model).values, dtype=float)
+    data = results.trajectories.sel(model=model)
+    tip = np.asarray(data["tip"].values, dtype=float)
     summary = results.summary.models[model]
     design = results.summary.design.models.get(model, ModelDesignResults())
     declaring = [*(getattr(design, name) for name in records(ModelDesignResults)), summary]
@@ -96,6 +99,7 @@ def measure(results: Results, model: str) -> Quantities:
     return {
         "tip_at_rest": None if deflection is None else deflection.at_rest,
         "tip": float(np.abs(tip).max()),
+        "tip_lateral": float(abs(data["tip_lateral"]).max()) if "tip_lateral" in data else None,
         "tip_amplitude": float(0.5 * np.ptp(tip)),
         "dynamic_factor": None if deflection is None else deflection.factor,
         "contact_force": max(contacts, default=None),

@@ -138,11 +138,11 @@ def _chart(run: FigureContext, place: str) -> Chart:
 
 def _limit(run: FigureContext, place: str) -> float | None:
     """Return the permitted tip deflection in mm, with the sign of the largest deflection."""
-    limits = run.case.limits
-    if place != "tip" or limits is None or limits.tip is None:
+    permitted = getattr(run.case.limits, place, None) if place in DIRECTIONS else None
+    if permitted is None:
         return None
     reaches = [farthest(run.result(name, place)) for name in run.models]
-    return float(np.copysign(TO_MILLI * limits.tip, max(reaches, key=abs)))
+    return float(np.copysign(TO_MILLI * permitted, max(reaches, key=abs)))
 
 
 def _largest_deflection(run: FigureContext, place: str) -> str:

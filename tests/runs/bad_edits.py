@@ -135,6 +135,9 @@ NUMBERS = [
         "1e7\n\n[[joint]]":
             "stop[1].x: 3 m lies outside 'inner'; it must be between 9 and 19 m",
     }),
+    ("[[joint]]", "[limits]\ntip_lateral = 0.1\n\n[[joint]]",
+     "limits.tip_lateral: the boom is flat, and nothing moves along 'y'; give the joints "
+     "lateral_play"),
     ("stiffness = 1e13", "stiffness = 0.0",
      "joint[1].stiffness: must be a number greater than 0, got 0.0"),
     *replacing("play = 0.014", {

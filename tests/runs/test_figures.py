@@ -16,6 +16,7 @@ from matplotlib.lines import Line2D
 
 from protractile.cases import run_case
 from runs.case import reading as case_file
+from runs.case.schema import LimitsTable
 from runs.pipeline.results import Results
 from runs.pipeline.summary import FirstPeak
 from runs.report import theme
@@ -341,10 +342,14 @@ def test_a_boom_in_space_moves_to_the_sides(results: Results, drawn: Drawn) -> N
     data = results.trajectories.assign(tip_lateral=0.5 * results.trajectories["tip"])
     data = data.assign_coords(direction=("station", ["z", "y"]))
     in_space = replace(results, trajectories=data)
-    drawn(tip, in_space)
+    limits = LimitsTable(tip_lateral=0.2)
+    drawn(tip, replace(in_space, case=results.case.model_copy(update={"limits": limits})))
     drawn(first_contacts, in_space)
     (axes,) = drawn.sheets["tip-lateral"].axes
-    for line in axes.get_lines():
+    *lines, limit = axes.get_lines()
+    assert np.abs(limit.get_ydata()) == pytest.approx(200.0)
+    assert "limit" not in labels(drawn.sheets["tip"].axes[0])
+    for line in lines:
         height = data["tip"].sel(model=model_of(line)).values
         np.testing.assert_allclose(np.asarray(line.get_ydata()), 500.0 * height, rtol=1e-12)
     titles = [panel.get_title(loc="left") for panel in drawn.sheets["contact-first"].axes]

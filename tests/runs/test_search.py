@@ -24,13 +24,23 @@ from runs.sweep.sampling import QUANTILES, normal_points
 from runs.sweep.search import rigid_wall_cautions
 from tests.docs.conftest import toml_blocks
 from tests.runs.cantilever import CANTILEVER, LENGTH, LOAD, MASS, SECOND, YOUNG, static_tip
-from tests.runs.case_texts import THIN, edited
+from tests.runs.case_texts import CLAMPED, REST, STEEL, THIN, box, edited, elements, joint, table
 from tests.runs.summaries import printed
 from tests.runs.sweeping import run
 from tests.system.run_folder import protractile
 
 sweep = partial(protractile, "sweep", "case.toml")
 LENGTHS = "segment[1].length=3:5:3"
+SQUARE = f"""
+title = "A square boom in space"
+time = {{ duration = 0.1, output_step = 1e-3 }}
+{STEEL}
+{box("base", (0.0, 4.0), (0.2, 0.2, 0.006, 0.006), CLAMPED)}
+{box("fly", (3.0, 6.5), (0.16, 0.16, 0.005, 0.005))}
+{joint("fly", "base", 0.004, (3.0, 4.0), "lateral_play = 0.004")}
+{elements("elements", theory="timoshenko")}
+{REST}
+"""
 ONE = "give one of --vary, --sensitivity and --samples"
 
 
@@ -241,6 +251,25 @@ def test_check_compares_limits_with_the_tip_at_rest() -> None:
         f"caution: the limit static tip deflection (maximum load) ≤ 10 mm is exceeded: {rests}",
         f"caution: the limit tip deflection ≤ 15 mm is exceeded: {rests}",
     ]
+
+
+@pytest.mark.usefixtures("few_figures")
+def test_a_boom_in_space_has_a_limit_of_its_lateral_tip() -> None:
+    """Reference: symmetry. A square boom deflects along y as along z under the same force."""
+    up, aside = (
+        SQUARE + table("[[load]]", segment="fly", x="head", magnitude=900.0, direction=way)
+        for way in "zy"
+    )
+    far = measure(run_case(reading.load(write("tip = 1.0", up))), "elements")["tip"]
+    for part, holds in ((0.999, False), (1.001, True)):
+        case = reading.load(write(f"tip_lateral = {part * far}", aside))
+        results = run_case(case)
+        (check,) = check_limits(results)
+        assert check.values["elements"] == pytest.approx(far, rel=1e-6)
+        assert (check.holds, not [*limit_faults(results)]) == (holds, holds)
+        (sentence,) = limit_sentences(case)
+        words = "Limit lateral tip" if holds else "caution: the limit lateral tip"
+        assert sentence.startswith(words)
 
 
 def limit_sentences(case: Case) -> list[str]:

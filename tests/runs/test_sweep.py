@@ -199,8 +199,9 @@ def test_files_hold_the_same_numbers_with_units(planned: Planned) -> None:
     assert data["tip_amplitude"].dims == ("joint.play", "model")
     assert data["joint.play"].attrs["units"] == "m"
     assert {q.name: data[q.name].attrs["units"] for q in QUANTITIES} == {
-        "tip_at_rest": "m", "tip": "m", "tip_amplitude": "m", "dynamic_factor": "1",
-        "contact_force": "N", "stress": "Pa", "wall_stress": "Pa", "pad_pressure": "Pa",
+        "tip_at_rest": "m", "tip": "m", "tip_lateral": "m", "tip_amplitude": "m",
+        "dynamic_factor": "1", "contact_force": "N", "stress": "Pa", "wall_stress": "Pa",
+        "pad_pressure": "Pa",
         "damage": "1", "first_frequency": "Hz", "decay_time": "s", "mass": "kg",
         "settling_time": "s", "first_contact": "s", "residual_vibration": "m",
         "residual_vibration_initial": "m", "residual_vibration_final": "m", "lift_off": "s",
