@@ -172,22 +172,6 @@ def test_rigid_motions(beam: Beam, theory: Theory, rotary_inertia: bool) -> None
     assert model.at(4.321) @ turn == pytest.approx(4.321 - 5.5, rel=1e-12)
 
 
-def test_mass_of_one_element(beam: Beam) -> None:
-    """Reference: analytic, the consistent mass matrix of a Hermite beam (Przemieniecki 1968)."""
-    model = bending(beam(), 5.0, (), "euler-bernoulli", False)
-    h = 5.0
-    expected = np.array(
-        [
-            [156.0, 22.0 * h, 54.0, -13.0 * h],
-            [22.0 * h, 4.0 * h**2, 13.0 * h, -3.0 * h**2],
-            [54.0, 13.0 * h, 156.0, -22.0 * h],
-            [-13.0 * h, -3.0 * h**2, -22.0 * h, 4.0 * h**2],
-        ]
-    )
-    expected *= beam().mass_per_length * h / 420.0
-    np.testing.assert_allclose(model.mass, expected, rtol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("length", "breaks", "nodes"),
     [

@@ -13,7 +13,7 @@ from beam_model.kantorovich import kantorovich_segment
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep, FixedStep
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
@@ -293,20 +293,6 @@ def test_flat_friction_rubs_in_its_plane(paper_boom: Boom) -> None:
     assert forces == [
         (station, n) for station, n in enumerate((1125.0, 1250.0) * 2) for _ in "1234"
     ]
-
-
-def test_friction_takes_energy_and_gives_none(spatial_boom: Boom) -> None:
-    """Reference: analytic. The friction loss never decreases. Friction alone couples lateral motion
-    to the plane, so that its energy is at most the work of the lateral load.
-    """
-    (joint,) = spatial_boom.joints
-    boom = pushed(replace(spatial_boom, joints=(replace(joint, friction=0.3),)), 60.0, 40.0)
-    run = AdaptiveStep()(Motion(gap_system(touching(boom, LAW, LATERAL_LAW), beams(boom)), 1.0))
-    loss = run.data["friction_loss"].values
-    assert loss[-1] > 0.05
-    assert np.diff(loss).min() >= -1e-9 * loss[-1]
-    assert run.energy_residual < 1e-3
-    assert np.abs(run.data["friction_force"].values).max() > 100.0
 
 
 def test_bonded_in_space_nothing_moves_between_the_segments(spatial_boom: Boom) -> None:

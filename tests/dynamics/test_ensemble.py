@@ -5,9 +5,7 @@ import os
 import re
 import subprocess
 from collections.abc import Callable
-from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from multiprocessing import get_context
 from typing import Self
 
 import numpy as np
@@ -100,19 +98,6 @@ def test_members_make_the_steps_of_the_first() -> None:
     run = same(Motion(replace(CHAOTIC, load=factor * CHAOTIC.load), 2.0, 1e-2))
     np.testing.assert_array_equal(ensemble["tip"][1], run.data["tip"])
     assert ensemble.attrs["integrator"] == "AdaptiveStep(tolerance=0.01)"
-
-
-def test_other_processes_give_the_same() -> None:
-    """Reference: other code path. Chaos would amplify any difference of bits."""
-    motion = Motion(CHAOTIC, 20.0, 1e-2, velocity=THROWN)
-    with ProcessPoolExecutor(1, get_context("spawn")) as processes:
-        assert processes.submit(os.getpid).result() != os.getpid()
-        for integrator in (FixedStep(1e-3), AdaptiveStep(1e-2)):
-            one, other = (
-                integrate_ensemble(motion, 5, 1e-6, 3, "load", integrator, executor)
-                for executor in (None, processes)
-            )
-            xr.testing.assert_identical(one, other)
 
 
 OTHER_RANK = """

@@ -324,26 +324,6 @@ def test_first_contact_late_at_once_or_never(
     assert run.data.attrs["contact_changes"] == (0 if np.isnan(first) else 1)
 
 
-def test_units_do_not_matter() -> None:
-    """Reference: analytic, the same system in mm, t, s until chaos; 1 √t·mm = √1000/1000 √kg·m."""
-    si, scale = two_modes(), np.sqrt(1000.0)
-    law = PowerContact(si.laws[0].terms[0].stiffness / 1e6, 2.0).with_clearance(
-        1e3 * si.laws[0].above
-    )
-    small = replace(
-        si, load=si.load * scale, rows=si.rows * scale, laws=[law.one_sided(1)],
-        observers={"first": Observer(np.array([scale, 0.0]))},
-    )  # fmt: skip
-    metres, millimetres = (AdaptiveStep()(Motion(s, 1.5, 0.01)) for s in (si, small))
-    assert metres.data.attrs["contact_changes"] >= 5
-    assert millimetres.data.attrs["substeps"] == metres.data.attrs["substeps"]
-    assert millimetres.first_contact == pytest.approx(metres.first_contact, rel=1e-9)
-    for name, factor in (("first", 1e3), ("gap", 1e3), ("contact_force", 1.0), ("work", 1e3)):
-        expected = factor * metres.data[name].values
-        error = np.abs(millimetres.data[name].values - expected).max()
-        assert error < 1e-9 * np.abs(expected).max(), name
-
-
 def test_a_closed_contact_is_a_spring() -> None:
     """Reference: analytic, a mass on a spring under a load that rises to −5 N within 10.4 ms; and
     the impulse by the change of momentum.
