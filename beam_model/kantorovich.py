@@ -22,7 +22,7 @@ from scipy.linalg import null_space, rq
 from beam_model.component import Component, Motion, SegmentModel, products
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Segment
-from geometry.compression import Compression
+from geometry.segment import Compression
 
 # Number of additional quadrature points for tapered segments.
 _TAPERING = 6

@@ -26,10 +26,9 @@ from beam_model.segment_model import EACH_SIDE
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.compression import NO_COMPRESSION
 from geometry.contact_places import Pad, pads
 from geometry.section import Direction, Side
-from geometry.segment import Segment
+from geometry.segment import NO_COMPRESSION, Segment
 
 # Length of wall beyond a pad that is modelled, as a fraction of the larger side of the section.
 _REACH = 1.5

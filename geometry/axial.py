@@ -17,11 +17,10 @@ from typing import Any
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.compression import NO_COMPRESSION, Compression
 from geometry.joint import Joint, sample_times
 from geometry.load import Body
 from geometry.section import Direction
-from geometry.segment import SAME_PLACE, PointMass, Segment
+from geometry.segment import NO_COMPRESSION, SAME_PLACE, Compression, PointMass, Segment
 from geometry.taper import mean_area
 
 # Number of steps of uniform weight in a tapered segment. Forces are exact at the ends of steps;

@@ -19,9 +19,9 @@ from geometry.boom import (
     Segment,
     Support,
 )
-from geometry.compression import NO_COMPRESSION
 from geometry.joint import Carrier, Drive
 from geometry.section import BoxSection
+from geometry.segment import NO_COMPRESSION
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)

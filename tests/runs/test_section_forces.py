@@ -18,8 +18,8 @@ from dynamics.equilibrium import equilibrium_at
 from dynamics.excitation import Step
 from dynamics.line import Line
 from geometry.boom import Boom, Cylinder, Load, Material, Segment, Support
-from geometry.compression import Compression
 from geometry.section import BoxSection
+from geometry.segment import Compression
 from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
