@@ -44,6 +44,7 @@ class TableContact(ContactLaw):
             raise ValueError("forces must be positive, and must not fall at the end")
 
     def _slopes(self) -> Array:
+        """Return the stiffness (num_depths,) in N/m between successive rows of the table."""
         with np.errstate(all="ignore"):
             return np.asarray(np.diff([0.0, *self.forces]) / np.diff([0.0, *self.depths]))
 

@@ -190,7 +190,7 @@ class GapSystem:
 
     @property
     def frequencies(self) -> Array:
-        """The ascending natural frequencies (num_modes,) without contact in Hz."""
+        """The natural frequencies (num_modes,) in Hz without contact, in ascending order."""
         return np.sort(self.omega) / (2.0 * np.pi)
 
     @property

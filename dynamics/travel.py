@@ -204,9 +204,9 @@ class ChangingAxialForce:
 
     @classmethod
     def of(cls, geometric: Array, stiffness: Array, peak: float) -> ChangingAxialForce:
-        """Return the force whose geometric stiffness is ``geometric`` at g_e = 1.
+        """Return the force with the geometric stiffness ``geometric`` at g_e = 1.
 
-        Directions with a relative change of the stiffness below 1e-5 at ``peak`` are left out.
+        The sum leaves out directions in which the stiffness changes by less than 1e-5 of itself.
 
         Args:
             geometric: K_G (num_modes, num_modes) in 1/s².

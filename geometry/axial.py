@@ -190,7 +190,7 @@ class AxialChange:
 
     @property
     def times(self) -> Array:
-        """The times (num_times,) from t = 0 on in s at which the history is sampled."""
+        """The times (num_times,) in s of the samples of the history, from t = 0 on."""
         return sample_times(self.history)
 
     def geometric_stiffness(

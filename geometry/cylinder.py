@@ -115,12 +115,15 @@ class Cylinder:
             )
 
     def load_vectors(self, body: Body, foot: Support | None) -> Iterator[Array]:
-        """Yield load vectors (num_dofs,) of a cylinder force of 1 N, also rows of the elongation.
+        """Yield the load vectors (num_dofs,) of one cylinder, or of two side by side.
 
-        For two cylinders, the second vector has ½ N in one and −½ N in the other. A point (y, z)
-        of a section moves along x by −w′ z − v′ y, and along z by w + θ y, with the deflections w
-        along z and v along y and the twist θ. In addition, the whole segment moves along x so that
-        the pin of the foot does not move.
+        The first vector is for a cylinder force of 1 N. For two cylinders a second one follows,
+        for ½ N in one cylinder and −½ N in the other. Times the degrees of freedom, the first gives
+        the mean elongation, the second half the difference of both elongations.
+
+        The deflections are v along y and w along z, and θ is the twist. A point (y, z) of a section
+        moves by −w′ z − v′ y along x, and by w + θ y along z. The segment also moves along x as a
+        rigid body, so that the pin of the foot stays in place.
 
         Args:
             body: segment with the lug.

@@ -145,7 +145,7 @@ class Drive:
 
     @cached_property
     def times(self) -> Array:
-        """The times (num_times,) from t = 0 on in s, including kinks."""
+        """The times (num_times,) in s of the samples of the history, from t = 0 on."""
         return sample_times(self.history)
 
     @cached_property
@@ -156,7 +156,10 @@ class Drive:
 
 
 def sample_times(history: Any) -> Array:
-    """Return sampling times (num_times,) of a history in s from t = 0 on, with its kinks."""
+    """Return the times (num_times,) in s of samples of a history, from t = 0 on.
+
+    Samples are evenly spaced, with additional ones at the kinks of the history.
+    """
     kinks = np.array([0.0, *history.kinks])
     times = np.union1d(kinks, np.linspace(kinks.min(), kinks.max(), _TIMES))
     return np.asarray(times[times >= 0.0])

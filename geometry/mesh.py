@@ -111,8 +111,8 @@ def mesh_segment(
         closed: names of the breaks with a diaphragm, in order.
         along: target edge lengths in m along the boom, by the x in m from which each applies;
             ``size`` before the first x.
-        across: distances in m from the middle of a plate with mesh lines on both sides, by the
-            plate's index.
+        across: distances in m from the middle of a plate, by the plate's index. At each distance
+            a mesh line runs along the boom on both sides of the middle.
 
     Raises:
         ValueError: the size is not a positive number, or there are no two distinct breaks.

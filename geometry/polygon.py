@@ -78,7 +78,7 @@ class PolygonSection(Section):
 
     @cached_property
     def plates(self) -> tuple[Plate, ...]:
-        """The plates, anticlockwise from the lowest corner, of two lowest from the left one."""
+        """The plates, anticlockwise from the lowest corner, or from the left one of two."""
         corners = self._upwards[0] - np.array(self.centroid)
         for axis in self.mirrors:
             # Meshes require that mirror images are exactly equal.

@@ -155,7 +155,7 @@ class Section(Protocol):
 
     @property
     def plates(self) -> tuple[Plate, ...]:
-        """All plates in order: each begins at the end of the previous one."""
+        """The plates in order around the section; each begins where the previous one ends."""
 
     @property
     def faces(self) -> tuple[Face, ...]:
@@ -369,7 +369,7 @@ class BoxSection(Section):
 
     @property
     def plates(self) -> tuple[Plate, ...]:
-        """The bottom, right, top and left plates."""
+        """The four plates in the order bottom, right, top, left."""
         (y, z), b, h = self.centroid, 0.5 * self.width, 0.5 * self.height
         (top, bottom), (right, left) = self._walls
         return rectangle((-b - y, -h - z), (b - y, h - z), bottom, right, top, left)

@@ -51,7 +51,10 @@ class Compression:
         return bool(self.ends)
 
     def __call__(self, x: Array) -> Array:
-        """Return P (num_places,) in N at x (num_places,) in m; at a jump, the value on one side."""
+        """Return P (num_places,) in N at x (num_places,) in m.
+
+        At a jump the value is that on the side of larger x.
+        """
         if not self:
             return np.zeros(x.shape)
         places, ends = np.array(self.places), np.array(self.ends)

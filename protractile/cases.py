@@ -227,7 +227,7 @@ def frequencies(
     vary: Mapping[str, Sequence[float]] | None = None,
     models: Sequence[str] | None = None,
 ) -> xr.Dataset:
-    """Return the first natural frequencies of a case, for several values of its keys if given.
+    """Return the first natural frequencies of a case, or of variants with other values of keys.
 
     >>> import protractile as pt
     >>> case = pt.load_case(pt.CASES / "paper.toml")

@@ -328,7 +328,10 @@ def frequencies(
     mesh_size: MeshSize = None,
     no_cache: NoCache = False,
 ) -> int:
-    """Chart the first frequencies over the values of keys, with joints in contact and bonded."""
+    """Chart the first natural frequencies over the values of keys.
+
+    The joints are once in contact where they touch at rest under the loads, and once bonded.
+    """
     from runs.folder.cache import Cache
     from runs.sweep import frequencies as charts
     from runs.sweep import points

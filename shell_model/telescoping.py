@@ -230,7 +230,7 @@ class TelescopingShell:
         """
 
         def project(columns: Array) -> Array:
-            """Return modal rows (num_columns, num_modes) of columns (num_owned, num_columns)."""
+            """Return columns (num_owned, num_columns) as modal rows (num_columns, num_modes)."""
             rows = [exact_product(self._full.comm, column, segment.shapes) for column in columns.T]
             return np.array(rows).reshape(-1, segment.omega2.size)
 
@@ -279,7 +279,10 @@ class TelescopingShell:
         return float((np.abs(error) / scale).max(initial=0.0))
 
     def _residuals(self, k: int) -> tuple[Array, Array]:
-        """Return compliance in m/N and inertia in m s²/N of rows, less those of modes."""
+        """Return the parts of compliance and inertia that the modes do not represent.
+
+        Both are (num_extensions, num_moving, num_moving), in m/N and in m s²/N.
+        """
         rows, shifted = self._rows[k], self._segment_coordinates.omega2 + squared(SLOW)
         compliance, inertia = (rows / shifted**power @ rows.swapaxes(1, 2) for power in (1, 2))
         return self._compliance(k, "compliance") - compliance, self._compliance(

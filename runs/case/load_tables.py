@@ -209,7 +209,7 @@ class FactorsTable(CaseTable):
     """the factor of loads of the group test"""
 
     def of(self, group: Group) -> float | None:
-        """Return the factor on the loads of a group; None if it is not given."""
+        """Return the factor on a group of loads; None if the table does not give it."""
         numbers: tuple[float, ...] | None = getattr(self, group)
         return None if numbers is None else prod(numbers)
 

@@ -31,7 +31,7 @@ _Support = Annotated[
 
 
 class ShapeTable(CaseTable):
-    """Keys of every shape of a section."""
+    """Base class of the tables that define a section, one for each shape."""
 
     # Function that returns the section from all keys except ``shape``.
     make: ClassVar[Callable[..., Section]]

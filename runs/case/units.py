@@ -43,7 +43,7 @@ class Unit:
 
     @classmethod
     def of(cls, text: str) -> Unit:
-        """Return the unit of a text such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m`` or ``g``.
+        """Return the unit with a name such as ``kN/m``, ``m/s^2``, ``m/s²``, ``N m`` or ``g``.
 
         Raises:
             ValueError: the unit is unknown.
@@ -96,7 +96,7 @@ class System:
         return Fraction(repr(Unit.of(self.unit(si)).factor / Unit.of(si).factor))
 
     def of(self, value: float, si: str) -> float:
-        """Return a value, given in an SI unit, in the system's unit."""
+        """Return a value in the system's unit, from its value in the SI unit ``si``."""
         return scale(value, 1 / self.size(si))
 
     def label(self, si: str) -> str:

@@ -36,7 +36,7 @@ class PeakDifferences:
 
     @classmethod
     def of(cls, one: SlowPeaks, other: SlowPeaks) -> PeakDifferences:
-        """Return the differences between the peaks that both models have."""
+        """Return the differences of peaks with the same number, as far as both models have them."""
         common = slice(min(one.time.size, other.time.size))
         time, height = (
             other.time[common] - one.time[common],
@@ -70,9 +70,12 @@ class Distributions:
 
     @classmethod
     def of(cls, one: Array, other: Array, time: Array, since: float) -> Distributions:
-        """Compare the values (num_members, num_times) of two ensembles after a time ``since`` in s.
+        """Return the statistics of two ensembles after the time ``since`` in s.
 
-        If a model stays predictable, ``since`` is NaN.
+        Args:
+            one, other: values (num_members, num_times).
+            time: (num_times,) in s.
+            since: later of both horizons; NaN if a model stays predictable.
         """
         # Imported here, since most runs have no ensemble and the import takes half a second.
         from scipy.stats import ks_2samp

@@ -110,10 +110,10 @@ class SlowPeaks:
 
     @classmethod
     def of(cls, members: Array, time: Array, cutoff: float) -> SlowPeaks:
-        """Return the peaks of an ensemble up to the first peak that a member lacks.
+        """Return the common peaks of an ensemble, up to the first peak that a member lacks.
 
-        Peaks of two members match if they are nearer than half a period of the cut-off, since two
-        peaks of one filtered motion are farther apart.
+        Peaks of two members count as the same peak if they are less than half a period of the
+        cut-off apart. Two peaks of one filtered motion are farther apart.
 
         Args:
             members: motions (num_members, num_times).

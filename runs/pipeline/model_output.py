@@ -141,7 +141,10 @@ class BeamOutput(NamedTuple):
 
     @classmethod
     def of(cls, lines: Sequence[Line], trajectory: Trajectory) -> BeamOutput:
-        """Return the output of a beam; at a jump of a section force, the value on the tip side."""
+        """Return the output of a beam.
+
+        Where a section force jumps, the output has the value on the side of the tip.
+        """
         steps = frame_indices(trajectory.time.size)
         moved = []
         for line in lines:

@@ -115,7 +115,7 @@ class MotionPlan:
 
     @classmethod
     def of(cls, system: GapSystem, case: Case, model: ModelTable) -> MotionPlan:
-        """Return motion and integrator of a model of a case.
+        """Return the motion of a model, its integrator, and the hoisted load if any.
 
         Raises:
             NumericsError: there is no equilibrium to start from, or the motion needs too many

@@ -47,7 +47,7 @@ class LoadedModel(NamedTuple):
 
     @classmethod
     def of(cls, boom: Boom, system: GapSystem, lines: Sequence[Line]) -> Self:
-        """Return the model under all constant loads; lines get the normal forces of cylinders."""
+        """Return the model under all constant loads, with normal forces by cylinders in lines."""
         extended = list(lines)
         for number, cylinder in enumerate(boom.cylinders, start=1):
             line, foot = extended[cylinder.segment], boom.segments[cylinder.segment].foot
@@ -91,7 +91,7 @@ def section_forces(
 
 
 def _slopes(line: Line, deflection: Array) -> Array:
-    """Return the slopes (..., num_places) of a deflection (..., num_places) along a line."""
+    """Return the derivative along x of a deflection (..., num_places), in its shape."""
     x, index = np.unique(line.x, return_index=True)
     slopes = np.gradient(deflection[..., index], x, axis=-1)
     return np.asarray(slopes[..., np.searchsorted(x, line.x)])

@@ -122,7 +122,7 @@ class Fibres:
 
     @classmethod
     def of(cls, segment: Segment, line: Line) -> Fibres | None:
-        """Return the fibres; None for an unknown section or a segment that does not bend."""
+        """Return the fibres; None if the section is unknown or the line has no bending moment."""
         if segment.section is None or "moment" not in line.rows:
             return None
         spatial = "lateral_moment" in line.rows

@@ -68,9 +68,9 @@ class BoomView:
         pixels: tuple[int, int] = PIXELS,
         displacement: float = DISPLACEMENT_DRAWN,
     ) -> BoomView:
-        """Return the common view of pictures at given instants.
+        """Return one view for the pictures at several instants.
 
-        Displacements are magnified up to a fraction ``displacement`` of the length of the boom.
+        The largest drawn displacement is at most ``displacement`` times the length of the boom.
         """
         times = [instant.time for instant in instants]
         heights = [displacement[:, 2] for displacement in scene.displacements(times)]

@@ -35,7 +35,7 @@ class CranePosition(NamedTuple):
 
     @classmethod
     def of(cls, case: Case, boom: Boom, motion: xr.Dataset) -> CranePosition | None:
-        """Return the positions in a motion; None without hoisting, slewing and luffing."""
+        """Return the positions in a motion; None if the crane does not hoist, slew or luff."""
         if case.hoist is None and case.slew is None and case.luff is None:
             return None
         time, frame = motion["time"].values, frame_motion(case, boom.segments)

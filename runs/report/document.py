@@ -46,15 +46,15 @@ def render(
     snapshots: Sequence[Figure],
     viewer: str = "",
 ) -> str:
-    """Return the report as HTML, with all pictures and scripts embedded.
+    """Return the report as one HTML text, which includes all pictures and scripts.
 
-    Without plotly the report has no interactive charts.
+    It has interactive charts only if plotly is installed.
 
     Args:
         results: results of the run.
-        addition: addition of the client.
-        figures: figures on the disk.
-        snapshots: snapshots on the disk.
+        addition: content that the calling program adds.
+        figures: figures with existing files.
+        snapshots: snapshots with existing files.
         viewer: file name of the interactive viewer; empty for none.
     """
     texts, proofs = tables_by_part(results), results.summary.design.proofs

@@ -297,7 +297,7 @@ class StressScale:
 
     @classmethod
     def of(cls, shell: ShellStress, times: Iterable[float]) -> StressScale:
-        """Return the scale for all triangles at these times in s."""
+        """Return the scale for the stresses of all triangles at ``times`` in s."""
         end, largest = LEAST, 0.0
         for stress in shell.instants([*times]):
             values = stress.largest()

@@ -189,7 +189,7 @@ def is_negligible(one: PlayDifference) -> bool:
 
 
 def times(peak: Peak) -> str:
-    """Return the ratio of a maximum to its static value as text; empty if this value is zero."""
+    """Return the dynamic factor of a maximum as text; empty if it has none."""
     return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 

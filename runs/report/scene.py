@@ -299,7 +299,7 @@ class Scene:
         return np.asarray(order[outermost], dtype=np.int32)
 
     def wall(self, overlap: Overlap) -> float:
-        """Return the displayed wall thickness in m of an overlap."""
+        """Return the thickness in m at which pictures show the walls of an overlap."""
         return 2.0 * WALL_DRAWN * self.half_height(overlap.outer)
 
     def fitting_scale(self, times: Sequence[float], part: float = DISPLACEMENT_DRAWN) -> float:

@@ -86,14 +86,14 @@ class Camera:
         return np.asarray(self.centre - distance * self.axes[2])
 
     def project(self, points: npt.ArrayLike) -> Array:
-        """Return the pixel coordinates (..., 2) of points (..., 3) in m, from the lower left."""
+        """Return the pixel coordinates (..., 2), from lower left, of points (..., 3) in m."""
         right, up, depth = np.moveaxis((np.asarray(points) - self.position) @ self.axes.T, -1, 0)
         magnification = 0.5 * self.pixels[1] / np.tan(np.radians(0.5 * VIEW_ANGLE)) / depth
         middle = 0.5 * np.array(self.pixels)
         return np.asarray(np.stack([right, up], axis=-1) * magnification[..., None] + middle)
 
     def render(self, plotter: Any) -> Pixels:
-        """Return the rendered pixels (height, width, 3) of a plotter."""
+        """Return the picture (height, width, 3) of a plotter's scene from this camera."""
         plotter.camera_position = [self.position, self.centre, self.axes[1]]
         plotter.camera.view_angle = VIEW_ANGLE
         plotter.reset_camera_clipping_range()

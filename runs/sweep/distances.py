@@ -63,7 +63,7 @@ class Features:
 
     @classmethod
     def of(cls, results: Results, model: str, stress: float | None, until: float) -> Features:
-        """Return the results of a model, with the tip up to the time ``until`` in s."""
+        """Return the results of a model; ``until`` in s is the end of the comparison of the tip."""
         data = results.trajectories.sel(model=model)
         time = np.asarray(data["time"].values, dtype=float)
         tip = np.asarray(data["tip"].values, dtype=float)

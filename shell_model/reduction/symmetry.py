@@ -66,7 +66,10 @@ class SymmetryCell:
 
     @cached_property
     def plates(self) -> Plates:
-        """The plates of the cell on this rank; their matrices have the energy of all images."""
+        """The plates of the cell on this rank.
+
+        Matrices of the cell are multiplied by the number of cells in the segment.
+        """
         copies = 2.0 ** len(self.mirrors)
         return assemble_plates(MPI.COMM_SELF, self.segment, self.mesh, copies)
 

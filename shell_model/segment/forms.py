@@ -145,7 +145,7 @@ class ShellForms:
 
     @cached_property
     def unit_load(self) -> Any:
-        """The linear form of the unit load (num_dofs,)."""
+        """The linear form of a load vector (num_dofs,) of 1 N/m³ on the thickness ``loaded``."""
         _, (v, _) = self._trial_and_test()
         load = self.loaded * ufl.dot(self.load_direction, v)
         return fem.form(load * ufl.dx(degree=2, domain=self._space.mesh))

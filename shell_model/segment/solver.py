@@ -20,7 +20,7 @@ def dense(matrix: PETSc.Mat, block: Array) -> PETSc.Mat:
 
 
 def times(matrix: PETSc.Mat, block: Array) -> Array:
-    """Return matrix times block (num_owned, num_columns). Collective."""
+    """Return the product (num_owned, num_columns) of a matrix and a block. Collective."""
     right = dense(matrix, block)
     left = matrix.matMult(right)
     product: Array = left.getDenseArray().copy(order="F")

@@ -231,9 +231,9 @@ def _segment_stresses(
 
 
 def _cylinder_stresses(boom: Boom, number: int, mesh: PlatedMesh) -> Iterator[tuple[str, Modes]]:
-    """Yield the name of each cylinder force on a segment, and its axial stress in Pa per N.
+    """Yield the names of the cylinder forces on a segment, with the stresses in Pa due to 1 N.
 
-    Stresses are (1, num_triangles, 6).
+    The stresses (1, num_triangles, 6) are 0 except for the axial membrane stress.
     """
     segment = boom.segments[number]
     for k, cylinder in enumerate(boom.cylinders, start=1):

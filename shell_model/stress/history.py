@@ -240,11 +240,12 @@ def _search(shell: ShellStress, triangles: Indices, first: int, stride: int) -> 
 def _peaks(
     shell: ShellStress, triangles: Indices, steps: slice = slice(None)
 ) -> tuple[Modes, Indices]:
-    """Return the largest stress (num_steps,) of a segment's triangles in Pa, and its triangle.
+    """Return the largest stress (num_steps,) in Pa at each step, and the triangle in which it is.
 
-    The von Mises stress is a norm. So it is at most the sum of the norms of three parts: axial
-    forces, principal motions, and the rest of the motion. Stresses are evaluated only for triangles
-    whose bound exceeds the largest known stress of an interval.
+    All triangles belong to one segment. To save time, an upper bound of the stress in an interval
+    of time is computed first. It is the sum of the von Mises stresses of three parts: axial forces,
+    the principal motions of the segment, and the rest of its motion. A triangle is left out if
+    other triangles exceed its bound at every step of each interval.
     """
     number = int(shell.segment[triangles[0]])
     modes = shell.modes[number].take(triangles - np.searchsorted(shell.segment, number), axis=1)

@@ -118,7 +118,7 @@ def _mean_deflections(
 def _slopes(
     shell: ShellStress, fields: xr.Dataset, triangles: Indices, band: Indices, num_bands: int
 ) -> Array:
-    """Return the mean slopes (2, num_bands, num_modes) along y and z, weighted by volume."""
+    """Return the slopes v′ and w′ (2, num_bands, num_modes), averaged over the volume of bands."""
     corners = fields["triangles"].values[triangles]
     points = fields["points"].values[corners]
     across = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
