@@ -143,11 +143,11 @@ def critical_factor(
 
     It is infinite without axial forces, and None for a mechanism. For a telescoping boom it is the
     minimum over several extensions, including the extreme ones. If axial forces change with time,
-    it also covers the time of the largest compression of the foot.
+    the minimum includes the time of the largest compression of the foot.
 
     Args:
-        walls: compliance of walls in m/N at stations, by joint, direction and index of the station;
-            0 where it is missing.
+        walls: compliances of walls in m/N by joint, direction and index of the station; a missing
+            one is 0.
     """
     walls = walls or {}
     levels = largest_change(boom.axial_changes) if boom.axial_changes else np.zeros(0)

@@ -71,8 +71,8 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
 def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:
     """Return the system with the damping ratio ``ratio`` added to its first modes.
 
-    These are the first eight modes of :func:`closed_contact_modes`, or as many as the segments have
-    elastic modes, if fewer. A system of rigid segments is not damped.
+    These are the first eight modes of :func:`closed_contact_modes`, but at most as many as the
+    segments have elastic modes. A system of rigid segments is not damped.
     """
     rigid = system.omega2 <= 0.0
     count = min(DAMPED_MODES, np.count_nonzero(~rigid))

@@ -227,7 +227,7 @@ class ChangingAxialForce:
         return replace(self, vectors=self.vectors @ shapes)
 
     def geometric_stiffness(self, s: float) -> Array:
-        """Return K_G (num_modes, num_modes) in 1/s² at a value of the drive's history."""
+        """Return K_G (num_modes, num_modes) in 1/s² at the value ``s`` of g_e."""
         return np.asarray(s * (self.vectors.T * self.factors) @ self.vectors)
 
 

@@ -175,7 +175,7 @@ def moving_force_places(
 
 @dataclass(frozen=True, slots=True)
 class AxialChange:
-    """Change over time of the stiffness of deflections by axial and centrifugal forces.
+    """Change of the stiffness over time, due to axial and centrifugal forces.
 
     The strain energy decreases by ½ g_e (∫ P w′² dx + Σ m w²). Here g_e is the value of the
     history, P the axial force, m a point mass and w its deflection.

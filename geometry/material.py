@@ -48,7 +48,7 @@ class Material:
         return self
 
     def strength(self, thickness: float) -> float | None:
-        """Return the yield strength in Pa of a plate of a thickness in m; None if unknown."""
+        """Return the yield strength in Pa of a plate with ``thickness`` in m; None if unknown."""
         for limit, strength in self.yield_by_thickness:
             if thickness <= limit:
                 return strength

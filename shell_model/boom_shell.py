@@ -123,7 +123,7 @@ class BoomShell:
         return self.columns(number, [*self.joint_operators, *self.ties])
 
     def columns(self, number: int, operators: Iterable[Operator]) -> Array:
-        """Return operators' rows on a segment as columns (num_owned, num_rows). Collective."""
+        """Return rows of operators on a segment as columns (num_owned, num_rows). Collective."""
         shell = self.shells[number]
         rows = [shell.row(operator[number]) for operator in operators if number in operator]
         return np.array(rows).reshape(-1, shell.free.size).T

@@ -111,7 +111,7 @@ class _SampledRows:
 
 
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
-    """Return all rows of a boom, sampled at extensions ``size`` in m apart."""
+    """Return all rows of a boom: moving ones at extensions about ``size`` apart, others once."""
     samples = []
     for group in telescoping_stations(boom):
         pieces = [

@@ -149,7 +149,7 @@ def _damped_flow(omega2: Array, c: Array, time: Array) -> tuple[Array, Array, Ar
 def free_flow(
     a: Array, v: Array, flow: Flow, length: int, force: Array, change: Array, end: Array
 ) -> None:
-    """Set ``end`` to a₁; arguments as in :func:`finish_flow`."""
+    """Set ``end`` to the coordinates a₁ after a step; see :func:`finish_flow`."""
     impulse, gain, ramp = flow.impulse[length], flow.gain[length], flow.ramp[length]
     for i in range(a.size):
         end[i] = a[i] + impulse[i] * v[i] + gain[i] * (force[i] - flow.omega2[i] * a[i])
@@ -170,7 +170,7 @@ def finish_flow(
         length: index of the length of this step.
         force: (num_modes,) mean load Q in N/√kg.
         change: (num_modes,) change ΔQ of the load in N/√kg; empty for constant loads.
-        end: (num_modes,) a₁.
+        end: (num_modes,) coordinates a₁ at the end of the step, by :func:`free_flow`.
         load: (num_modes,) part of Q whose work is returned, with the work of ΔQ.
     """
     h, omega2, damping = flow.time[length], flow.omega2, flow.damping

@@ -91,7 +91,7 @@ def advance(
     sums: Array,
     largest: Array,
 ) -> None:
-    """Advance state, sums and extremes by a time in s within the same phase."""
+    """Advance ``state`` by ``time`` in s without change of phase; update ``sums``, ``largest``."""
     sign, lag, speed = state[SIGN], state[LAG], state[SPEED]
     for number in range(_PLACES.size):
         place, weight = _PLACES[number] * time, _WEIGHTS[number] * time

@@ -257,7 +257,7 @@ def series_notes(case: Case) -> list[str]:
 
 
 def field_values(table: Any, part: type) -> dict[str, Any]:
-    """Return the values of a dataclass's fields by name, from a table of the case."""
+    """Return the values that a table has for the fields of a dataclass, by name."""
     return {field.name: getattr(table, field.name) for field in fields(part)}
 
 

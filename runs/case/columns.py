@@ -145,7 +145,7 @@ class _Row:
         return any(map(_is_number, self.cells))
 
     def check_columns(self, indices: Sequence[int], names: Sequence[str] | None) -> None:
-        """Check that the line has the chosen columns, and no others unless columns are named."""
+        """Check that the line has the chosen columns; without ``names`` it must have no others."""
         count = len(self.cells)
         if count <= max(indices) or (names is None and count != len(indices)):
             columns = "1 column" if count == 1 else f"{count} columns"

@@ -69,8 +69,9 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
 
 
 def _shared(booms: Sequence[Boom]) -> list[Boom]:
-    """Return a boom with the unit loads of all booms, then each boom with its loads in this order.
+    """Return one boom with a unit load for each load of any boom, then all booms in order.
 
+    The returned booms have the same list of loads; a load that a boom lacks has magnitude 0 there.
     The given booms differ only in loads and axial forces.
     """
     from shell_model.standard import standard_boom

@@ -61,7 +61,7 @@ class ModelDesignResults:
 
     @property
     def farthest_static(self) -> StaticResult | None:
-        """The static state with the largest tip deflection in any direction; None without one."""
+        """The static state with the largest total tip deflection; None if there is none."""
         return max(
             [*self.static, *self.static_extended],
             key=lambda rest: hypot(rest.tip, rest.tip_lateral or 0.0),

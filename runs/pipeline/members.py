@@ -50,9 +50,9 @@ _FIRST_POWER, _MAX_STEP_SHARE = -4, 0.25
 
 @contextmanager
 def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
-    """Yield an executor that uses all ranks but the first. Collective.
+    """Yield an executor to the first rank, which all other ranks work for. Collective.
 
-    It yields None if there is only one rank. Other ranks first do their work, then get None.
+    The first rank gets None if it is the only one. Other ranks get None after their work.
     """
     if comm is None or comm.size == 1:
         yield None

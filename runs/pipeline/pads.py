@@ -108,8 +108,8 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Ar
         joint: the joint of the pads.
         direction: direction of the forces.
         law: contact law of a station.
-        pushes: forces (num_pushes,) in N on the side with the larger force, negative for side −1.
-            The approach on this side determines the force on the opposite side.
+        pushes: forces (num_pushes,) in N of all pads on one side, negative for side −1. This is the
+            side with the larger force. Its approach determines the force on the other side.
     """
     laws, sides = [], []
     for pad in (pad for pad in joint.pads if SIDES[pad.side][0] == direction):

@@ -182,7 +182,7 @@ class FigureContext:
 
     @property
     def first_peak_window(self) -> float:
-        """The end in s of a close-up of the first tip peaks; the end of the run without peaks."""
+        """The end in s of a close-up of the first tip peaks; without peaks, the end of the run."""
         times = (self.summary[name].first_peak[self.tips[0]].time for name in self.models)
         peaks = [time for time in times if time is not None]
         end = float(self.time[-1])

@@ -96,7 +96,7 @@ def contact_peaks(run: FigureContext) -> list[Figure]:
 
 
 def friction(run: FigureContext) -> list[Figure]:
-    """Draw the friction force at each station, of the last model with friction."""
+    """Draw the friction force at each station with friction, for the last model with play."""
     if "friction_force" not in run.data or not run.with_play:
         return []
     name = run.with_play[-1]

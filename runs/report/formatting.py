@@ -48,7 +48,10 @@ def amount(value: float, unit: str) -> str:
 
 
 def without_round_off(values: Sequence[float], least: float | None = None) -> list[float]:
-    """Return values with 0 in place of those below ``least``, 1e-6 of the largest unless given."""
+    """Return values, with 0 for those up to ``least`` in magnitude.
+
+    Unless given, ``least`` is 1e-6 of the largest magnitude.
+    """
     least = ROUND_OFF * max(map(abs, values), default=0.0) if least is None else least
     return [value if abs(value) > least else 0.0 for value in values]
 

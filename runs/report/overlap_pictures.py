@@ -124,7 +124,7 @@ class OverlapView:
 
     @cached_property
     def scale(self) -> float:
-        """The magnification of displacements and play, as large as the limits for both permit."""
+        """The largest round magnification within the limits for drawn displacements and play."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
         half = 0.5 * np.ptp(self.stations) + MARGIN
         near = np.abs(self.scene.points[:, 0] - self.midpoint) <= half

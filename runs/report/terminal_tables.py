@@ -69,7 +69,7 @@ def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> i
 
 
 def print_failures(file: str, results: Results) -> int:
-    """Print a line for each failed model of a run, and return the exit status."""
+    """Print one line on the failed models of a run; return the status 3, or 0 without failures."""
     failures = results.summary.failures
     if not failures:
         return 0

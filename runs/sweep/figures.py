@@ -67,7 +67,7 @@ _SUPERSCRIPT = str.maketrans({"^": "", "2": "²", "3": "³", "4": "⁴", "n": "�
 
 
 def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
-    """Draw the charts.
+    """Draw the charts of a sweep: curves over the first key, or maps over two keys.
 
     Args:
         data: dataset of :func:`runs.sweep.output.gather`.

@@ -123,7 +123,7 @@ def table(data: xr.Dataset) -> Table:
 
 
 def write(data: xr.Dataset, folder: Path) -> None:
-    """Write the dataset as NetCDF and CSV, and a chart for one key, to the folder of a sweep."""
+    """Write the dataset as NetCDF and CSV to the folder of a sweep; for one key, also a chart."""
     with (
         folder_lock(folder),
         modified_folder(folder) as part,

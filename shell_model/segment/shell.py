@@ -40,7 +40,7 @@ RIGID_TURN = 1.0e5
 
 
 class Attachments(NamedTuple):
-    """Springs or masses with the rows of their displacements."""
+    """Attached springs or masses, each with the row of its displacement."""
 
     rows: Array  #: this rank's parts (num_owned, num_attached) of the rows
     factors: Array  #: stiffnesses (num_attached,) in N/m or N·m, or masses in kg
