@@ -133,6 +133,16 @@ class Boom:
         return any(joint.drive is not None for joint in self.joints)
 
     @property
+    def pads_on_walls(self) -> bool:
+        """True if a pad bears on a wall, which bends; pads on corners and points bend none."""
+        return any(
+            pad is not None and pad.bears == "wall"
+            for joint in self.joints
+            if self.segments[joint.inner].section is not None
+            for pad in (*joint.pads, joint.pad)
+        )
+
+    @property
     def compressed(self) -> bool:
         """True if a segment carries an axial force."""
         return any(segment.compression for segment in self.segments) or bool(self.axial_changes)

@@ -275,7 +275,7 @@ def _damping_ratios(preview: Preview) -> Table:
         rows.append((_beam_name(model), *(cell for _, cell in [*cells][:SHOWN_MODES])))
     headings = ("model", *(f"mode {number}" for number in range(1, SHOWN_MODES + 1)))
     walls = "In this table walls under pads are rigid, also for shells."
-    notes = [walls] if any(joint.padded for joint in boom.joints) else []
+    notes = [walls] if boom.pads_on_walls else []
     return Table.of_rows("", "Damping ratios, joints in contact", headings, rows, notes)
 
 
@@ -367,9 +367,9 @@ def _static_lines(
         float(closed_contact_modes(one.system, one.position)[0][0]) / (2.0 * np.pi)
         for one in static
     )
-    padded = any(joint.padded for joint in state.boom.joints)
-    walls = ", with the compliance of walls under pads" if padded else ""
-    without = "with bonded joints and rigid walls:" if padded else "without play"
+    on_walls = state.boom.pads_on_walls
+    walls = ", with the compliance of walls under pads" if on_walls else ""
+    without = "with bonded joints and rigid walls:" if on_walls else "without play"
     yield (
         f"Static tip deflection (t = 0) {_BEAMS}{walls}: {milli(state.tip)} mm; {without} "
         f"{milli(bonded.tip)} mm."
@@ -378,7 +378,7 @@ def _static_lines(
         f"First natural frequency, joints in contact, {_BEAMS}{walls}: {number(hertz, 4)} Hz; "
         f"{without} {number(bonded_hertz, 4)} Hz."
     )
-    causes = "Play and the walls under pads rotate" if padded else "Play rotates"
+    causes = "Play and the walls under pads rotate" if on_walls else "Play rotates"
     rest = beam.farthest
     for tilt in rest.tilts:
         yield (

@@ -304,7 +304,7 @@ def least_of_units(extremes: Iterable[StaticExtreme]) -> dict[str, float]:
 def beam_note(boom: Boom) -> str:
     """Return a sentence on the model of the statics."""
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
-    walls = ", with elastic walls under pads," if any(one.padded for one in boom.joints) else ""
+    walls = ", with elastic walls under pads," if boom.pads_on_walls else ""
     return f"A separate {theory} beam{walls} gives these estimates."
 
 

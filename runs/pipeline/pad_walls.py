@@ -60,11 +60,10 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
 def wall_part(beam: BeamStates) -> float | None:
     """Return the share of the largest static tip deflection that walls under pads cause.
 
-    The share is 1 if walls cause all of it; None without pads, or if a section is unknown.
+    The share is 1 if walls cause all of it; None without pads on walls, or if a section is unknown.
     """
     boom, rest = beam.boom, beam.farthest
-    padded = any(joint.padded for joint in boom.joints)
-    if not padded or any(segment.section is None for segment in boom.segments):
+    if not boom.pads_on_walls or any(segment.section is None for segment in boom.segments):
         return None
     rigid = static_state(boom, walls=0.0, time=rest.time).tip
     return 1.0 - rigid / rest.tip if rest.tip else 0.0
@@ -81,7 +80,7 @@ def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
     with_play = [model for model in models if not model.bonded]
     names = [repr(model.name) for model in with_play if not model.needs_shell]
     elastic = [repr(model.name) for model in with_play if model.needs_shell]
-    if not names or not any(joint.padded for joint in boom.joints):
+    if not names or not boom.pads_on_walls:
         return ""
     others = f", elastic in {join_words(elastic)}" if elastic else ""
     return f"Walls under pads are rigid in {join_words(names)}{others}."

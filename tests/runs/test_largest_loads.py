@@ -9,6 +9,7 @@ import pytest
 from beam_model.finite_element import finite_element_segments
 from beam_model.lines import lines
 from beam_model.segment_model import gap_system
+from beam_model.statics import static_state
 from dynamics.excitation import Step
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, Load, Material, Segment, Support
@@ -132,6 +133,22 @@ def test_a_joint_rotates_by_its_play_and_by_walls(tmp_path: Path) -> None:
     play, walls = 0.002 - 0.004 / 1.8 * (14.0 - 6.1), part * beam.farthest.tip
     assert walls < -0.002
     assert tilt.tip == pytest.approx(play + walls, abs=1e-4)
+
+
+def test_pads_on_corners_bend_no_wall(tmp_path: Path) -> None:
+    """Reference: analytic, the static tip with rigid walls."""
+    tips = {}
+    for bears in ("wall", "corner"):
+        case = read_case(tmp_path, boom_of(RAMP, PAD.replace("}", f', bears = "{bears}" }}')))
+        boom = boom_with_play(case, build_boom(case))
+        rest = BeamStates.of(case, boom).farthest
+        tips[bears] = rest.tip, static_state(boom, walls=0.0, time=rest.time).tip
+        shown = " ".join(printed_check(case).split())
+        # The walls that may buckle are a table of their own.
+        assert ("walls under pads" in shown or "rigid walls" in shown) == (bears == "wall")
+    tip, rigid = tips["corner"]
+    assert tip == pytest.approx(rigid, rel=1e-6)
+    assert tips["wall"][0] < 1.01 * tips["wall"][1]
 
 
 @pytest.mark.slow

@@ -193,8 +193,6 @@ def test_walls_on_corners_have_no_share(tmp_path: Path) -> None:
     shown = check_case(CheckedCase(case))
     (notes,) = (one.notes for one in shown.tables if one.title.startswith("Extreme axial forces"))
     assert notes == ["Cylinder forces are those at t = 0."]
-    without = "with bonded joints and rigid walls:"
-    assert sum(without in line for line in shown.lines) == 2
 
 
 def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) -> None:
