@@ -59,6 +59,7 @@ class Sizes(NamedTuple):
     steps: Sequence[float] = (1.0e-3, 5.0e-4, 2.5e-4, 1.25e-4, 6.25e-5)
     #: Steps in s of the boom with pads under ``LOAD`` times the load.
     hard_steps: Sequence[float] = (2.5e-4, 1.25e-4)
+    hard_duration: float = 1.0  #: duration of that motion in s
     #: Options of the reduction with more coordinates.
     shifts: tuple[float, ...] = (5.0, 50.0, 300.0, 1500.0, 8000.0, 40000.0)
     moments: int = 5
@@ -182,5 +183,6 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     runs = runs_of(case, sizes.steps, sizes, progress)
     yield from compare(runs, "direct-webs", "near webs", sizes)
     hard = f"pads of {PAD[0]:g} m x {PAD[1]:g} m, load x {LOAD:g}"
+    sizes = sizes._replace(duration=sizes.hard_duration)
     runs = runs_of(scale_loads(with_pads(case, *PAD), LOAD), sizes.hard_steps, sizes, progress)
     yield from compare(runs, "direct-pads", hard, sizes)

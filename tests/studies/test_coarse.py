@@ -44,6 +44,7 @@ DIRECT = direct.Sizes(
     duration=0.37,
     steps=(1.0e-3, 5.0e-4),
     hard_steps=(2.5e-4, 1.25e-4),
+    hard_duration=0.2,
     shifts=(5.0, 50.0, 300.0, 1500.0, 8000.0),
     moments=4,
 )
@@ -61,6 +62,7 @@ def test_tip_follows_the_unreduced_shell() -> None:
     assert 0.0 < fine[off_larger] < coarse[off_larger] < 0.2
     impulse = "contact impulse (N s)"
     assert fine[impulse] == pytest.approx(larger[impulse], rel=0.2)
+    assert all(row[impulse] > 500.0 for row in found.data["direct-pads"])
     assert len(found.verifications) == 6
     assert all(verification.holds for verification in found.verifications)
 
