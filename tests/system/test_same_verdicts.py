@@ -24,7 +24,7 @@ DECIDED = {"S1": "reproduced", "S2": "reproduced", "S3": "contradicted", "S5": "
 def chaotic() -> Case:
     """Return the paper's case for its whole length, with fast models."""
     names = ["kantorovich-4", "kantorovich-5", "kantorovich-5-linear", "beam-fe-bonded"]
-    case = case_file.select(shipped("paper"), str(PAPER), names, members=32)
+    case = case_file.select(shipped("paper"), str(PAPER), names, members=16)
     four, five, linear, without = case.models
     longer = linear.model_copy(update={"terms": (5, 5), "base": "complete"})
     return case.model_copy(update={"models": (four, five, longer, without)})
