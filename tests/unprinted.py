@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""A blank figure per run, since layout and printing take longer than the motion of beams."""
+"""A blank figure and a blank view per run, which take longer than the motion of beams."""
 
 from PIL import Image
 
 # For a process of its own, before it runs a command.
 ONE_BLANK_FIGURE = """
-from runs.report import figures, theme
+from runs.report import figures, output, theme
 from tests.unprinted import blank
 figures.FIGURES = figures.FIGURES[-1:]
 theme.Canvas.print_figure = blank
+output.viewer = lambda run: "<!doctype html>"
 """
 
 
