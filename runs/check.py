@@ -255,7 +255,13 @@ def _buckling(checked: CheckedCase) -> Table:
         Column("buckling factor", factors, ".4g"),
         Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
     ]
-    return Table("Buckling under the axial forces, joints in contact", columns)
+    padded = any(joint.padded for joint in checked.boom.joints)
+    walls = (
+        "The beam estimate of a shell includes the bending of walls under pads. A run ties the "
+        "webs of both segments at each station instead, and its factor may be higher."
+    )
+    notes = [walls] if padded and any(model.needs_shell for model in models) else []
+    return Table("Buckling under the axial forces, joints in contact", columns, notes)
 
 
 def _damping_ratios(preview: Preview) -> Table:

@@ -179,12 +179,17 @@ def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
     least = [min(several, key=lambda pair: pair[0].largest) for several in of_name.values()]
     most = [max(several, key=lambda pair: pair[0].largest) for several in of_name.values()]
     governs = [
-        max(pair, key=lambda one: abs(one[0].largest))[1] for pair in zip(least, most, strict=True)
+        max(pair, key=lambda one: abs(one[0].largest)) for pair in zip(least, most, strict=True)
     ]
+    # The positions of stations depend on the extension.
+    at_stations = "pad", "contact"
+    names = [one.what if one.kind in at_stations else one.name for one, _ in governs]
     columns = [
-        Column("result", [*of_name]),
+        Column("result", names),
         Column("minimum", [in_units(one.largest, one.unit, system) for one, _ in least]),
         Column("maximum", [in_units(one.largest, one.unit, system) for one, _ in most]),
-        Column("governing", governs),
+        Column("governing", [name for _, name in governs]),
     ]
-    return Table("Envelope of the combinations", columns, name="envelope")
+    notes = ["x of pads and contacts: in the governing combination."]
+    notes = notes if any(one.kind in at_stations for one, _ in governs) else []
+    return Table("Envelope of the combinations", columns, notes, "envelope")

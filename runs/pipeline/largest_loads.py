@@ -220,14 +220,15 @@ class BeamStates(NamedTuple):
             lateral = ", lateral" if station.direction == "y" else ""
             where = f"{system.text(station.x, 'm', 5)}{lateral}"
             # Stops come after the stations of joints.
-            part, inner = where, ""
+            part, inner, place = where, "", f" at {where}"
             if index < len(boom.directions) * len(stations):
                 number_of_inner, number = stations[index % len(stations)]
                 inner = boom.segments[number_of_inner].name
                 part = f"{inner}, station {number}{lateral}"
+                place = f", {inner}{place}"
             if station.pressure is None:
                 forces = [load.force for load in loads]
-                what = f"contact force at {where}"
+                what = f"contact force{place}"
                 yield _static_extreme("contact", part, what, "N", rests, forces)
                 continue
             pressures = [load.pressure or 0.0 for load in loads]
@@ -235,7 +236,7 @@ class BeamStates(NamedTuple):
                 Utilisation("pad", inner, load.x, load.pressure or 0.0, load.utilisation)
                 for load in loads
             ]
-            yield _static_extreme("pad", part, f"pad at {where}", "Pa", rests, pressures, used)
+            yield _static_extreme("pad", part, f"pad{place}", "Pa", rests, pressures, used)
 
 
 def _static_extreme(

@@ -173,8 +173,8 @@ def quality_notes(
     name, worst = max(models.items(), key=lambda item: item[1].energy_residual)
     yield QualityNote(
         "energy",
-        f"The energy balance holds within {number(worst.energy_residual, 1)} of the work in every "
-        f"model; {name} has the largest error.",
+        f"The energy balance holds within {number(worst.energy_residual, 1)} of the largest work "
+        f"in every model; {name} has the largest error.",
     )
 
 

@@ -51,8 +51,8 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     better = [one for one in better if one[0] < HELPFUL]
     if better:
         yield (
-            "Remedies, with the static tip deflection under these loads (a run with a shell gives "
-            "their local plate stresses):"
+            "Remedies, with the static tip deflection that they leave under these loads (for local "
+            "plate stresses, run a shell with the remedy):"
         )
         yield from (f"- {milli(there)} mm: {what}" for _, there, what in better)
 
@@ -110,8 +110,8 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     bearing = f"pads that bear on the corners, bears = 'corner'{without}"
     yield bearing, _with_pads(boom, lambda *_: corner)
     collars = (
-        "collars on both segments at each pad, as thick as the walls, half the height of the box "
-        "along x to each side of the pad (two of the collars of a joint block telescoping)"
+        "collars as thick as the walls around both segments at each pad, half a box height to each "
+        "side of it (the boom can then not telescope)"
     )
     if (changed := _with_collars(boom)) != boom:
         yield collars, changed

@@ -7,6 +7,7 @@ of each part of the boom is kept.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill
 from typing import NamedTuple
@@ -37,7 +38,10 @@ DEFINITION = (
     "value, right of ≤ (EN 13001-3-1)."
 )
 # Note if no shell proves the local plate stress.
-_NO_SHELL = "Local plate stress is not proved: use a shell (protractile prove --shell)."
+_NO_SHELL = (
+    "Local plate stress is not proved: a beam has none. `protractile prove CASE.toml --shell NAME` "
+    "proves it by a shell of the case."
+)
 
 
 class Kind(NamedTuple):
@@ -46,7 +50,7 @@ class Kind(NamedTuple):
     name: str  #: name in tables, notes and sentences
     formula: str  #: formula and source
     remedy: str  #: remedy if a proof fails
-    effect: str = ""  #: name of the design effect in sentences; empty where the unit suffices
+    effect: str = ""  #: name of the design effect in brackets; empty where the unit suffices
 
 
 # Kinds of proofs by their keys in results.
@@ -68,10 +72,10 @@ KINDS: Mapping[str, Kind] = {
         "√((σ/ρ)² + 3 (τ/χ)²) ≤ f_y(t)/γ; ρ, χ: reduction factors at the slenderness "
         "√(α_ult,k/α_cr), α_cr by panel formulas (EN 1993-1-5, 10)",
         "a thicker, narrower or stiffened wall there",
-        "stress divided by its reduction factor, ",
+        " (stress / reduction factor)",
     ),
     "buckling": Kind(
-        "plate buckling, shell",
+        "plate buckling (shell)",
         "σ_v ≤ ρ f_y/γ; ρ: lower reduction factor of compression and shear at the slenderness "
         "√(f_y/(σ_v α_cr)), α_cr: lowest factor of the shell (EN 1993-1-5, 10)",
         "a thicker, narrower or stiffened wall there, or a collar at the pads",
@@ -152,10 +156,10 @@ class Proof(NamedTuple):
         demand, resistance = (one.removesuffix(" 1") for one in both)
         relation = "≤" if self.holds else "exceeds"
         name, cause = KINDS[self.kind].name, "spectrum" if self.kind == "fatigue" else "combination"
-        place = "" if self.place in name else f", {self.place}"
+        place = "" if self.place in name.split() else f", {self.place}"
         place += "" if self.x is None else f" at x = {system.text(self.x, 'm')}"
         return (
-            f"{name}{place}: {KINDS[self.kind].effect}{demand} {relation} {resistance} "
+            f"{name}{place}: {demand}{KINDS[self.kind].effect} {relation} {resistance} "
             f"({100.0 * self.utilisation:.3g} %), {cause} {self.combination!r}"
         )
 
@@ -175,7 +179,7 @@ class Proofs(NamedTuple):
             " of the combinations" if governs.combination else ""
         )
         text = f"{failed} of {what} fail" if failed else f"All {what} are satisfied"
-        text += "; none covers local plate stress" if _NO_SHELL in self.notes else ""
+        text += "; local plate stress is not proved" if _NO_SHELL in self.notes else ""
         change = f". Remedy: {governs.remedy}" if failed else ""
         return f"{text}. Governing: {governs.text(system)}{change}."
 
@@ -239,7 +243,7 @@ def _wall_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Itera
 def _wall_text(name: str) -> str:
     """Return the name of a wall as text; walls of one side are numbered upwards."""
     side, _, number = name.partition("-")
-    return f"{side} wall" + (f", plate {number} from the bottom" if number else "")
+    return f"{side} side, wall {number} from below" if number else f"{side} wall"
 
 
 def reduced_stress(
@@ -344,7 +348,8 @@ def _station_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> It
         used = one.utilisation
         if used is not None and used.part == "pad" and used.value:
             resistance = used.load / used.value / table.resistance.pad
-            yield Proof("pad", one.part, one.part, used.x, used.load, resistance, "Pa")
+            place = re.sub(", station [0-9]+", "", one.part)
+            yield Proof("pad", one.part, place, used.x, used.load, resistance, "Pa")
     for number, cylinder in enumerate(beam.boom.cylinders, start=1):
         name = "cylinder" if len(beam.boom.cylinders) == 1 else f"cylinder {number}"
         force = max(abs([*rest.cylinders.values()][number - 1]) for rest in beam.rests)

@@ -169,7 +169,7 @@ class ModelSummary(SummaryTable):
             1.0,
             "–",
             charted=False,
-            heading="energy residual\nof the work",
+            heading="energy residual\n/ largest work",
             form=".1g",
         ),
     ]

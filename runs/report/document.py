@@ -34,7 +34,7 @@ _STAGES = {"rows": "contacts and friction"}
 # Text for each error of the reduction of a shell.
 _REDUCTION_ERRORS = {
     "contact_compliance": "relative error of the reduction in the local contact compliance {}",
-    "deflections": "in the deflections of tip and heads {}",
+    "deflections": "in the deflections of tip and segment heads {}",
     "frequency_limit_in_hz": "natural frequencies accurate up to {} Hz",
 }
 

@@ -293,11 +293,11 @@ def stress_history(run: FigureContext) -> list[Figure]:
             f"{number(stress.von_mises * TO_MEGA)} MPa"
         )
         caption = (
-            f"Largest von Mises stress of {name!r} at either face within {stress.band:g} m of "
-            "stations, supports, lugs and loads, in each interval of "
-            f"{run.time[-1] / time.size:.2g} s. The local plate stress converges with mesh "
-            "refinement. Beside a contact line, the stress of one element grows with refinement: "
-            "use it only to find place and time."
+            f"Von Mises stresses of {name!r} within {stress.band:g} m of stations, supports, lugs "
+            f"and loads: the largest in each interval of {run.time[-1] / time.size:.2g} s. Thick "
+            "lines: local plate stress, the mean over half the width of a wall, for design; it "
+            "converges with mesh refinement. Thin lines: stress of one element, at either face. "
+            "It grows with refinement beside a contact line: use it only to find place and time."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))
     return figures

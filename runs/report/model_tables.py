@@ -57,7 +57,11 @@ def model_table(results: Results) -> Table:
         Column("peak contact force", [_peak_force(model) for model in models], ".3g", "kN"),
         *metric_columns(ModelSummary, models),
     )
-    notes = ["Computing time: without compilation."]
+    notes = [
+        "Energy residual: error of the energy balance, divided by the largest work of the loads "
+        "during the run or, if larger, the initial energy.",
+        "Computing time: without compilation.",
+    ]
     if any(time is None for time, _ in peaks):
         notes.append(f"First tip peak –: none within {duration:g} s.")
     if shares:
@@ -127,9 +131,10 @@ def step_table(results: Results) -> Table:
         Column("contact changes", [model.contact_changes for model in models]),
     ]
     notes = [
-        "Step error: the largest difference from the deflections with twice the step in each "
-        "window of about a period of the slowest mode, summed over the windows. In chaotic "
-        "motion no step size converges. Contact changes: openings and closings."
+        "Step error: the run is cut into windows of about a period of the slowest mode. Each "
+        "window is computed with its step and with twice this step. The largest differences of "
+        "the deflections in all windows are added. In chaotic motion no step size converges.",
+        "Contact changes: openings and closings.",
     ]
     tried = [model.steps_for_peaks for model in models]
     within = next((steps for steps in tried if steps), None)
@@ -214,10 +219,17 @@ def buckling_table(results: Results) -> Table | None:
         Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
         Column("static tip deflection,\nt = 0", tips, ".4g", "mm"),
     )
-    notes = (
+    notes = [
         "Buckling factor: multiple of the axial forces at which the boom with closed joints "
         "buckles. The static tip deflection includes second-order effects.",
-    )
+    ]
+    padded = any(joint.padded for joint in results.boom.joints)
+    if padded and not results.boom.telescopes and "shell" in {one.kind for one in models.values()}:
+        notes.append(
+            "In shells the webs of both segments are tied at each station, and walls do not bend "
+            "under pads. `protractile check` estimates the factor of a shell with walls that bend "
+            "under pads, which may be lower."
+        )
     return Table("Axial forces", columns, notes, "axial")
 
 
@@ -240,15 +252,17 @@ def wall_table(results: Results) -> Table:
         ("moment", ".2f", "kN m"),
     )
     largest = [f"{name}: {_largest(results.boom, stress)}" for name, stress in shells.items()]
-    means = (
+    signs = (
         "Resultants of each wall in the first row of elements from x towards the tip; at the tip "
-        "end of a segment, in the last row. Positive: axial force in tension; shear force on the "
-        "part near the base, upwards in walls steeper than 45°, towards larger y in others; "
-        "moment about the y-axis through the centroid of the whole section, with tension at the "
-        "top."
+        "end of a segment, in the last row.",
+        "Axial force: positive in tension.",
+        "Shear force: force on the part nearer the base; positive upwards in walls steeper than "
+        "45°, positive towards larger y in others.",
+        "Moment: about the y-axis through the centroid of the whole section; positive with tension "
+        "at the top.",
     )
     title = "Section forces of walls at the instant of the largest stress"
-    return Table.of_rows("walls", title, columns, rows, (*largest, means))
+    return Table.of_rows("walls", title, columns, rows, (*largest, *signs))
 
 
 def _largest(boom: Boom, stress: StressSummary) -> str:

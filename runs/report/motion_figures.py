@@ -327,12 +327,13 @@ def residuals(run: FigureContext) -> list[Figure]:
         worst.append(float(so_far[-1]))
         run.line(axes, name, run.time, np.maximum(so_far, ROUND_OFF))
     axes.set_yscale("log")
-    axes.set(xlabel="time (s)", ylabel="residual / maximum work (–)", xlim=(0.0, run.time[-1]))
+    axes.set(xlabel="time (s)", ylabel="residual / largest work (–)", xlim=(0.0, run.time[-1]))
     caption = (
-        "Energy residual: (kinetic + strain + contact energy + losses − initial energy − work) / "
-        "largest work; running maximum of its magnitude."
+        "Energy residual: (kinetic + strain + contact energy + losses − initial energy − work), "
+        "divided by the largest work or, if larger, the initial energy. Plotted: its largest "
+        "magnitude so far."
     )
-    title = f"Energy residual: up to {scientific(highest(worst), 2)} of the work"
+    title = f"Energy residual: up to {scientific(highest(worst), 2)} of the largest work"
     return [run.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]
 
 

@@ -288,8 +288,9 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     if shells:
         most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
         yield (
-            f"Stresses of single elements are larger ({join_words(most)}; positions: note "
-            "below the section forces of walls). They grow with mesh refinement: no design values."
+            f"Stresses of single elements are larger ({join_words(most)}), but they grow with mesh "
+            "refinement and are no design values. A note below the table of section forces of "
+            "walls gives their places."
         )
 
 
@@ -352,8 +353,8 @@ def limit_table(results: Results) -> Table | None:
     ]
     first = results.main_models[0]
     notes = [
-        f"The tick judges {first} in this run, or the first model with a value if {first} has "
-        "none. `protractile prove` checks the combinations against these limits."
+        f"The tick refers to {first}; if {first} has no value, to the first model with one. "
+        "`protractile prove` checks the combinations against these limits."
     ]
     return Table("Limits of the case", columns, notes, "limits", ["✗"])
 

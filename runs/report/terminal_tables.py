@@ -41,7 +41,7 @@ SHOWN = {
     "first contact\ns": "first contact\ns",
     "first tip peak\ns": "first tip peak\ns",
     "first tip peak\nmm": "peak\nmm",
-    "energy residual\nof the work": "energy residual\nof the work",
+    "energy residual\n/ largest work": "energy residual\n/ largest work",
     "computing time\ns": "computing\ntime, s",
 }
 
@@ -170,8 +170,8 @@ def _model_notes(results: Results) -> Iterator[str]:
             yield (
                 f"{name}: {model.modes} generalised coordinates. Relative errors of the reduction: "
                 f"local contact compliance {number(errors['contact_compliance'], 1)}, deflections "
-                f"of tip and heads {number(errors['deflections'], 1)}. Mesh error of the local "
-                "contact compliance: "
+                f"of tip and segment heads {number(errors['deflections'], 1)}. Mesh error of "
+                "the local contact compliance: "
                 f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}."
             )
 

@@ -168,6 +168,11 @@ def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     assert [name for name, tip in marked.items() if "*" in tip] == [governing]
     cells = {row[0]: row[1:] for row in envelope.rows}
     assert cells["tip"][2] == governing
+    named = {state.name: {one.what for one in state.extremes} for state in found}
+    pads = [row for row in cells if row.startswith("pad, fly at ")]
+    assert len(pads) == 2
+    assert all(row in named[cells[row][2]] for row in pads)
+    assert envelope.notes == ["x of pads and contacts: in the governing combination."]
     text = printed_check(case, 80)
     assert "Largest results of each combination" in text
     assert max(map(len, text.splitlines())) <= 80

@@ -64,8 +64,8 @@ def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
     case = read_case(tmp_path, boom_of(RAMP))
     found = extremes_of(tmp_path, boom_of(RAMP))
     assert [*found] == [
-        "tip", "stress, arm at 0 m", "stress, fly at 7.9 m", "pad at 6 m",
-        "pad at 8 m",
+        "tip", "stress, arm at 0 m", "stress, fly at 7.9 m",
+        "pad, fly at 6 m", "pad, fly at 8 m",
     ]  # fmt: skip
     for segment, sizes, lever in zip(
         build_boom(case).segments, (ARM, FLY), (14.0, 6.1), strict=True
@@ -77,7 +77,7 @@ def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
         assert one.utilisation.value == pytest.approx(stress / 3e8, rel=1e-6)
         assert (one.initial, one.time) == (pytest.approx(0.0, abs=1.0), 0.1)
     for x, lever in ((6, 6.1), (8, 7.9)):
-        one = found[f"pad at {x} m"]
+        one = found[f"pad, fly at {x} m"]
         # Two pads of 0.2 m x 0.05 m share the force of a side.
         pressure = 0.5 * 2000.0 * lever / 1.8 / 0.01
         assert one.largest == pytest.approx(pressure, rel=1e-6)
@@ -249,7 +249,7 @@ def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
     ]
     table = static_table(case, boom, BeamStates.of(case, boom).extremes(case.system))
     rows = {row[0]: row for row in table.rows}
-    assert rows["pad at 6000 mm"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
+    assert rows["pad, fly at 6000 mm"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
     assert rows["tip"][2].endswith(" mm")
 
 

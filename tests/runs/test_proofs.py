@@ -198,10 +198,12 @@ def test_cylinder_and_pins_of_a_lift(tmp_path: Path) -> None:
     states = combination_states(read_case(tmp_path, PINNED + CASES + STRONG))
     pads = {one.name: one.largest for one in states[0].result.extremes}
     pad = found["pad", "fly, station 2"]
+    assert pad.place == "fly"
     assert pad.utilisation == pytest.approx(2.0 * pads["pad, fly, station 2"] / 5e6, rel=1e-12)
     assert proofs.notes == [
         "Static strength and plate buckling of base, fly are not proved: no yield strength.",
-        "Local plate stress is not proved: use a shell (protractile prove --shell).",
+        "Local plate stress is not proved: a beam has none. `protractile prove CASE.toml "
+        "--shell NAME` proves it by a shell of the case.",
         "Fatigue strength is not proved: the case has no `[[spectrum]]`.",
         "Static tip deflection is not proved: no combination lists `deflection`.",
     ]
@@ -265,6 +267,9 @@ def test_shipped_cases_are_proved() -> None:
     assert failed["lift"] == failed["inspection-arm"] == set()
     assert all({"deflection", "fatigue"} <= one for one in kinds.values())
     assert failed["crane-proof"] == {("plate", part) for part in ("base", "second", "third", "fly")}
+    first = found[0].text(case.system)
+    assert first.startswith("plate buckling, base, right side, wall 1 from below at x = 4.2 m: ")
+    assert " MPa (stress / reduction factor) exceeds " in first
 
 
 @pytest.mark.parametrize(

@@ -163,12 +163,11 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
         "at t = 0.1 s (estimate from plates)."
     )
     assert remedies == [
-        "Remedies, with the static tip deflection under these loads (a run with a shell gives "
-        "their local plate stresses):",
+        "Remedies, with the static tip deflection that they leave under these loads (for local "
+        "plate stresses, run a shell with the remedy):",
         "- -317.9 mm: pads that bear on the corners, bears = 'corner'",
-        "- -333 mm: collars on both segments at each pad, as thick as the walls, half the height "
-        "of the box along x to each side of the pad (two of the collars of a joint block "
-        "telescoping)",
+        "- -333 mm: collars as thick as the walls around both segments at each pad, half a box "
+        "height to each side of it (the boom can then not telescope)",
     ]
     (load,) = case.loads
     sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})
@@ -378,8 +377,8 @@ def test_chaos_note_names_chaotic_models_only() -> None:
     assert "after these times: wild 3.20 s." in chaotic.line
     assert regular.line == "The motion of calm can be predicted over the whole 10 s."
     assert energy.line == (
-        "The energy balance holds within 2 × 10⁻⁴ of the work in every model; calm has the largest "
-        "error."
+        "The energy balance holds within 2 × 10⁻⁴ of the largest work in every model; calm has the "
+        "largest error."
     )
     none = summary_of({"plain": model_summary()})
     assert [one.what for one in quality_notes(none, DesignResults({}), 10.0)] == ["energy"]

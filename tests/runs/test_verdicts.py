@@ -423,6 +423,6 @@ def test_every_run_shows_the_errors_of_its_reduction() -> None:
     results = Results(case, xr.Dataset(), summary_of({"shell": shell}))
     assert " ".join(printed(print_models, results).split()).endswith(
         "shell: 110 generalised coordinates. Relative errors of the reduction: local contact "
-        "compliance 2 × 10⁻⁹, deflections of tip and heads 8 × 10⁻⁷. Mesh error of the local "
-        "contact compliance: 0.83 %."
+        "compliance 2 × 10⁻⁹, deflections of tip and segment heads 8 × 10⁻⁷. Mesh error of the "
+        "local contact compliance: 0.83 %."
     )
