@@ -154,7 +154,8 @@ def quality_notes(
         most = _percent(max(errors))
         yield QualityNote(
             "step",
-            f"The time step causes an estimated error of the tip of at most {most} of its range.",
+            f"The estimated error by the time step is at most {most} of the range of the tip "
+            "deflection.",
         )
     for name, model in models.items():
         if (error := model.reduction_errors.get("contact_compliance")) is not None:
