@@ -13,7 +13,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 from matplotlib.lines import Line2D
-from matplotlib.patches import Polygon
+from matplotlib.patches import Polygon, Rectangle
 from matplotlib.path import Path as Sign
 from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D, Transform
@@ -129,7 +129,7 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     angle = 0.0 if case.gravity is None else case.gravity.angle
     low, high = _extent(boom, angle)
     sections = [
-        (theme.segment_color(number), segment.section)
+        (number, segment.section)
         for number, segment in enumerate(boom.segments)
         if segment.section is not None
     ][:MOST]
@@ -152,7 +152,7 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     detailed = Panel(panels["along"], boom, 0.0, _height_factor(boom), whole=False)
     _draw_along(detailed, symbols)
     if sections:
-        _draw_sections(panels["sections"], sections)
+        _draw_sections(panels["sections"], boom, sections)
     entries = detailed.meanings | dict.fromkeys(_remarks(case, boom), Line2D([], [], linestyle=""))
     columns = 2 if max(map(len, entries)) <= LEGEND_CHARACTERS else 1
     lines = -(-len(entries) // columns)
@@ -332,13 +332,16 @@ def _join_values(values: Iterable[float]) -> str:
     return ", ".join(f"{value:g}" for value in sorted(set(values)))
 
 
-def _draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
-    """Draw sections side by side at the same scale, with dimensions in mm."""
+def _draw_sections(axes: Axes, boom: Boom, sections: Sequence[tuple[int, Section]]) -> None:
+    """Draw sections of segments side by side at the same scale, with pads and dimensions in mm."""
     widest = max(section.size("y") for _, section in sections)
     lowest = min(section.reach("z")[0] for _, section in sections)
     highest = max(section.reach("z")[1] for _, section in sections)
     pitch = (1.0 + GAP) * widest
-    for number, (color, section) in enumerate(sections):
+    for number, (segment, section) in enumerate(sections):
+        color = theme.segment_color(segment)
+        for y, z, width, height in _pads(boom, segment, section):
+            axes.add_patch(Rectangle((y + number * pitch, z), width, height, color=theme.INK, lw=0))
         for plate in section.plates:
             corners = _plate_outline(plate) + np.array([number * pitch, 0.0])
             axes.add_patch(Polygon(corners, closed=True, facecolor=color, edgecolor=color, lw=0.3))
@@ -357,6 +360,27 @@ def _draw_sections(axes: Axes, sections: Sequence[tuple[str, Section]]) -> None:
     axes.set_aspect("equal")
     axes.set_axis_off()
     axes.set_title("sections to scale; mid-lines\nand walls in mm", fontsize=10.0)
+
+
+def _pads(boom: Boom, number: int, section: Section) -> Iterator[tuple[float, ...]]:
+    """Yield the lowest (y, z), the width and the height in m of the pads on a section of a segment.
+
+    A pad of unknown thickness fills the gap to the outer segment.
+    """
+    for joint in (one for one in boom.joints if one.inner == number and one.padded):
+        outer = boom.segments[joint.outer]
+        if outer.section is None:
+            continue
+        around = outer.section_at(joint.stations[0])
+        for face in (face for face in section.faces if face.direction in boom.directions):
+            gap = abs(around.face(face.direction, face.side).inside - face.outside)
+            for size, *_ in joint.pads_of(face.direction, face.side):
+                assert size is not None
+                thickness = size.thickness or gap
+                base = min(face.outside, face.outside + face.side * thickness)
+                for near in (face.low + size.offset, face.high - size.offset - size.width):
+                    flat = near, base, size.width, thickness
+                    yield flat if face.direction == "z" else (base, near, thickness, size.width)
 
 
 def _plate_outline(plate: Plate) -> Array:

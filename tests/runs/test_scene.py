@@ -9,7 +9,7 @@ import pytest
 import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
-from matplotlib.patches import Polygon
+from matplotlib.patches import Polygon, Rectangle
 
 from dynamics.contact import PowerContact
 from dynamics.excitation import SCurve
@@ -333,6 +333,33 @@ def test_sections_are_as_large_as_the_case_says(name: str) -> None:
     low, high = first.reach("z")
     thickest = max(plate.thickness for plate in first.plates)
     assert high - low < np.ptp(heights) < high - low + 1.01 * thickest
+
+
+def test_sections_show_their_pads() -> None:
+    """Reference: by hand, the sizes in the case files; pads of unknown thickness fill the gap."""
+    lift, arm = (build_boom(shipped(name)) for name in ("lift", "inspection-arm"))
+    first, second = arm.joints
+    assert first.pad is not None
+    unknown = replace(arm, joints=(replace(first, pad=replace(first.pad, thickness=None)), second))
+    # The left upper pads of the second segment: lowest (y, z), width and height in m.
+    for name, boom, count, pads in (
+        ("lift", lift, 8, [(-0.09, 0.1305, 0.05, 0.012)]),
+        (
+            "inspection-arm",
+            arm,
+            16,
+            [(-0.105, 0.149, 0.05, 0.025), (-0.1335, 0.095, 0.025, 0.05)],
+        ),
+        ("inspection-arm", unknown, 16, [(-0.105, 0.149, 0.05, 0.016)]),
+    ):
+        with rc_context(theme.RC):
+            sheet = boom_sheet(shipped(name), boom)
+        (panel,) = (axes for axes in sheet.axes if axes.get_title("left").startswith("sections"))
+        found = [one.get_bbox().bounds for one in panel.patches if isinstance(one, Rectangle)]
+        assert len(found) == count
+        pitch = 1.35 * boom.segments[0].section.size("y")
+        for pad in pads:
+            assert np.abs(np.subtract(found, pad) - [pitch, 0, 0, 0]).max(axis=1).min() < 1e-9
 
 
 def test_a_force_down_points_down() -> None:
