@@ -77,7 +77,11 @@ def _rows(
     sides: Sequence[Side],
     extensions: Mapping[int, float],
 ) -> GapBuilder[Array]:
-    """Return the rows of contacts, friction and dashpots at the extensions of joints in m."""
+    """Return the rows of contacts, friction and dashpots for the modes of a beam.
+
+    Args:
+        extensions: extension in m of each joint that telescopes.
+    """
     rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
         on_outer, on_inner = pad.travels(extensions.get(pad.number, 0.0))

@@ -278,8 +278,8 @@ def _close(
     """Build the transfinite patches of a diaphragm, and return gmsh's numbers of them.
 
     Spokes from the centre divide the diaphragm. If opposite half plates have equal numbers of
-    edges, as in a box, each corner has a quadrilateral patch. Otherwise each half plate has a
-    triangular patch.
+    element edges, as in a box, each corner has a quadrilateral patch. Otherwise each half plate has
+    a triangular patch.
     """
     low, high = section.bounds
     middle = gmsh.model.geo.addPoint(x, *(0.5 * (a + b) for a, b in zip(low, high, strict=True)))

@@ -207,9 +207,9 @@ def axial_forces(boom: Boom, static: Statics | None) -> Table:
         Column("axial force", without_round_off([-force for force, _ in extremes]), ".4g", "kN"),
         Column("axial stress", [stress and -stress for _, stress in extremes], ".4g", "MPa"),
     ]
-    note = "Cylinder forces are those at t = 0."
+    note = "Includes the cylinder forces at t = 0."
     if boom.telescopes:
-        note = "Extreme values over all extensions; cylinder forces at t = 0."
+        note = "Extreme values over all extensions, with the cylinder forces at t = 0."
     notes = [note] if boom.cylinders else []
     return Table("Extreme axial forces, tension positive", columns, notes)
 
@@ -257,8 +257,8 @@ def _buckling(checked: CheckedCase) -> Table:
     ]
     padded = any(joint.padded for joint in checked.boom.joints)
     walls = (
-        "The beam estimate of a shell includes the bending of walls under pads. A run ties the "
-        "webs of both segments at each station instead, and its factor may be higher."
+        "The factor of a shell is a beam estimate with walls that bend under pads. A run computes "
+        "it with webs tied at each station, so that walls do not bend; it may then be higher."
     )
     notes = [walls] if padded and any(model.needs_shell for model in models) else []
     return Table("Buckling under the axial forces, joints in contact", columns, notes)

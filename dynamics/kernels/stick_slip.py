@@ -27,12 +27,12 @@ class SlidingMass(NamedTuple):
 
 
 class LinearInterval(NamedTuple):
-    """Interval of linear data: ṡ_c in m/s, f_d at the start in N, its rate in N/s, and R in N."""
+    """Interval of time with linear data of the driven mass."""
 
-    rate: float
-    push: float
-    load_rate: float
-    friction: float
+    rate: float  #: speed ṡ_c of the driven end in m/s
+    push: float  #: external force f_d on the mass in N at the start
+    load_rate: float  #: rate of f_d in N/s
+    friction: float  #: friction force R in N
 
 
 # State: Δs in m, ṡ in m/s, sign of ṡ (0 in stick), and the largest lag of this slip in m.

@@ -34,7 +34,8 @@ def map_tables(table: Any, change: Callable[[str, Any], Mapping[str, Any]], key:
 
     Args:
         table: a table of a case, or a part of a boom.
-        change: function that returns changed values by field name, from the key and its table.
+        change: function that takes the key of a table and the table, and returns changed values by
+            field name.
         key: key of the table, empty for a case.
     """
 

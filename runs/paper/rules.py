@@ -368,9 +368,8 @@ def _s10(run: RunQuery) -> Finding:
 def _s11(run: RunQuery) -> Finding:
     """Compare the first tip peaks of a series and beam elements on three segments or more.
 
-    Measure: the relative difference of the series with most terms. Threshold: 20 %, which the paper
-    calls a divergence (S2): with more segments the series must be as near to beam elements as with
-    two.
+    Measure: the relative difference of the series with most terms. Threshold: 20 %, the same as for
+    two segments, where the paper calls this difference a divergence (S2).
     """
     count = len(run.case.segments)
     if count < SEGMENTS:

@@ -110,8 +110,8 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     bearing = f"pads that bear on the corners, bears = 'corner'{without}"
     yield bearing, _with_pads(boom, lambda *_: corner)
     collars = (
-        "collars as thick as the walls around both segments at each pad, half a box height to each "
-        "side of it (the boom can then not telescope)"
+        "collars around both segments at each pad, as thick as the walls and one box height long "
+        "(the boom can then not telescope)"
     )
     if (changed := _with_collars(boom)) != boom:
         yield collars, changed

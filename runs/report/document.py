@@ -33,8 +33,8 @@ PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
 _STAGES = {"rows": "contacts and friction"}
 # Text for each error of the reduction of a shell.
 _REDUCTION_ERRORS = {
-    "contact_compliance": "relative error of the reduction in the local contact compliance {}",
-    "deflections": "in the deflections of tip and segment heads {}",
+    "contact_compliance": "relative errors of the reduced shell: local contact compliance {}",
+    "deflections": "deflections of tip and segment heads {}",
     "frequency_limit_in_hz": "natural frequencies accurate up to {} Hz",
 }
 

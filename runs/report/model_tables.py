@@ -132,8 +132,9 @@ def step_table(results: Results) -> Table:
     ]
     notes = [
         "Step error: the run is cut into windows of about a period of the slowest mode. Each "
-        "window is computed with its step and with twice this step. The largest differences of "
-        "the deflections in all windows are added. In chaotic motion no step size converges.",
+        "window is computed with the step of the run and with twice this step. The error is the "
+        "sum over the windows of the largest difference of the deflections in each. In chaotic "
+        "motion no step size converges.",
         "Contact changes: openings and closings.",
     ]
     tried = [model.steps_for_peaks for model in models]
@@ -226,9 +227,9 @@ def buckling_table(results: Results) -> Table | None:
     padded = any(joint.padded for joint in results.boom.joints)
     if padded and not results.boom.telescopes and "shell" in {one.kind for one in models.values()}:
         notes.append(
-            "In shells the webs of both segments are tied at each station, and walls do not bend "
-            "under pads. `protractile check` estimates the factor of a shell with walls that bend "
-            "under pads, which may be lower."
+            "This factor of a shell assumes closed joints whose webs are tied at each station, so "
+            "that walls under pads do not bend. `protractile check` estimates the factor with "
+            "walls that bend, which may be lower."
         )
     return Table("Axial forces", columns, notes, "axial")
 

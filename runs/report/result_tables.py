@@ -130,8 +130,8 @@ def _reaction_table(results: Results) -> Table:
         Column("transverse force,\nwithout play", beside, ".4g", "kN"),
     )
     notes = (
-        "Computed with beam elements. On the boom, forces are positive towards its upper side "
-        "and the tip, moments where they turn the tip upwards.",
+        "Computed with beam elements. The forces act on the boom and are positive towards its "
+        "upper side or the tip. Moments are positive if they turn the tip upwards.",
     )
     return Table("Static state at t = 0: support reactions", columns, notes, "reactions")
 

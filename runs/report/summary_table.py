@@ -240,7 +240,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     yield f"{'; '.join(described)}."
     yield "Tip: deflection perpendicular to the axis of the unloaded boom."
-    yield "Maximum load: the largest result of the static states at the extremes of the loads."
+    yield "Maximum load: the static result is the largest over all extremes of the loads."
     if not all(joint.bonded for joint in results.boom.joints):
         yield (
             "Station: place x where two segments may touch. A pad at the end of the overlap has "

@@ -172,7 +172,9 @@ def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     pads = [row for row in cells if row.startswith("pad, fly at ")]
     assert len(pads) == 2
     assert all(row in named[cells[row][2]] for row in pads)
-    assert envelope.notes == ["x of pads and contacts: in the governing combination."]
+    assert envelope.notes == [
+        "Pads and contacts move with the extension: x is that of the governing combination."
+    ]
     text = printed_check(case, 80)
     assert "Largest results of each combination" in text
     assert max(map(len, text.splitlines())) <= 80

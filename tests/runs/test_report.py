@@ -304,8 +304,8 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     shell = {"reduction_errors": errors, "mesh_error": 0.26, "seconds": {"reduction": 1.204}}
     page = render(changed(results, name, **shell), Addition(), [], [])
     assert (
-        "reduction 1.20 s, relative error of the reduction in the local contact compliance "
-        "2.4 × 10⁻⁹, in the deflections of tip and segment heads 0.013, natural frequencies "
+        "reduction 1.20 s, relative errors of the reduced shell: local contact compliance "
+        "2.4 × 10⁻⁹, deflections of tip and segment heads 0.013, natural frequencies "
         "accurate up to 85 Hz, mesh error of the local contact compliance 26 %" in page
     )
 

@@ -166,8 +166,8 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
         "Remedies, with the static tip deflection that they leave under these loads (for local "
         "plate stresses, run a shell with the remedy):",
         "- -317.9 mm: pads that bear on the corners, bears = 'corner'",
-        "- -333 mm: collars as thick as the walls around both segments at each pad, half a box "
-        "height to each side of it (the boom can then not telescope)",
+        "- -333 mm: collars around both segments at each pad, as thick as the walls and one box "
+        "height long (the boom can then not telescope)",
     ]
     (load,) = case.loads
     sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})
@@ -191,7 +191,7 @@ def test_walls_on_corners_have_no_share(tmp_path: Path) -> None:
     assert pad_wall_sentences(case) == []
     shown = check_case(CheckedCase(case))
     (notes,) = (one.notes for one in shown.tables if one.title.startswith("Extreme axial forces"))
-    assert notes == ["Cylinder forces are those at t = 0."]
+    assert notes == ["Includes the cylinder forces at t = 0."]
 
 
 def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) -> None:
