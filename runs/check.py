@@ -255,12 +255,11 @@ def _buckling(checked: CheckedCase) -> Table:
         Column("buckling factor", factors, ".4g"),
         Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
     ]
-    padded = any(joint.padded for joint in checked.boom.joints)
     walls = (
         "The factor of a shell is a beam estimate with walls that bend under pads. A run computes "
         "it with webs tied at each station, so that walls do not bend; it may then be higher."
     )
-    notes = [walls] if padded and any(model.needs_shell for model in models) else []
+    notes = [walls] if checked.boom.pads_on_walls and any(m.needs_shell for m in models) else []
     return Table("Buckling under the axial forces, joints in contact", columns, notes)
 
 

@@ -224,8 +224,8 @@ def buckling_table(results: Results) -> Table | None:
         "Buckling factor: multiple of the axial forces at which the boom with closed joints "
         "buckles. The static tip deflection includes second-order effects.",
     ]
-    padded = any(joint.padded for joint in results.boom.joints)
-    if padded and not results.boom.telescopes and "shell" in {one.kind for one in models.values()}:
+    boom, kinds = results.boom, {one.kind for one in models.values()}
+    if boom.pads_on_walls and not boom.telescopes and "shell" in kinds:
         notes.append(
             "This factor of a shell assumes closed joints whose webs are tied at each station, so "
             "that walls under pads do not bend. `protractile check` estimates the factor with "
