@@ -442,7 +442,7 @@ class ReleasedLoad:
 
 @dataclass(frozen=True, slots=True)
 class InitialImpulse:
-    """Marker in place of a history, for an impulse at t = 0 of the load times 1 s."""
+    """Marker in place of a history: an impulse at t = 0 that equals the load times 1 s."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -195,7 +195,7 @@ class GapSystem:
 
     @property
     def row_masses(self) -> Array:
-        """The effective mass 1 / B_j B_jᵀ (num_rows,) in kg of an impact on each contact row."""
+        """The effective mass 1 / (B_j B_jᵀ) in kg of an impact on row B_j, shape (num_rows,)."""
         return np.asarray(1.0 / np.einsum("ij,ij->i", self.rows, self.rows))
 
     @property

@@ -128,7 +128,7 @@ class RowTable:
         return replace(self, coefficients=self.coefficients @ shapes)
 
     def __call__(self, s: float) -> Array:
-        """Return the rows (num_rows, num_modes) at s in m."""
+        """Return the rows (num_rows, num_modes) at the extension s in m."""
         piece, part, _ = self.locate(s)
         return _weighted_sum(part ** np.arange(4), self.coefficients[piece])
 

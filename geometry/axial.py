@@ -162,7 +162,7 @@ def moving_force(
 def moving_force_places(
     segments: Sequence[Segment], joints: Sequence[Joint], segment: int
 ) -> set[float]:
-    """Return the x in m on a segment of the first and last points of each moving axial force."""
+    """Return the places x in m on a segment where moving axial forces start and end."""
     return {
         moving.x + moving.direction * extension
         for number, joint in enumerate(joints)

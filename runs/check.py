@@ -256,8 +256,9 @@ def _buckling(checked: CheckedCase) -> Table:
         Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
     ]
     walls = (
-        "The factor of a shell is a beam estimate with walls that bend under pads. A run computes "
-        "it with webs tied at each station, so that walls do not bend; it may then be higher."
+        "The factor of a shell is estimated by a beam whose walls bend under pads. In a run the "
+        "webs of the shell are tied at each station, so that walls do not bend: the factor of the "
+        "run may be higher."
     )
     notes = [walls] if checked.boom.pads_on_walls and any(m.needs_shell for m in models) else []
     return Table("Buckling under the axial forces, joints in contact", columns, notes)

@@ -39,8 +39,8 @@ DEFINITION = (
 )
 # Note if no shell proves the local plate stress.
 _NO_SHELL = (
-    "Local plate stress is not proved: a beam has none. `protractile prove CASE.toml --shell NAME` "
-    "proves it by a shell of the case."
+    "Local plate stress is not proved: these proofs use a beam, which has none. `protractile prove "
+    "CASE.toml --shell NAME` proves it by a shell of the case."
 )
 
 
@@ -63,8 +63,8 @@ KINDS: Mapping[str, Kind] = {
     ),
     "patch": Kind(
         "local plate stress",
-        "σ_v ≤ f_y/γ; mean von Mises stress of the shell over half the width of a wall, within "
-        f"{BAND:g} m of a station, support, lug or load along x",
+        "σ_v ≤ f_y/γ; mean von Mises stress of the shell over half the width of a wall, at "
+        f"most {BAND:g} m along x from a station, support, lug or load",
         "a collar or thicker walls there, longer pads, or pads nearer the webs",
     ),
     "plate": Kind(

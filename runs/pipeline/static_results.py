@@ -279,7 +279,9 @@ def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
         for one in rest.stations
         if one.direction == "y" and one.closed > BULGED * plays[one.x]
     ]
-    text = f"caution: {where}, static pad forces bulge walls and reduce the lateral play: by "
+    text = (
+        f"caution: {where}, static pad forces make walls bulge, which reduces the lateral play: by "
+    )
     return [f"{text}{', '.join(bulges)}; beams with rigid walls do not show this"] if bulges else []
 
 

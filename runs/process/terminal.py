@@ -42,7 +42,7 @@ class Terminal(Console):
 
 
 def prepare() -> None:
-    """Make closed output streams discard text, and the others escape unprintable characters."""
+    """Let closed output streams discard text, and let others escape unprintable characters."""
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:

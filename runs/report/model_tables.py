@@ -71,14 +71,14 @@ def model_table(results: Results) -> Table:
         )
     if resolving := [model.resolving_step for model in models if _is_unresolved(model)]:
         notes.append(
-            "≥: the impact lasts less than six of the steps in use then, so that its peak is "
-            "larger; the force is the largest mean over a step. A constant step, time.step = "
-            f"{min(filter(None, resolving)):.1e}, would resolve it."
+            "≥: this impact lasts less than six of its time steps, so that its peak is larger; "
+            "the force is the largest mean over a step. A constant step, time.step = "
+            f"{min(filter(None, resolving)):.1e}, is short enough for this impact."
         )
     if any(model.peak_contact_force and model.contact_changes for model in models):
         notes.append(
-            "Peak contact force: maximum of a single impact, which lasts microseconds. Use the "
-            "means over output steps in the design results to size pads and walls."
+            "Peak contact force: maximum of a single impact, which lasts microseconds. Size pads "
+            "and walls by the contact forces of the design results, the means over output steps."
         )
     return Table("Models: results and numerics", columns, notes, "models")
 

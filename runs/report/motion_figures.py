@@ -186,8 +186,8 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
             return ""
         return (
             " After the first contacts, motion with play may be chaotic: then each curve is one "
-            "of many possible motions. An ensemble of motions with slightly different data (table "
-            "`ensemble`) shows whether the motion is chaotic."
+            "of many possible motions. An ensemble of motions with slightly different data shows "
+            "whether the motion is chaotic: add a table `ensemble` to the case."
         )
     low, high = BAND
     band = (

@@ -349,9 +349,9 @@ def pad_table(results: Results) -> Table:
         Column("utilisation", [pad.utilisation for pad in pads], ".0f", "%"),
     )
     note = (
-        "Largest force of one pad during the motion. The pads on one side of a station share the "
-        "force of the station in proportion to their stiffness, the pads of a pair evenly; the "
-        "pressure is uniform."
+        "Largest force of one pad during the motion. Pads on one side of a station share its force "
+        "in proportion to their stiffness; the two pads of a pair are equal. The pressure on a pad "
+        "is taken as uniform."
     )
     return Table("Slide pads", columns, (note,), "pads")
 

@@ -134,8 +134,8 @@ def test_bulging_walls_give_a_caution() -> None:
 
     static = StaticResult(0.0, 0.0, 0.0, [], [], bulging, {})
     assert bulge_cautions("in shell", static, boom) == [
-        f"caution: in shell, static pad forces bulge walls and reduce the lateral play: by "
-        f"{300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams with rigid walls do not "
+        "caution: in shell, static pad forces make walls bulge, which reduces the lateral play: "
+        f"by {300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams with rigid walls do not "
         "show this"
     ]
 

@@ -202,8 +202,8 @@ def test_cylinder_and_pins_of_a_lift(tmp_path: Path) -> None:
     assert pad.utilisation == pytest.approx(2.0 * pads["pad, fly, station 2"] / 5e6, rel=1e-12)
     assert proofs.notes == [
         "Static strength and plate buckling of base, fly are not proved: no yield strength.",
-        "Local plate stress is not proved: a beam has none. `protractile prove CASE.toml "
-        "--shell NAME` proves it by a shell of the case.",
+        "Local plate stress is not proved: these proofs use a beam, which has none. `protractile "
+        "prove CASE.toml --shell NAME` proves it by a shell of the case.",
         "Fatigue strength is not proved: the case has no `[[spectrum]]`.",
         "Static tip deflection is not proved: no combination lists `deflection`.",
     ]
