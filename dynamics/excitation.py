@@ -322,7 +322,7 @@ class Stroke:
 
     @property
     def fastest(self) -> float:
-        """The acceleration of the ramps over the speed, in rad/s."""
+        """The acceleration of the ramps divided by the speed, in rad/s."""
         return 1.0 / self.ramp if self.ramp else 0.0
 
     def __call__(self, time: Array) -> Array:

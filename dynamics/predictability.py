@@ -254,7 +254,7 @@ class Growth:
 
 @dataclass(frozen=True, slots=True)
 class Horizons:
-    """Horizons of one system under changes of several sizes."""
+    """Horizons of predictability of one system, one for each size of a change of its data."""
 
     relatives: Array  #: ε (num_relatives,), ascending
     shares: Array  #: fractions (num_shares,) of the range, ascending

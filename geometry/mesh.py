@@ -169,7 +169,7 @@ def strip_lines(segment: Segment) -> dict[int, list[float]]:
 def _half_plates(
     plates: Sequence[Plate], across: Mapping[int, Sequence[float]]
 ) -> list[list[Offset]]:
-    """Return the start (y, z) in m of each patch of each half plate; a plate has two halves."""
+    """Return the points (y, z) in m at which patches start, for each half of each plate."""
     halves = []
     for number, plate in enumerate(plates):
         cuts = sorted(across.get(number, ()))

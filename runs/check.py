@@ -257,8 +257,8 @@ def _buckling(checked: CheckedCase) -> Table:
     ]
     walls = (
         "The factor of a shell is estimated by a beam whose walls bend under pads. In a run the "
-        "webs of the shell are tied at each station, so that walls do not bend: the factor of the "
-        "run may be higher."
+        "webs of both segments are tied to each other at each station, so that walls do not bend: "
+        "the factor of the run may be higher."
     )
     notes = [walls] if checked.boom.pads_on_walls and any(m.needs_shell for m in models) else []
     return Table("Buckling under the axial forces, joints in contact", columns, notes)

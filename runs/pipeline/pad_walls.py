@@ -51,8 +51,8 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     better = [one for one in better if one[0] < HELPFUL]
     if better:
         yield (
-            "Remedies, with the static tip deflection that they leave under these loads (for local "
-            "plate stresses, run a shell with the remedy):"
+            "Remedies, each with the static tip deflection that it gives under these loads (for "
+            "local plate stresses, run a shell with the remedy):"
         )
         yield from (f"- {milli(there)} mm: {what}" for _, there, what in better)
 

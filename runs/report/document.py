@@ -35,7 +35,7 @@ _STAGES = {"rows": "contacts and friction"}
 _REDUCTION_ERRORS = {
     "contact_compliance": "relative errors of the reduced shell: local contact compliance {}",
     "deflections": "deflections of tip and segment heads {}",
-    "frequency_limit_in_hz": "natural frequencies accurate up to {} Hz",
+    "frequency_limit_in_hz": "its natural frequencies are accurate up to {} Hz",
 }
 
 

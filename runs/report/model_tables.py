@@ -132,8 +132,8 @@ def step_table(results: Results) -> Table:
     ]
     notes = [
         "Step error: the run is cut into windows of about a period of the slowest mode. Each "
-        "window is computed with the step of the run and with twice this step. The error is the "
-        "sum over the windows of the largest difference of the deflections in each. In chaotic "
+        "window is computed with the step of the run and with twice this step. The step "
+        "error adds the largest differences between both deflections in all windows. In chaotic "
         "motion no step size converges.",
         "Contact changes: openings and closings.",
     ]
@@ -227,7 +227,7 @@ def buckling_table(results: Results) -> Table | None:
     boom, kinds = results.boom, {one.kind for one in models.values()}
     if boom.pads_on_walls and not boom.telescopes and "shell" in kinds:
         notes.append(
-            "This factor of a shell assumes closed joints whose webs are tied at each station, so "
+            "For a shell, the webs of both segments are tied to each other at each station, so "
             "that walls under pads do not bend. `protractile check` estimates the factor with "
             "walls that bend, which may be lower."
         )

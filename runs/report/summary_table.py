@@ -240,7 +240,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
     )
     yield f"{'; '.join(described)}."
     yield "Tip: deflection perpendicular to the axis of the unloaded boom."
-    yield "Maximum load: a static state is computed at each extreme of a load; the largest result."
+    yield "Maximum load: the largest result of the static states at all extremes of the loads."
     if not all(joint.bonded for joint in results.boom.joints):
         yield (
             "Station: place x where two segments may touch. A pad at the end of the overlap has "
@@ -281,8 +281,8 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         yield f"Stresses: % of the yield strength, {strengths}."
     if "Local plate stress, maximum (utilisation), MPa" in rows:
         yield (
-            "Local plate stress: von Mises stress with plate bending, mean over half the width of "
-            f"a wall, at most {BAND:g} m along x from a station, support, lug or load."
+            "Local plate stress: von Mises stress with plate bending, averaged over half the width "
+            f"of a wall. Places: within {BAND:g} m along x of stations, supports, lugs and loads."
         )
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
     if shells:

@@ -305,8 +305,8 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
     page = render(changed(results, name, **shell), Addition(), [], [])
     assert (
         "reduction 1.20 s, relative errors of the reduced shell: local contact compliance "
-        "2.4 × 10⁻⁹, deflections of tip and segment heads 0.013, natural frequencies "
-        "accurate up to 85 Hz, mesh error of the local contact compliance 26 %" in page
+        "2.4 × 10⁻⁹, deflections of tip and segment heads 0.013, its natural frequencies "
+        "are accurate up to 85 Hz, mesh error of the local contact compliance 26 %" in page
     )
 
 

@@ -163,7 +163,7 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
         "at t = 0.1 s (estimate from plates)."
     )
     assert remedies == [
-        "Remedies, with the static tip deflection that they leave under these loads (for local "
+        "Remedies, each with the static tip deflection that it gives under these loads (for local "
         "plate stresses, run a shell with the remedy):",
         "- -317.9 mm: pads that bear on the corners, bears = 'corner'",
         "- -333 mm: collars around both segments at each pad, as thick as the walls and one box "
