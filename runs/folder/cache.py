@@ -40,7 +40,6 @@ if TYPE_CHECKING:
 
     from shell_model.reduced_shell import ReducedShell
 
-
 Entry = TypeVar("Entry")
 
 # Maximum total size of all entries in bytes.

@@ -190,6 +190,6 @@ def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
         Column("maximum", [in_units(one.largest, one.unit, system) for one, _ in most]),
         Column("governing", [name for _, name in governs]),
     ]
-    notes = ["Pads and contacts move with the extension; the table has x in the governing case."]
+    notes = ["Pads and contacts move with the extension; x is given for the governing combination."]
     notes = notes if any(one.kind in at_stations for one, _ in governs) else []
     return Table("Envelope of the combinations", columns, notes, "envelope")

@@ -7,7 +7,6 @@ of each part of the boom is kept.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill
 from typing import NamedTuple
@@ -348,7 +347,8 @@ def _station_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> It
         used = one.utilisation
         if used is not None and used.part == "pad" and used.value:
             resistance = used.load / used.value / table.resistance.pad
-            place = re.sub(", station [0-9]+", "", one.part)
+            lateral = ", lateral" if one.part.endswith(", lateral") else ""
+            place = f"{used.segment}{lateral}"
             yield Proof("pad", one.part, place, used.x, used.load, resistance, "Pa")
     for number, cylinder in enumerate(beam.boom.cylinders, start=1):
         name = "cylinder" if len(beam.boom.cylinders) == 1 else f"cylinder {number}"

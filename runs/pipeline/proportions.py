@@ -412,7 +412,7 @@ def _axial_forces(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _missing_loads(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield a caution if nothing moves the boom, or if its payload weighs and it does not."""
+    """Yield a caution if no load or motion acts, or if only the payload has weight."""
     amounts = [load.magnitude for load in boom.loads]
     amounts += [one.load or (one.lateral.load if one.lateral else 0.0) for one in boom.segments]
     if not any([*amounts, case.driven_segments, case.hoist, case.slew, case.luff]):

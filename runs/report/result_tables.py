@@ -350,8 +350,8 @@ def pad_table(results: Results) -> Table:
     )
     note = (
         "Largest force of one pad during the motion. Pads on one side of a station share its force "
-        "in proportion to their stiffness; the two pads of a pair are equal. The pressure on a pad "
-        "is taken as uniform."
+        "in proportion to their stiffness; the two pads of a pair carry equal forces. The pressure "
+        "on a pad is taken as uniform."
     )
     return Table("Slide pads", columns, (note,), "pads")
 

@@ -173,7 +173,7 @@ def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     assert len(pads) == 2
     assert all(row in named[cells[row][2]] for row in pads)
     assert envelope.notes == [
-        "Pads and contacts move with the extension; the table has x in the governing case."
+        "Pads and contacts move with the extension; x is given for the governing combination."
     ]
     text = printed_check(case, 80)
     assert "Largest results of each combination" in text
