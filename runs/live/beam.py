@@ -36,7 +36,6 @@ from runs.pipeline.models import MotionPlan, build_on, complete_system
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.pads import pad_loads
 from runs.pipeline.proportions import proportion_cautions
-from runs.pipeline.quantities import check_limits
 from runs.pipeline.results import Results, label
 from runs.pipeline.section_forces import LoadedModel
 from runs.pipeline.static_results import (
@@ -157,7 +156,7 @@ def beam_results(
         assert whole is not None
         limits = [
             (f"Limit: {check.limit}", f"{check.limit.format(value)} {'✓' if check.holds else '✗'}")
-            for check in check_limits(results)
+            for check in results.check_limits()
             for value in check.values.values()
         ]
         yield {

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import log, pi
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,9 +16,6 @@ from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.largest_loads import StaticExtreme, StaticKind
 from runs.pipeline.metrics import Metric, metrics, records
 from runs.pipeline.summary import ModelSummary
-
-if TYPE_CHECKING:
-    from runs.pipeline.results import Results
 
 # Quantities in SI units by name; None if a model has no value.
 Quantities = dict[str, float | None]
@@ -43,7 +39,7 @@ _STATIC: Mapping[str, StaticKind] = {
 }
 
 # Classes whose annotated fields are quantities, too.
-_RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
+RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
 
 # Static, dynamic and accuracy quantities.
 QUANTITIES = (
@@ -63,63 +59,8 @@ QUANTITIES = (
     Metric("settling_time", "s", "settling time", 1.0, "s"),
     Metric("drive_force", "N", "largest force of an elastic drive", TO_KILO, "kN"),
     Metric("drive_slip", "m", "longest slip on a drive", TO_MILLI, "mm"),
-    *(one for kind in _RECORD_CLASSES for one in metrics(kind).values() if one.name),
+    *(one for kind in RECORD_CLASSES for one in metrics(kind).values() if one.name),
 )
-
-
-def measure(results: Results, model: str) -> Quantities:
-    """Return the quantities of one model of a run.
-
-    The static tip is the deflection under the largest loads, at any extension; the tip is the
-    largest deflection of the motion. The amplitude of the tip is half the distance between its
-    highest and lowest position. The dynamic factor is the largest deflection over the largest
-    static one. The contact force is the largest mean over an output interval at any station, since
-    the peak of an impact is too short to load a pad. The stress is the axial stress in an outer
-    fibre; the wall stress of a shell is a mean over a patch. The pad pressure is the maximum over
-    pads and time. The damage is the fatigue damage at the governing place. The decay time belongs
-    to the first mode. :class:`runs.pipeline.residual_vibration.ResidualVibration` defines the
-    residual vibration, and :class:`dynamics.stick_slip.StickSlip` defines force and slip of
-    elastic drives.
-    """
-    time = np.asarray(results.trajectories["time"].values, dtype=float)
-    data = results.trajectories.sel(model=model)
-    tip = np.asarray(data["tip"].values, dtype=float)
-    summary = results.summary.models[model]
-    design = results.summary.design.models.get(model, ModelDesignResults())
-    declaring = [*(getattr(design, name) for name in records(ModelDesignResults)), summary]
-    moved = design.motion
-    peaks = () if moved is None else moved.peaks
-    deflection = next((peak for peak in peaks if peak.what == "deflection"), None)
-    contacts = (peak.largest for peak in peaks if peak.what == "contact force")
-    fibres = () if moved is None else (abs(fibre.stress) for fibre in moved.fibres)
-    walls = () if moved is None else (wall.patch for wall in moved.walls)
-    pads = (pad.pressure for pad in results.summary.pads if pad.model == model)
-    frequency = design.modes[0].frequency if design.modes else None
-    damages = (one.life_damage for one in design.life if one.life_damage is not None)
-    return {
-        "tip_at_rest": None if deflection is None else deflection.at_rest,
-        "tip": float(np.abs(tip).max()),
-        "tip_lateral": float(abs(data["tip_lateral"]).max()) if "tip_lateral" in data else None,
-        "tip_amplitude": float(0.5 * np.ptp(tip)),
-        "dynamic_factor": None if deflection is None else deflection.factor,
-        "contact_force": max(contacts, default=None),
-        "stress": max(fibres, default=None),
-        "wall_stress": max(walls, default=None),
-        "pad_pressure": max(pads, default=None),
-        "damage": max(damages, default=None),
-        "first_frequency": frequency,
-        "decay_time": decay_time(results.case.damping.modal, frequency),
-        # The mass of a segment includes point masses, collars and diaphragms.
-        "mass": sum(segment.mass for segment in results.boom.segments),
-        "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
-        "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
-        "settling_time": settling_time(time, tip),
-    } | {
-        metric.name: getattr(record, field, None)
-        for record, kind in zip(declaring, _RECORD_CLASSES, strict=True)
-        for field, metric in metrics(kind).items()
-        if metric.name
-    }
 
 
 def decay_time(ratio: float, frequency: float | None) -> float | None:
@@ -235,12 +176,3 @@ def static_limit_lines(
             )
         else:
             yield f"Limit {limit}: {static}, and the motion adds to it; a run decides."
-
-
-def check_limits(results: Results) -> Iterator[LimitCheck]:
-    """Yield the limits of the case with the values of the main models of the run."""
-    limits = case_limits(results.case.limits)
-    quantities = {name: measure(results, name) for name in results.main_models if limits}
-    for limit in limits:
-        numbers = {name: one[limit.quantity.name] for name, one in quantities.items()}
-        yield LimitCheck(limit, {name: one for name, one in numbers.items() if one is not None})

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from hashlib import sha256
@@ -32,10 +32,20 @@ from runs.folder.files import (
     scratch_folder,
     write_atomically,
 )
-from runs.pipeline.design_results import PlayEffect
+from runs.pipeline.design_results import ModelDesignResults, PlayEffect
+from runs.pipeline.metrics import metrics, records
 from runs.pipeline.model_quality import cautions, main_models, reference_of
 from runs.pipeline.motion_results import MotionResult
 from runs.pipeline.pads import pad_loads
+from runs.pipeline.quantities import (
+    QUANTITIES,
+    RECORD_CLASSES,
+    LimitCheck,
+    Quantities,
+    case_limits,
+    decay_time,
+    settling_time,
+)
 from runs.pipeline.static_results import place_names
 from runs.pipeline.summary import Summary
 
@@ -174,20 +184,79 @@ class Results:
         """A table with a row for each quantity of sweeps: its SI unit and a column per model."""
         import pandas as pd
 
-        from runs.pipeline.quantities import QUANTITIES, measure
-
         columns: dict[str, list[Any]] = {"unit": [one.unit for one in QUANTITIES]}
         for name in self.summary.models:
-            quantities = measure(self, name)
+            quantities = self.measure(name)
             columns[name] = [quantities.get(one.name) for one in QUANTITIES]
         frame = pd.DataFrame(columns, index=[one.name for one in QUANTITIES])
         return frame.dropna(how="all", subset=[*self.summary.models])
+
+    def measure(self, model: str) -> Quantities:
+        """Return the quantities of one model of a run.
+
+        The static tip is the deflection under the largest loads, at any extension; the tip is the
+        largest deflection of the motion. The amplitude of the tip is half the distance between its
+        highest and lowest position. The dynamic factor is the largest deflection over the largest
+        static one. The contact force is the largest mean over an output interval at any station,
+        since the peak of an impact is too short to load a pad. The stress is the axial stress in an
+        outer fibre; the wall stress of a shell is a mean over a patch. The pad pressure is the
+        maximum over pads and time. The damage is the fatigue damage at the governing place. The
+        decay time belongs to the first mode.
+        :class:`runs.pipeline.residual_vibration.ResidualVibration` defines the residual vibration,
+        and :class:`dynamics.stick_slip.StickSlip` defines force and slip of elastic drives.
+        """
+        time = np.asarray(self.trajectories["time"].values, dtype=float)
+        data = self.trajectories.sel(model=model)
+        tip = np.asarray(data["tip"].values, dtype=float)
+        summary = self.summary.models[model]
+        design = self.summary.design.models.get(model, ModelDesignResults())
+        declaring = [*(getattr(design, name) for name in records(ModelDesignResults)), summary]
+        moved = design.motion
+        peaks = () if moved is None else moved.peaks
+        deflection = next((peak for peak in peaks if peak.what == "deflection"), None)
+        contacts = (peak.largest for peak in peaks if peak.what == "contact force")
+        fibres = () if moved is None else (abs(fibre.stress) for fibre in moved.fibres)
+        walls = () if moved is None else (wall.patch for wall in moved.walls)
+        pads = (pad.pressure for pad in self.summary.pads if pad.model == model)
+        frequency = design.modes[0].frequency if design.modes else None
+        damages = (one.life_damage for one in design.life if one.life_damage is not None)
+        return {
+            "tip_at_rest": None if deflection is None else deflection.at_rest,
+            "tip": float(np.abs(tip).max()),
+            "tip_lateral": float(abs(data["tip_lateral"]).max()) if "tip_lateral" in data else None,
+            "tip_amplitude": float(0.5 * np.ptp(tip)),
+            "dynamic_factor": None if deflection is None else deflection.factor,
+            "contact_force": max(contacts, default=None),
+            "stress": max(fibres, default=None),
+            "wall_stress": max(walls, default=None),
+            "pad_pressure": max(pads, default=None),
+            "damage": max(damages, default=None),
+            "first_frequency": frequency,
+            "decay_time": decay_time(self.case.damping.modal, frequency),
+            # The mass of a segment includes point masses, collars and diaphragms.
+            "mass": sum(segment.mass for segment in self.boom.segments),
+            "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
+            "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
+            "settling_time": settling_time(time, tip),
+        } | {
+            metric.name: getattr(record, field, None)
+            for record, kind in zip(declaring, RECORD_CLASSES, strict=True)
+            for field, metric in metrics(kind).items()
+            if metric.name
+        }
+
+    def check_limits(self) -> Iterator[LimitCheck]:
+        """Yield the limits of the case with the values of the main models."""
+        limits = case_limits(self.case.limits)
+        quantities = {name: self.measure(name) for name in self.main_models if limits}
+        for limit in limits:
+            numbers = {name: one[limit.quantity.name] for name, one in quantities.items()}
+            yield LimitCheck(limit, {name: one for name, one in numbers.items() if one is not None})
 
     def __repr__(self) -> str:
         return f"Results of {self.case.title!r}: {', '.join(self.summary.models)}"
 
     def _repr_html_(self) -> str:
-        from runs.pipeline.quantities import QUANTITIES
         from runs.report.tables import Column, Table
 
         frame = self.quantities

@@ -17,7 +17,7 @@ from runs.pipeline.model_quality import static_deviation
 from runs.pipeline.motion_results import Peak
 from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.pads import PadLoad
-from runs.pipeline.quantities import check_limits, decay_time
+from runs.pipeline.quantities import decay_time
 from runs.pipeline.results import Results
 from runs.pipeline.strength import Utilisation, utilisations
 from runs.report.figure_context import farthest, tip_directions
@@ -340,7 +340,7 @@ def largest_peak(results: ModelDesignResults, what: str) -> Peak | None:
 
 def limit_table(results: Results) -> Table | None:
     """Return the table of the limits of a case, with the values of the main models."""
-    checks = list(check_limits(results))
+    checks = list(results.check_limits())
     if not checks:
         return None
     columns = [
@@ -361,7 +361,7 @@ def limit_table(results: Results) -> Table | None:
 
 def limit_faults(results: Results) -> Iterator[str]:
     """Yield a line with key, value and model for each limit that is exceeded."""
-    for check in check_limits(results):
+    for check in results.check_limits():
         if check.holds:
             continue
         what = "no model has such a result"

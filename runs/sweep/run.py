@@ -21,7 +21,7 @@ from runs.case.schema import Case
 from runs.case.user_files import check_not_working_folder
 from runs.folder.cache import Cache, key
 from runs.pipeline.model_run import RunContext
-from runs.pipeline.quantities import Quantities, measure
+from runs.pipeline.quantities import Quantities
 from runs.pipeline.run import run_case
 from runs.process.ending import when_interrupted
 from runs.process.terminal import Progress, message, say, shorten
@@ -136,7 +136,7 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
         finished.evaluate_with_play()
         # Design results may fail after a successful motion.
         failures.update(finished.results.summary.failures)
-        models[model.name] = measure(finished.results, model.name)
+        models[model.name] = finished.results.measure(model.name)
         if reference is not None:
             runs[model.name] = finished.results
     if reference not in runs:

@@ -16,7 +16,7 @@ from runs.case.messages import BadInput
 from runs.case.reading import CheckedCase, load
 from runs.case.schema import Case
 from runs.check import check_case
-from runs.pipeline.quantities import case_limits, check_limits, decay_time, measure
+from runs.pipeline.quantities import case_limits, decay_time
 from runs.report.summary_table import limit_faults, limit_table
 from runs.sweep import output
 from runs.sweep.points import plan
@@ -205,20 +205,20 @@ def test_limits_decide_by_the_numbers_of_a_run() -> None:
     tip = static_tip()
     case = reading.load(write(f"tip_at_rest = {1.001 * tip}\nfirst_frequency = 3.4\ntip = {tip}"))
     results = run_case(case)
-    checks = {check.limit.quantity.name: check for check in check_limits(results)}
+    checks = {check.limit.quantity.name: check for check in results.check_limits()}
     # A load that is suddenly there deflects twice as far.
     held = {name: check.holds for name, check in checks.items()}
     assert held == {"tip_at_rest": True, "tip": False, "first_frequency": True}
     assert checks["tip_at_rest"].values["beam"] == pytest.approx(tip, rel=1e-6)
     frequency = 1.875104**2 * np.sqrt(2.0e5 / 20.0) / (2.0 * np.pi * 16.0)
     assert checks["first_frequency"].values["beam"] == pytest.approx(frequency, rel=1e-4)
-    assert measure(results, "beam")["decay_time"] == pytest.approx(
+    assert results.measure("beam")["decay_time"] == pytest.approx(
         np.log(10.0) / (0.02 * 2.0 * np.pi * frequency), rel=1e-4
     )
     table = limit_table(results)
     assert [row[1] for row in table.rows] == ["✓", "✗", "✓"]
     (fault,) = limit_faults(results)
-    far = 1e3 * measure(results, "beam")["tip"]
+    far = 1e3 * results.measure("beam")["tip"]
     assert fault == f"limits.tip: {far:.4g} mm in beam; the case demands tip deflection ≤ 16 mm"
 
 
@@ -260,11 +260,11 @@ def test_a_boom_in_space_has_a_limit_of_its_lateral_tip() -> None:
         SQUARE + table("[[load]]", segment="fly", x="head", magnitude=900.0, direction=way)
         for way in "zy"
     )
-    far = measure(run_case(reading.load(write("tip = 1.0", up))), "elements")["tip"]
+    far = run_case(reading.load(write("tip = 1.0", up))).measure("elements")["tip"]
     for part, holds in ((0.999, False), (1.001, True)):
         case = reading.load(write(f"tip_lateral = {part * far}", aside))
         results = run_case(case)
-        (check,) = check_limits(results)
+        (check,) = results.check_limits()
         assert check.values["elements"] == pytest.approx(far, rel=1e-6)
         assert (check.holds, not [*limit_faults(results)]) == (holds, holds)
         (sentence,) = limit_sentences(case)

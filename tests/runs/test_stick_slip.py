@@ -24,7 +24,6 @@ from runs.case.elastic_drive import elastic_drives
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.drives import lag_cautions
-from runs.pipeline.quantities import measure
 from runs.pipeline.residual_vibration import ResidualVibration, farthest_from_rest
 from runs.pipeline.summary import Summary
 from runs.report import theme
@@ -177,7 +176,7 @@ def test_run_reports_stick_slip(tmp_path: Path) -> None:
         own.acceleration,
     ]  # fmt: skip
     assert table.title in [one.title for one in result_tables(results)]
-    measured = measure(results, "kantorovich-5")
+    measured = results.measure("kantorovich-5")
     assert (measured["drive_force"], measured["drive_slip"]) == (own.peak, own.slip)
     with rc_context(theme.RC):
         _, figure = drives(FigureContext(results, tmp_path))

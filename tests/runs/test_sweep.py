@@ -17,7 +17,7 @@ from protractile.cases import run_case
 from runs.case import reading as case_file
 from runs.case.build import build_boom
 from runs.case.schema import Case
-from runs.pipeline.quantities import QUANTITIES, measure, settling_time
+from runs.pipeline.quantities import QUANTITIES, settling_time
 from runs.process.terminal import shorten
 from runs.report import theme
 from runs.report.formatting import number
@@ -179,7 +179,7 @@ def test_numbers_are_those_of_single_runs(planned: Planned) -> None:
             tip = single.trajectories["tip"].sel(model=name).values
             assert float(there["tip_amplitude"]) == 0.5 * (tip.max() - tip.min()) > 0.0
             sagging = single.trajectories.assign(tip=lambda data: data["tip"] - 1.0)
-            lower = measure(replace(single, trajectories=sagging), name)
+            lower = replace(single, trajectories=sagging).measure(name)
             assert lower["tip_amplitude"] == pytest.approx(float(there["tip_amplitude"]), rel=1e-12)
             own = single.summary.design.models[name]
             assert float(there["mass"]) == pytest.approx(831.6 + 550.7)
