@@ -10,7 +10,6 @@ from dynamics.excitation import PiecewiseLinear
 from geometry.axial import MovingForce, Thrust, axial_force, moving_force, with_compression
 from geometry.boom import (
     Boom,
-    BoomError,
     Collar,
     Diaphragm,
     Joint,
@@ -108,15 +107,6 @@ def test_without_forces_nothing_is_pressed() -> None:
     assert not Boom(alone, (JOINT,)).compressed
     assert Boom(with_compression(alone, [JOINT], [], 1.0), (JOINT,)).compressed
     assert at(alone[0], 1.0, 7.0) == [0.0, 0.0]
-
-
-def test_a_lock_is_on_the_outer_segment_and_not_beyond_the_inner_one() -> None:
-    with pytest.raises(BoomError) as caught:
-        Boom(segments(), (replace(JOINT, locked_at=9.0),))
-    assert str(caught.value) == (
-        "joints[0].locked_at: 9 m is no place at which 'fly' is locked in 'arm'; it must be "
-        "between 0 and 8 m"
-    )
 
 
 @pytest.mark.parametrize(

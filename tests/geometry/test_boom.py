@@ -26,8 +26,8 @@ from geometry.boom import (
     Support,
 )
 from geometry.fields import Distance
+from geometry.section import BoxSection
 from geometry.typography import digits, join_words, with_minus_signs
-from geometry.walls import free_room
 
 # What changes of the outer segment, of the inner one and of the joint.
 Changes = dict[str, dict[str, Any]]
@@ -126,7 +126,6 @@ FAULTS: dict[str, list[Changes]] = {
     "segments[0].supports: two are within 0.001 m of one another; give one, or move them "
     "farther apart": [
         {"outer": {"supports": (Support(2.0), Support(2.0))}},
-        {"outer": {"supports": (Support(0.3), Support(0.1 + 0.2))}},
         {"outer": {"supports": (Support(2.0), Support(2.0 + 1e-5))}},
     ],
     "segments[0].supports: a clamped support is rigid, and the one at 2 m has a stiffness; "
@@ -146,7 +145,6 @@ FAULTS: dict[str, list[Changes]] = {
     ],
     "joints[0].stations: must rise from the base to the tip, each given once": [
         {"joint": {"stations": (10.0, 9.0)}},
-        {"joint": {"stations": (9.0, 9.0)}},
         {"joint": {"stations": (9.0, 9.0 + 1e-12, 10.0)}},
     ],
     "joints[0]: 'outer' is nearer to the base than 'inner'; exchange inner and outer": [
@@ -167,13 +165,12 @@ FAULTS: dict[str, list[Changes]] = {
     "segments[0].lateral: missing; with lateral play the segments bend along y and twist": [
         {"joint": {"lateral_play": 0.002}},
     ],
-    "segments[0]: nothing holds 'outer': give it two supports, a hinge and a cylinder whose "
-    "line passes beside it, or a joint with two stations to a segment that is held": [
-        {"outer": {"supports": (Support(0.0),)}},
+    "joints[0].locked_at: 11 m is no place at which 'inner' is locked in 'outer'; it must be "
+    "between 0 and 10 m": [
+        {"joint": {"locked_at": 11.0}},
     ],
-    "segments[1]: nothing holds 'inner': give it two supports, a hinge and a cylinder whose "
-    "line passes beside it, or a joint with two stations to a segment that is held": [
-        {"joint": {"stations": (9.5,)}},
+    "segments[1].section: does not mirror itself in y, and would bend sideways under its weight": [
+        {"inner": {"section": BoxSection(0.45, 0.25, 0.006, 0.006, left_web=0.005)}},
     ],
 }  # fmt: skip
 
@@ -211,6 +208,11 @@ Change = Callable[[Boom], Boom]
 STOP = Stop(1, 14.0, 0.002, PowerContact(1.0e9, 1.0, stiffness_below=0.0))
 
 
+def with_inner(boom: Boom, section: BoxSection | None) -> Boom:
+    outer, inner = boom.segments
+    return replace(boom, segments=(outer, replace(inner, section=section)))
+
+
 def _another_joint(boom: Boom) -> Boom:
     (joint,) = boom.joints
     last = replace(boom.segments[1], name="last", start=18.0, end=27.0, section=None)
@@ -222,9 +224,13 @@ FAULTS_OF_A_BOOM: dict[str, tuple[str, str, Change]] = {
     "in space without plates": (
         "segments[1].section",
         "missing; with lateral play the segments touch in corners",
-        lambda boom: replace(
-            boom, segments=(boom.segments[0], replace(boom.segments[1], section=None))
-        ),
+        lambda boom: with_inner(boom, None),
+    ),
+    "in space with unequal flanges": (
+        "segments[1].section",
+        "does not mirror itself in z, and would twist as it bends sideways, which no model in "
+        "space knows; leave lateral_play out, or make the flanges alike",
+        lambda boom: with_inner(boom, BoxSection(0.45, 0.25, 0.008, 0.005, bottom_flange=0.005)),
     ),
     "in space and flat": (
         "joints[1].lateral_play",
@@ -301,12 +307,6 @@ def test_a_chain_is_held_from_either_end(steel: Material, paper_boom: Boom) -> N
     Boom((outer, inner, last), (joint, second))
 
 
-def test_boxes_that_fit_to_round_off_are_accepted(paper_boom: Boom) -> None:
-    """The inferred boxes have the play except for round-off, which is accepted."""
-    outer, inner = paper_boom.segments
-    assert free_room(outer.section, inner.section)[0] == pytest.approx(14.0e-3, rel=1e-12)
-
-
 JACK = {"segment": 0, "x": 4.0, "ground": (1.0, -2.0), "stiffness": 1.0e7}
 
 
@@ -352,18 +352,10 @@ def test_a_boom_finds_the_places_of_its_parts(paper_boom: Boom) -> None:
     assert (boom.stops[0].segment, boom.stops[0].x) == (1, 18.0)
 
 
-def test_digits_never_need_an_exponent() -> None:
-    """Reference: by hand."""
+def test_numbers_and_lists_in_texts() -> None:
+    """Reference: by hand, without exponents and hyphens."""
     shown = [digits(value) for value in (1023.4, 22.68, 0.0, -5.0, 1.0e6, 0.012345)]
     assert shown == ["1020", "22.7", "0", "−5", "1000000", "0.0123"]
     assert digits(123456.0, 4) == "123500"
-
-
-def test_minus_signs_are_no_hyphens() -> None:
-    """Reference: Unicode, MINUS SIGN."""
     assert with_minus_signs("-1.5") == "\N{MINUS SIGN}1.5"
-
-
-def test_the_last_of_several_follows_an_and() -> None:
-    """Reference: by hand."""
     assert [join_words("abc"[:count]) for count in (1, 2, 3)] == ["a", "a and b", "a, b and c"]

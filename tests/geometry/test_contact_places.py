@@ -36,11 +36,6 @@ def test_a_pad_keeps_its_distance_from_the_corner(paper_boom: Boom) -> None:
     assert tail.patch == Patch(9.0, 9.1, 0.03, 0.06)
 
 
-def test_a_bonded_joint_has_none(paper_boom: Boom) -> None:
-    (joint,) = paper_boom.joints
-    assert not pads(replace(paper_boom, joints=(replace(joint, bonded=True),)))
-
-
 def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
     """Reference: analytic, by hand: 4 flange pads at each station, then 4 web pads at each."""
     outer, inner = (segment.section for segment in spatial_boom.segments)
