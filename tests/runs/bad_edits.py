@@ -13,9 +13,6 @@ FORMS = [
         "duration = 0.6\nangle = 45.0": "time.angle: unknown key; use gravity.angle",
         "step_output = 0.6": "time.step_output: unknown key; the nearest known one is output_step",
         "duration = true": "time.duration: must be a number, got true",
-        'duration = "0.6"': "time.duration: must be a number, got '0.6'",
-        '"\\u001b[31m" = 1':
-            "time.\\x1b[31m: unknown key; known ones are duration, output_step, step, tolerance",
     }),
     *replacing("terms = [2, 3]", {
         "terms = [2, 2.5]": "model[2].terms[2]: must be a whole number, got 2.5",
@@ -31,15 +28,8 @@ FORMS = [
         "section = { shape = 'star', height = 0.49 }":
             "segment[1].section.shape: must be 'box', 'unequal box', 'polygon', 'hexagon', "
             "'octagon' or 'U', got 'star'",
-        "section = { shape = 'octagon', height = 0.5, width = 0.3, chamfer = 0.1, top = 0.01, "
-        "bottom = 0.01, web = 0.01, radius = 0.1 }":
-            "segment[1].section.radius: unknown key; known ones are shape, height, width, top, "
-            "bottom, web, chamfer",
         "head_section = { height = 0.4, width = 0.3, flange = 0.0065, web = 0.0065 }":
             "segment[1].section: missing; a segment with a head_section tapers from it",
-        "section = { shape = 'U', height = 0.5, width = 0.3, radius = 0.1, facets = 21, top = "
-        "0.01, bottom = 0.01, web = 0.01 }":
-            "segment[1].section.facets: must be a number not greater than 20, got 21",
         "section = { shape = 'unequal box', height = 0.5, width = 0.3, top = 0.01, web = 0.01 }":
             "segment[1].section.bottom: missing; it is the thickness of the lower flange in m",
     }),
@@ -74,9 +64,6 @@ FORMS = [
     ('kind = "shell"', 'kind = "plate"',
      "model[6].kind: must be 'kantorovich', 'finite-element', 'shell' or 'rigid', got 'plate'"),
     *replacing("[time]", {
-        'demand = ["S1", "S12"]\n[time]':
-            "demand[2]: must be 'S1', 'S2', 'S3', 'S4', 'S5', 'S6', 'S7', 'S8', 'S9', 'S10' or "
-            "'S11', got 'S12'",
         "[time":
             "line 8: not TOML: Expected ']' at the end of a table declaration (column 6); see "
             "https://toml.io",
@@ -97,9 +84,6 @@ FORMS = [
      "time.kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk ... "
      "kkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkkk: unknown key; known ones are "
      "duration, output_step, step, tolerance"),
-    ("supports = [0.0, 2.0]",
-     f"supports = {[0.0] * 20_000}",
-     "segment[1].supports: too many; give 100 at most"),
     ("[[joint]]",
      '[[stop]]\nsegment = "inner"\nx = 10.0\nplay = 1.0\nstiffness = 1e7\n' * 2000 + "[[joint]]",
      "stop: too many; give 50 at most"),
@@ -179,9 +163,6 @@ NUMBERS = [
     *replacing('inner = "inner"', {
         'inner = "innner"': "joint[1].inner: 'innner' is no segment; give 'outer' or 'inner'",
     }),
-    *replacing("stations = [9.0, 10.0]", {
-        "stations = []": "joint[1].stations: empty; give at least one",
-    }),
     *replacing("height_to_width = 1.5", {
         "section = { height = 0.49, width = 0.33, flange = 0.0075, web = 0.0065 }":
             "segment[1].mass_per_length: 83.16 is not the section's own 88.862, and beams and "
@@ -229,8 +210,6 @@ CONTACTS = [
         "lateral_play = 0.01\nlateral_exponent = 1.5":
             "joint[1].lateral_stiffness: missing; it is the lateral contact stiffness in "
             "N/m^n; the same unless given",
-        "restitution = { coefficient = 1.2, speed = 0.1 }":
-            "joint[1].restitution.coefficient: must be a number not greater than 1, got 1.2",
         "bonded = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]":
             "joint[1].friction: the joint is bonded, and nothing slides; leave it out",
         "bonded = true\ncontact_length = 0.1":
@@ -240,8 +219,6 @@ CONTACTS = [
         "pad = { length = 0.1, width = 0.06, offset = 0.01, bears = 'corner' }":
             "joint[1].pad.offset: the pad bears on the corner; leave offset out, or bears = "
             "'corner'",
-        "pad = { length = 0.1, width = 0.06, bears = 'web' }":
-            "joint[1].pad.bears: must be 'wall' or 'corner', got 'web'",
         "pad = { length = 0.1, width = 0.2 }":
             "joint[1].pad.width: must be above 0 and not above half a wall of the inner "
             "segment, 0.135298 m, got 0.2 m",
@@ -250,10 +227,6 @@ CONTACTS = [
             "segment, 0.135298 m less the offset of 0.05 m, got 0.1 m",
         "play_above = 0.02": "joint[1].play_above: must be a part of play, got 0.02 m",
         "interference = 0.001": "joint[1].interference: shims leave no play; give play = 0",
-        "lateral_play_right = 0.002":
-            "joint[1].lateral_play_right: must be a part of lateral_play, got 0.002 m",
-        "pad = { length = 0.1 }":
-            "joint[1].pad.width: missing; it is the width from the corner inwards in m",
         "bonded = true\npad = { length = 0.1, width = 0.06 }":
             "joint[1].pad: the joint is bonded, and nothing touches; leave it out",
         "contact_length = 1.5":
@@ -263,9 +236,6 @@ CONTACTS = [
         "pad = { length = 0.1, width = 0.06 }":
             "joint[1].pad: has no thickness; give the thickness in m, from which the joint's "
             "stiffness follows, or the joint's stiffness",
-        "pads = [{ length = 0.1, width = 0.06, thickness = 0.02 }]":
-            "joint[1].pads[1].side: missing; it is the wall of the inner segment with the pad; "
-            "right is at positive y",
         "pads = [{ side = 'below', length = 0.1, width = 0.06, thickness = 0.02 }]":
             "joint[1].pads: none is above; give each side one at least",
         "pads = [{ side = 'left', length = 0.1, width = 0.06, thickness = 0.02 }]":
@@ -291,9 +261,6 @@ CONTACTS = [
      "model[6].surface_stiffness: the segments touch at their stations, 'near webs'; leave it "
      "out, or give contact_line = 'surface'"),
     *replacing('contact_line = "near webs"', {
-        "surface_points = [8, 4]":
-            "model[6].surface_points: the segments touch at their stations, 'near webs'; leave "
-            "it out, or give contact_line = 'surface'",
         'contact_line = "surface"\nsurface_points = [100, 4]':
             "model[6].surface_points: 100 times 4 points on half a wall are more than 256, "
             "which a reduced model can bear; give fewer",
@@ -369,8 +336,6 @@ STIFFENERS = [
             "segment[2].diaphragms: a place is given twice; give each once",
     }),
     *adding("height_to_width = 1.5", {
-        "collars = [{ span = [1.0, 2.0], thick = 0.1 }]":
-            "segment[1].collars[1].thick: unknown key; the nearest known one is thickness",
         "collars = [{ span = [1.0, 2.0], thickness = 0.01, walls = ['lid'] }]":
             "segment[1].collars[1].walls: 'lid' is no wall of 'outer'; give 'bottom', 'right', "
             "'top' or 'left'",
@@ -402,10 +367,6 @@ SUPPORTS = [
      _CYLINDER,
      "model[1].base: 'outer' has a cylinder, for which the functions 'as printed' have no form; "
      "use base = 'complete'"),
-    ("[[joint]]",
-     _CYLINDER.replace("stiffness = 1e7\n", ""),
-     "cylinder[1].stiffness: missing; it is the axial stiffness in N/m; of two cylinders side "
-     "by side their sum"),
 ]  # fmt: skip
 
 BAD_EDITS = [*FORMS, *NUMBERS, *CALIBRATIONS, *CONTACTS, *STIFFENERS, *SUPPORTS]

@@ -131,11 +131,17 @@ def test_histories_follow_the_case(tmp_path: Path) -> None:
     ]
 
 
+PART = '[[load]]\nsegment = "beam"\nfrom = 3.0\nto = 7.0\nmagnitude = -500.0\n'
+MOMENT = '[[load]]\nsegment = "beam"\nx = 6.0\nmagnitude = 2.0e4\nmoment = true\n'
+
+
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        ('[[load]]\nsegment = "bean"\nmagnitude = 1.0',
-         "load[1].segment: 'bean' is no segment; give 'beam'"),
+        (MOMENT.replace("x = 6.0\n", ""),
+         "load[1].x: missing; it is the x in m at which the moment acts"),
+        (PART.replace("to = 7.0", "to = 2.0"), "load[1].to: must be beyond from, 3 m, got 2 m"),
+        (PART.replace("from = 3.0", "x = 3.0"), "load[1].to: x is given; leave one of them out"),
         ('[[load]]\nsegment = "beam"\nmagnitude = 1.0\nramp = 1.0\nfrequency = 1.0',
          "load[1].frequency: ramp is given; leave one of them out"),
         ("[[base]]\nacceleration = 1.0\ntable = [[0.0, 1.0], [0.0, 2.0]]",
@@ -153,7 +159,6 @@ def test_histories_follow_the_case(tmp_path: Path) -> None:
         ('[[stop]]\nsegment = "beam"\nx = 10.0\nplay = 0.01\nstiffness = 0.0',
          "stop[1].stiffness: must be positive on one side at least, got 0 on both"),
         ("[start]\nvelocity = { fly = 1.0 }", "start.velocity: 'fly' is no segment; give 'beam'"),
-        ("[start]\nvelocity = { beam = true }", "start.velocity.beam: must be a table, got true"),
     ],
 )  # fmt: skip
 def test_bad_actions_are_refused(tmp_path: Path, text: str, line: str) -> None:
@@ -162,8 +167,6 @@ def test_bad_actions_are_refused(tmp_path: Path, text: str, line: str) -> None:
     assert refused == line.format(folder=tmp_path)
 
 
-PART = '[[load]]\nsegment = "beam"\nfrom = 3.0\nto = 7.0\nmagnitude = -500.0\n'
-MOMENT = '[[load]]\nsegment = "beam"\nx = 6.0\nmagnitude = 2.0e4\nmoment = true\n'
 SERIES = '[[model]]\nname = "series"\nkind = "kantorovich"\nterms = [6]\nbase = "complete"\n'
 SHELL = '[[model]]\nname = "shell"\nkind = "shell"\nmesh_size = 0.1\ncontact_tolerance = "any"\n'
 BOX = "section = { height = 0.47, width = 0.41, flange = 0.006, web = 0.006 }\n"
@@ -212,18 +215,6 @@ def test_a_shell_rests_near_a_beam_with_shear(
     beams = tip_at_rest(read_case(tmp_path, beam + load + elements))
     shell = tip_at_rest(read_case(tmp_path, beam + load + SHELL))
     assert shell == pytest.approx(beams, rel=5e-3)
-
-
-@pytest.mark.parametrize(
-    ("load", "message"),
-    [
-        (MOMENT.replace("x = 6.0\n", ""), "x: missing; it is the x in m at which the moment acts"),
-        (PART.replace("to = 7.0", "to = 2.0"), "to: must be beyond from, 3 m, got 2 m"),
-        (PART.replace("from = 3.0", "x = 3.0"), "to: x is given; leave one of them out"),
-    ],
-)  # fmt: skip
-def test_bad_loads_are_refused(tmp_path: Path, load: str, message: str) -> None:
-    assert refusal(tmp_path, CANTILEVER + load + ELEMENTS) == f"load[1].{message}"
 
 
 def observe(name: str, x: float, quantity: str = "deflection", segment: str = "inner") -> str:
@@ -339,8 +330,6 @@ def test_a_segment_s_name_may_have_blanks_and_points(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "line"),
     [
-        (observe("a", 1.0, segment="jib"),
-         "observe[1].segment: 'jib' is no segment; give 'outer' or 'inner'"),
         (observe("contact_force", 11.0),
          "observe[1].name: 'contact_force' is the name of another output already; give it its "
          "own"),
@@ -349,9 +338,6 @@ def test_a_segment_s_name_may_have_blanks_and_points(tmp_path: Path) -> None:
         (observe("a", 11.0, "twist"),
          "observe[1].quantity: the boom is flat, and nothing moves along 'y' or twists; give "
          "another quantity, or the joints lateral_play"),
-        (observe("a", 11.0, "speed"),
-         "observe[1].quantity: must be 'deflection', 'rotation', 'velocity', 'acceleration', "
-         "'lateral' or 'twist', got 'speed'"),
         ("[start]\nvelocity = { inner = { speed = 1.0 } }",
          "start.velocity.inner.speed: unknown key; known ones are z, y, turn, lateral_turn, x"),
         ("[start]\nvelocity = { inner = { lateral_turn = 1.0 } }",

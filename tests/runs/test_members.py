@@ -27,7 +27,7 @@ from runs.pipeline.summary import EnsembleSummary
 from runs.report.figures import draw
 from runs.report.output import write
 from runs.report.pages import Addition
-from tests.runs.case_texts import COARSE, refusal, shipped
+from tests.runs.case_texts import shipped
 from tests.runs.summaries import finished
 
 SERIES = ["kantorovich-4", "kantorovich-5"]
@@ -193,19 +193,6 @@ def test_models_are_compared_in_the_summary(run: Run) -> None:
     count = len(level.peaks.time)
     apart = np.subtract(four.slow_peaks.time[:count], five.slow_peaks.time[:count])
     np.testing.assert_allclose(level.peaks.time, apart, atol=1e-3)
-
-
-@pytest.mark.parametrize(
-    ("table", "line"),
-    [
-        ("relative = 1e-9", "members: missing; it is the number of runs of each model, "
-         "including the unchanged one"),
-        ('members = 8\nvary = "mass"', "vary: must be 'load' or 'clearance', got 'mass'"),
-    ],
-)  # fmt: skip
-def test_a_bad_table_is_one_line(table: str, line: str, tmp_path: Path) -> None:
-    text = COARSE.replace("[material]", f"[ensemble]\n{table}\n\n[material]", 1)
-    assert refusal(tmp_path, text) == f"ensemble.{line}"
 
 
 @pytest.fixture(scope="module")
