@@ -50,7 +50,7 @@ from runs.pipeline.summary import Summary
 from runs.report import symbols, theme
 from runs.report.charts import Chart, Curve
 from runs.report.formatting import number
-from runs.report.rest_figures import chart_along, rest_lines
+from runs.report.rest_figures import chart_along, rest_curves
 from runs.report.summary_table import summary_table, utilisation_verdict
 
 if TYPE_CHECKING:
@@ -134,7 +134,7 @@ def beam_results(
         "utilisation": utilisation and f"At rest: {utilisation}",
         "cautions": proportion_cautions(case, boom),
         "boom": boom_figure(case, boom, farthest),
-        "forces": _plotly_figure(chart_along({"": rest_lines(farthest, "", theme.PALETTE[0])})),
+        "forces": _plotly_figure(chart_along(rest_curves(farthest, "", theme.PALETTE[0]))),
     }
     check_current()
     plan = MotionPlan.of(built.system, case, model)

@@ -27,6 +27,8 @@ MOST = 12_000
 PANEL, BELOW = 150, 314
 # Distance between panels over the height.
 GAP = 0.14
+# Plotly's names of matplotlib's line styles.
+_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,7 +38,7 @@ class Curve:
     name: str  #: name of the model or of another source
     values: Array  #: (num_times,) in the unit of the chart
     color: str  #: colour in CSS notation
-    dashes: str = "solid"  #: plotly's name of the line style
+    linestyle: str = "-"  #: line style of matplotlib
     shown: bool = True  #: True if the curve is visible at first, False if only on demand
     panel: int = 0  #: index of its panel
     band: tuple[Array, Array] | None = None  #: lower and upper limit (num_times,) of a band
@@ -120,7 +122,7 @@ class Chart:
             "legendgroup": curve.name,
             "visible": True if curve.shown else "legendonly",
         }
-        values = curve.values
+        values, dashes = curve.values, _DASHES[curve.linestyle]
         if curve.at is not None:
             common["x"] = curve.at
         elif self.thinned:
@@ -141,7 +143,7 @@ class Chart:
             "y": values.astype(np.float32),
             "name": curve.name,
             "showlegend": named,
-            "line": {"color": curve.color, "dash": curve.dashes, "width": 1.8, "simplify": False},
+            "line": {"color": curve.color, "dash": dashes, "width": 1.8, "simplify": False},
             "hovertemplate": f"%{{y:.5g}}<extra>{curve.name}</extra>",
         }
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import astuple, dataclass
 from functools import cached_property
 from itertools import cycle
 from pathlib import Path
@@ -37,8 +37,6 @@ MIN_SPAN = 0.02
 EXTENSIONS = ("-", "--", "-.", ":")
 # Number of characters that fit into one of two columns of a legend.
 LEGEND_CHARACTERS = 30
-# Plotly's names of the line styles.
-CHART_DASHES = {"-": "solid", "--": "dash", "-.": "dashdot", ":": "dot"}
 THINNED = (
     " The chart has the minimum and maximum of intervals of each curve; trajectories.nc has all "
     "samples."
@@ -126,9 +124,9 @@ class FigureContext:
 
     def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
         """Return the curve of a model for a chart, with values in the unit of the axis."""
-        stroke = self.strokes[name]
-        dashes, visible = CHART_DASHES[stroke.linestyle], name in self.main_models
-        return Curve(self.labels[name], values, stroke.color, dashes, visible, panel, **more)
+        color, linestyle = astuple(self.strokes[name])
+        shown = name in self.main_models
+        return Curve(self.labels[name], values, color, linestyle, shown, panel, **more)
 
     def plot(
         self, axes: Axes, values: Mapping[str, Array], panel: int = 0, linewidth: float = 1.5

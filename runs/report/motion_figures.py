@@ -132,7 +132,7 @@ def _chart(run: FigureContext, place: str) -> Chart:
         for name in run.models
     ]
     if limit := _limit(run, place):
-        curves.append(Curve("limit", np.full(run.time.size, limit), theme.INK, "dot"))
+        curves.append(Curve("limit", np.full(run.time.size, limit), theme.INK, ":"))
     return Chart(run.time, "deflection (mm)", curves)
 
 

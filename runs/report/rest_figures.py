@@ -4,14 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from typing import NamedTuple
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Array
 from geometry.typography import TO_MILLI, with_minus_signs
 from runs.pipeline.design_results import ModelDesignResults
-from runs.pipeline.motion_results import Envelope
 from runs.pipeline.static_results import StaticResult
 from runs.report import formatting, theme
 from runs.report.charts import Chart, Curve
@@ -41,16 +40,6 @@ _DISPLACED = {"bending in z": "deflection", "bending in y": "lateral", "twist": 
 MODES = 4
 
 
-class Line(NamedTuple):
-    """Curve of one segment in a panel."""
-
-    name: str
-    x: Array
-    values: Array
-    color: str
-    dashes: str
-
-
 def at_rest(run: FigureContext) -> list[Figure]:
     """Draw static deflection and section forces, with and without play."""
     designs = dict(_main_designs(run))
@@ -58,7 +47,11 @@ def at_rest(run: FigureContext) -> list[Figure]:
     rests = {name: rest for name, rest in farthest.items() if rest is not None}
     if not rests:
         return []
-    lines = {name: rest_lines(rest, name, run.strokes[name].color) for name, rest in rests.items()}
+    curves = [
+        curve
+        for name, rest in rests.items()
+        for curve in rest_curves(rest, name, run.strokes[name].color)
+    ]
     # The boom without play has no static state at the end of telescoping.
     bonded = [
         rest
@@ -68,7 +61,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
         if rest.time == rests[name].time
     ]
     if bonded and not rests.keys() & set(run.bonded):
-        lines["without play"] = rest_lines(bonded[0], "without play", theme.PLAY_FREE)
+        curves += rest_curves(bonded[0], "without play", theme.PLAY_FREE)
     caption = (
         "Static state with the largest tip deflection: deflection and section forces. Positive: "
         "normal force in tension, shear force that acts upwards on the part nearer the base, "
@@ -81,32 +74,25 @@ def at_rest(run: FigureContext) -> list[Figure]:
     tips += [f"lateral {TO_MILLI * far.tip_lateral:.1f} mm"] if far.tip_lateral else []
     tip = with_minus_signs(", ".join(tips))
     title = f"Static state under the loads at {far.time:g} s: tip at {tip} in {name}"
-    return _draw_panels(run, lines, "at-rest", title, caption)
+    return _draw_panels(run, curves, "at-rest", title, caption)
 
 
 def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the envelopes of the section forces in motion."""
-    envelopes_of_models = {
-        name: design.motion.envelopes
+    curves = [
+        _curve(what, name, envelope.x, side[what], run.strokes[name].color)
         for name, design in _main_designs(run)
         if design.motion is not None
-    }
-    lines = {
-        name: {
-            what: [
-                line
-                for envelope in several
-                for line in _envelope_lines(envelope, what, name, run.strokes[name].color)
-            ]
-            for what in _FORCES
-        }
-        for name, several in envelopes_of_models.items()
-    }
+        for envelope in design.motion.envelopes
+        for side in (envelope.low, envelope.high)
+        for what in _FORCES
+        if what in side
+    ]
     caption = (
         "Minimum and maximum of the section forces over the run, along each segment; signs as in "
         "the figure of the static state." + initial_position_note(run.case)
     )
-    return _draw_panels(run, lines, "envelopes", "Section forces in motion", caption)
+    return _draw_panels(run, curves, "envelopes", "Section forces in motion", caption)
 
 
 def mode_shapes(run: FigureContext) -> list[Figure]:
@@ -139,87 +125,55 @@ def _main_designs(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]
             yield name, run.design[name]
 
 
-def rest_lines(rest: StaticResult, name: str, color: str) -> dict[str, list[Line]]:
-    """Return the lines of each quantity of a static state, with ``name`` in the legend."""
-    lines: dict[str, list[Line]] = {what: [] for what in _PANELS}
-    dashes = "--" if color == theme.PLAY_FREE else "-"
-    for diagram in rest.diagrams:
-        curves = {"normal": diagram.normal, **diagram.curves}
-        for what in lines.keys() & curves.keys():
-            values = np.array(curves[what])
-            lines[what].append(Line(name, np.array(diagram.x), values, color, dashes))
-    return lines
+def rest_curves(rest: StaticResult, name: str, color: str) -> list[Curve]:
+    """Return the curves of a static state along the boom, with ``name`` in the legend."""
+    return [
+        _curve(what, name, diagram.x, values, color)
+        for diagram in rest.diagrams
+        for what, values in {"normal": diagram.normal, **diagram.curves}.items()
+        if what in _PANELS
+    ]
 
 
-def _envelope_lines(envelope: Envelope, what: str, name: str, color: str) -> Iterator[Line]:
-    dashes = "--" if color == theme.PLAY_FREE else "-"
-    for side in (envelope.low, envelope.high):
-        if what in side:
-            yield Line(name, np.array(envelope.x), np.array(side[what]), color, dashes)
+def _curve(what: str, name: str, x: list[float], values: list[float], color: str) -> Curve:
+    linestyle = "--" if color == theme.PLAY_FREE else "-"
+    number, in_units = [*_PANELS].index(what), _PANELS[what][1] * np.array(values)
+    return Curve(name, in_units, color, linestyle, panel=number, at=np.array(x))
 
 
 def _draw_panels(
-    run: FigureContext,
-    lines: Mapping[str, Mapping[str, Sequence[Line]]],
-    stem: str,
-    title: str,
-    caption: str,
+    run: FigureContext, curves: Sequence[Curve], stem: str, title: str, caption: str
 ) -> list[Figure]:
-    """Draw a panel for each quantity that is not zero; nothing if all are zero."""
-    if not (quantities := _nonzero_quantities(lines)):
+    """Draw the figure of :func:`chart_along`; nothing if all quantities are zero."""
+    if not any(curve.values.any() for curve in curves):
         return []
-    sheet, panels = new_sheet(len(quantities), 1.2 + 1.4 * len(quantities))
-    for axes, what in zip(panels, quantities, strict=True):
-        heading, factor = _PANELS[what]
-        for name, each in lines.items():
-            for line in each.get(what, ()):
-                axes.plot(
-                    line.x,
-                    factor * line.values,
-                    color=line.color,
-                    linestyle=line.dashes,
-                    label=name,
-                )
+    chart = chart_along(curves)
+    sheet, panels = new_sheet(len(chart.panels), 1.2 + 1.4 * len(chart.panels))
+    for axes, heading in zip(panels, chart.panels, strict=True):
         axes.set_title(heading)
-    panels[-1].set_xlabel("x along the boom (m)")
-    chart = chart_along(lines)
+    for curve in chart.curves:
+        look: dict[str, Any] = {"color": curve.color, "linestyle": curve.linestyle}
+        assert curve.at is not None
+        panels[curve.panel].plot(curve.at, curve.values, label=curve.name, **look)
+    panels[-1].set_xlabel(chart.along)
     return [run.finish(sheet, panels[0], stem, title, caption, part="rest", chart=chart)]
 
 
-def chart_along(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> Chart:
-    """Return the chart of the non-zero quantities along the boom.
+def chart_along(curves: Sequence[Curve]) -> Chart:
+    """Return the chart of curves along the boom, with a panel for each quantity that is not zero.
 
     Args:
-        lines: lines of each quantity by the names of their sources, see :func:`rest_lines`.
+        curves: curves as of :func:`rest_curves`; their panel is the number of their quantity.
     """
-    quantities = _nonzero_quantities(lines)
-    ends = [
-        edge(line.x)
-        for edge in (np.min, np.max)
-        for each in lines.values()
-        for line in each.get(quantities[0], ())
+    kept = sorted({curve.panel for curve in curves if curve.values.any()})
+    shown = [
+        replace(curve, panel=panel)
+        for panel, number in enumerate(kept)
+        for curve in curves
+        if curve.panel == number
     ]
-    curves = [
-        Curve(
-            name,
-            _PANELS[what][1] * line.values,
-            line.color,
-            "dash" if line.dashes == "--" else "solid",
-            panel=number,
-            at=line.x,
-        )
-        for number, what in enumerate(quantities)
-        for name, each in lines.items()
-        for line in each.get(what, ())
-    ]
-    titles = [_PANELS[what][0] for what in quantities]
-    return Chart(np.sort(ends)[[0, -1]], "", curves, titles, along="x along the boom (m)")
-
-
-def _nonzero_quantities(lines: Mapping[str, Mapping[str, Sequence[Line]]]) -> list[str]:
-    """Return the quantities that are not zero everywhere."""
-    return [
-        what
-        for what in _PANELS
-        if any(line.values.any() for each in lines.values() for line in each.get(what, ()))
-    ]
+    x = np.sort(np.concatenate([curve.at for curve in shown if curve.at is not None]))
+    titles = [title for title, _ in _PANELS.values()]
+    return Chart(
+        x[[0, -1]], "", shown, [titles[number] for number in kept], along="x along the boom (m)"
+    )
