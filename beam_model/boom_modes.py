@@ -36,7 +36,6 @@ from geometry.telescoping import (
     drives_below,
     sample_extensions,
     station_positions,
-    telescoping_stations,
 )
 
 # Type that identifies a component: index of the segment, and motion.
@@ -59,6 +58,7 @@ class BoomModes:
     Segments connected by bonded joints, or by cylinders, have common modes.
 
     Attributes:
+        beams: rows and load vectors of each segment in all modal coordinates.
         omega2: ω² (num_modes,) in rad²/s², exactly 0 for rigid modes; negative if an axial force
             makes a segment unstable.
         load: uniform loads (num_modes,) of the segments in N/√kg.
@@ -95,6 +95,7 @@ class BoomModes:
         self.omega2 = np.concatenate(omega2)
         self.load = np.concatenate(load)
         self.damping = np.concatenate(damping)
+        self.beams = [self._beam(number) for number in range(len(boom.segments))]
 
     def displacement(
         self, segment: int, x: float, direction: Direction, offset: tuple[float, float] = (0.0, 0.0)
@@ -103,28 +104,14 @@ class BoomModes:
 
         ``offset`` is (y, z) of the point from the axis in m.
         """
-        row = self.beam(segment).at(direction, x)
+        row = self.beams[segment].at(direction, x)
         # A small rotation θ about x moves (y, z) by (−θ z, θ y).
         arm = offset[0] if direction == "z" else -offset[1]
         if arm != 0.0:
-            row += arm * self.twist(segment, x)
+            row += arm * self.beams[segment].torque(x)
         return row
 
-    def twist(self, segment: int, x: float) -> Array:
-        """Return the row (num_modes,) of the twist of a segment at x in m."""
-        return self.beam(segment).torque(x)
-
-    def rotation(self, segment: int, x: float, direction: Direction) -> Array:
-        """Return the row (num_modes,) of the rotation of a cross-section at x in m."""
-        return self.beam(segment).moment(x, direction)
-
-    def curvature(self, segment: int, x: float, direction: Direction) -> Array:
-        """Return the row (num_modes,) of the curvature of a segment at x in m."""
-        return self.beam(segment).read(direction, lambda component: component.curvature_at(x))
-
-    def beam(self, segment: int) -> BeamSegment:
-        """Return the rows and load vectors of a segment in all modal coordinates."""
-
+    def _beam(self, segment: int) -> BeamSegment:
         def read(motion: Motion, rule: Rule) -> Array:
             columns, shapes = self._shapes[segment, motion]
             whole = np.zeros(self.omega2.size)
@@ -317,16 +304,6 @@ def _kernel(ties: Sequence[Array], num_dofs: int) -> Array:
     return null_space(np.array(ties)) if ties else np.eye(num_dofs)
 
 
-def travels(
-    boom: Boom,
-    models: Sequence[SegmentModel],
-    rows_at: RowsAt,
-    beams: Sequence[BeamSegment],
-) -> list[Travel]:
-    """Return the travels of each joint with a drive, and of stops that drives move."""
-    return [_travel(boom, models, rows_at, beams, group) for group in telescoping_stations(boom)]
-
-
 def moving_axial_forces(
     boom: Boom, models: Sequence[SegmentModel], beams: Sequence[BeamSegment], joint: int
 ) -> list[MovingAxialForce]:
@@ -349,13 +326,14 @@ def moving_axial_forces(
     return [MovingAxialForce(axial.force, RowTable.interpolate(rows, breaks))]
 
 
-def _travel(
+def travel(
     boom: Boom,
     models: Sequence[SegmentModel],
     rows_at: RowsAt,
     beams: Sequence[BeamSegment],
     group: TelescopingStations,
 ) -> Travel:
+    """Return the travel of stations that move with the same drives."""
     moving = rows_at({}).rows_at(group.stations)
 
     def rows(extension: float) -> Array:

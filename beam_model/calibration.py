@@ -248,5 +248,5 @@ def _probes(component: Component, probed: ProbeResponses, motion: ProbedMotion) 
     """Return the load vectors (num_probes, num_dofs) of the probes."""
     rows = [component.at(x) for x in probed.places]
     if motion != "twist":
-        rows += [component.rotation_at(x) for x in (probed.places[0], probed.places[-1])]
+        rows += [component.at(x, 1) for x in (probed.places[0], probed.places[-1])]
     return np.array(rows)

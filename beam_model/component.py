@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from itertools import pairwise
-from typing import Literal, NamedTuple
+from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
 from scipy.linalg import eigh
@@ -22,6 +22,12 @@ from geometry.section import Direction
 Motion = Literal["z", "y", "twist"]
 
 
+class RowAt(Protocol):
+    """Row (num_dofs,) of a component at x in m, for the order 0, 1 or 2."""
+
+    def __call__(self, x: float, order: int = 0) -> Array: ...
+
+
 @dataclass(frozen=True, slots=True)
 class Component:
     """Component of the motion of a segment: its matrices, load vectors, and rows at any x.
@@ -30,18 +36,17 @@ class Component:
         stiffness, mass, damping: matrices (num_dofs, num_dofs).
         load: load vector (num_dofs,) of the uniform load of the segment.
         unit_load: load vector (num_dofs,) of a uniform load of 1 N/m (1 N for twist).
-        at: function of x in m that returns the row (num_dofs,) of the deflection or twist.
+        at: function that returns the row (num_dofs,) of the deflection or twist (order 0), and for
+            bending of the rotation β of the cross-section (order 1) and of β′ (order 2).
         rigid_modes: number of rigid modes.
-        rotation: function of x in m that returns the row (num_dofs,) of the rotation β of the
-            cross-section; None for twist.
-        curvature: function of x in m that returns the row (num_dofs,) of β′; None for twist or a
-            rigid segment.
+        geometric_stiffness: K_G (num_dofs, num_dofs) of the axial force, which reduces the
+            stiffness.
         rotation_load: load vector (num_dofs,) of an angular acceleration of 1 rad/s² about
             x = 0; empty for twist.
-        breaks: x in m between which rows are polynomials.
-        geometric: geometric stiffness K_G (num_dofs, num_dofs) of the axial force; None without it.
         inertia_load: inertia load (num_dofs,) of a uniform acceleration that causes a mean load of
-            1 N/m; ``unit_load`` unless given.
+            1 N/m; empty for twist.
+        breaks: x in m between which rows are polynomials.
+        bends: False for a rigid segment.
     """
 
     stiffness: Array
@@ -49,34 +54,13 @@ class Component:
     damping: Array
     load: Array
     unit_load: Array
-    at: Callable[[float], Array]
+    at: RowAt
     rigid_modes: int
-    rotation: Callable[[float], Array] | None = None
-    curvature: Callable[[float], Array] | None = None
+    geometric_stiffness: Array
     rotation_load: Array = field(default_factory=lambda: np.zeros(0))
+    inertia_load: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
-    geometric: Array | None = None
-    inertia_load: Array | None = None
-
-    @property
-    def geometric_stiffness(self) -> Array:
-        """The geometric stiffness K_G (num_dofs, num_dofs), which reduces the stiffness."""
-        return np.zeros_like(self.stiffness) if self.geometric is None else self.geometric
-
-    @property
-    def inertia(self) -> Array:
-        """The inertia load (num_dofs,) of a uniform acceleration, as ``inertia_load``."""
-        return self.unit_load if self.inertia_load is None else self.inertia_load
-
-    def rotation_at(self, x: float) -> Array:
-        """Return the row (num_dofs,) of the rotation β of the cross-section at x in m."""
-        assert self.rotation is not None
-        return self.rotation(x)
-
-    def curvature_at(self, x: float) -> Array:
-        """Return the row (num_dofs,) of β′ at x in m."""
-        assert self.curvature is not None
-        return self.curvature(x)
+    bends: bool = True
 
     @property
     def beam(self) -> BeamSegment:
@@ -117,15 +101,15 @@ class BeamSegment:
     #: argument is a function that returns the row of a :class:`Component`
     read: Callable[[Motion, Rule], Array]
 
-    def at(self, motion: Motion, x: float) -> Array:
-        """Return the row (num_coordinates,) of a deflection, or of the twist, at x in m."""
-        return self.read(motion, lambda component: component.at(x))
+    def at(self, motion: Motion, x: float, order: int = 0) -> Array:
+        """Return the row (num_coordinates,) at x in m of :attr:`Component.at`."""
+        return self.read(motion, lambda component: component.at(x, order))
 
     def unit_load_vector(self, x: float, direction: Direction) -> Array:
         return self.at(direction, x)
 
     def moment(self, x: float, direction: Direction) -> Array:
-        return self.read(direction, lambda component: component.rotation_at(x))
+        return self.at(direction, x, 1)
 
     def torque(self, x: float) -> Array:
         return self.at("twist", x)
@@ -134,7 +118,7 @@ class BeamSegment:
         return self.read(direction, lambda component: component.uniform(span))
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        return force * self.read(direction, lambda component: component.inertia)
+        return force * self.read(direction, lambda component: component.inertia_load)
 
     def rotation_load(self, direction: Direction) -> Array:
         return self.read(direction, lambda component: component.rotation_load)

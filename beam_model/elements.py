@@ -10,10 +10,9 @@ the local flexibility (Eisenberger and Reich 1989).
 
 from __future__ import annotations
 
-from collections.abc import Hashable
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
-from typing import Any, Literal, Protocol
+from typing import Any, Literal
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -27,29 +26,6 @@ Theory = Literal["euler-bernoulli", "timoshenko"]
 # Gauss points and weights from ξ = 0 to 1, exact for products of two cubics.
 _POINTS, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 GAUSS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
-
-
-class Element(Hashable, Protocol):
-    """Shape functions of an element at ξ = x/ℓ_e, with x from its first node."""
-
-    @property
-    def h(self) -> float:
-        """The length in m."""
-
-    def deflection(self, xi: Array) -> Array:
-        """Return the shape functions (4, num_points) of w."""
-
-    def slope(self, xi: Array) -> Array:
-        """Return the derivatives w′ (4, num_points) of the shape functions."""
-
-    def rotation(self, xi: Array) -> Array:
-        """Return the shape functions (4, num_points) of β."""
-
-    def curvature(self, xi: Array) -> Array:
-        """Return the derivatives β′ (4, num_points) of the shape functions."""
-
-    def stiffness(self, xi: Array, weights: Array) -> Array:
-        """Return the stiffness (4, 4) by quadrature with points ξ and weights in m."""
 
 
 def element(segment: Segment, theory: Theory, start: float, h: float) -> Element:
@@ -74,13 +50,14 @@ def quadrature(element: Element) -> tuple[Array, Array, Array, Array, Array]:
 
 @dataclass(frozen=True, slots=True)
 class PrismaticElement:
-    """Prismatic element."""
+    """Shape functions of a prismatic element at ξ = x/ℓ_e, with x from its first node."""
 
     h: float  #: length in m
     bending_stiffness: float  #: E J in N·m²
     phi: float  #: Φ_s, zero for an Euler–Bernoulli beam
 
     def deflection(self, xi: Array) -> Array:
+        """Return the shape functions (4, num_points) of w."""
         h, phi, (one, square, cube) = self.h, self.phi, _powers(xi)
         shear_part = 0.5 * phi * (one - square)
         w = np.array(
@@ -94,6 +71,7 @@ class PrismaticElement:
         return w / (1.0 + phi)
 
     def slope(self, xi: Array) -> Array:
+        """Return the derivatives w′ (4, num_points) of the shape functions."""
         h, phi, (one, square, _) = self.h, self.phi, _powers(xi)
         shear_part = 0.5 * phi * (1.0 - 2.0 * one)
         slope = np.array(
@@ -107,6 +85,7 @@ class PrismaticElement:
         return slope / (1.0 + phi)
 
     def rotation(self, xi: Array) -> Array:
+        """Return the shape functions (4, num_points) of β."""
         h, phi, (one, square, _) = self.h, self.phi, _powers(xi)
         theta = np.array(
             [
@@ -119,6 +98,7 @@ class PrismaticElement:
         return theta / (1.0 + phi)
 
     def curvature(self, xi: Array) -> Array:
+        """Return the derivatives β′ (4, num_points) of the shape functions."""
         h, phi, (one, _, _) = self.h, self.phi, _powers(xi)
         curvature = np.array(
             [
@@ -131,6 +111,7 @@ class PrismaticElement:
         return curvature / (1.0 + phi)
 
     def stiffness(self, xi: Array, weights: Array) -> Array:
+        """Return the stiffness (4, 4) by quadrature with points ξ and weights in m."""
         bending = self.bending_stiffness * products(self.curvature(xi), weights)
         if self.phi == 0.0:
             return bending
@@ -140,7 +121,7 @@ class PrismaticElement:
 
 @dataclass(frozen=True, eq=False)
 class TaperedElement:
-    """Element with a varying section.
+    """Element with a varying section, with the methods of :class:`PrismaticElement`.
 
     The moments 1 and ξ cause the curvatures f and ξ f and the shear strains 0 and −g/ℓ_e, with the
     flexibilities f and g. Integration gives β and w.
@@ -195,6 +176,8 @@ def _powers(xi: Array) -> tuple[Any, Any, Any]:
     powers = xi, xi**2, xi**3
     return powers if xi.ndim else (xi.item(), powers[1].item(), powers[2].item())
 
+
+Element = PrismaticElement | TaperedElement
 
 _Pair = tuple[Polynomial, Polynomial]
 _ONE, _XI = Polynomial([1.0]), Polynomial([0.0, 1.0])

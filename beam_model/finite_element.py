@@ -8,7 +8,6 @@ With linear elements for twist, they are 3D frame elements without axial strain 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from itertools import pairwise
 from operator import attrgetter
 
@@ -25,6 +24,9 @@ from geometry.segment import APART
 # the axial force has no node of its own: eigenvalues lose digits with the inverse fourth power of
 # the shortest element length. Such a mass acts through shape functions.
 _MASS_APART = 5.0e-3
+
+# Shape functions of an element by their order in rows of a component.
+_SHAPES = "deflection", "rotation", "curvature"
 
 _MASS, _ROTARY = map(attrgetter, ("mass_per_length", "rotary_inertia"))
 _TORSION, _POLAR = map(attrgetter, ("lateral.torsion_constant", "lateral.polar_inertia"))
@@ -128,10 +130,10 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
             inertia_load[dofs] += point.mass / segment.mass_per_length * w[:, 0]
     free = np.setdiff1d(np.arange(num_dofs), fixed)
 
-    def read(shapes: str, x: float) -> Array:
+    def read(x: float, order: int = 0) -> Array:
         k, h = _element(nodes, x)
         row = np.zeros(num_dofs)
-        row[2 * k : 2 * k + 4] = getattr(elements[k], shapes)(np.array((x - nodes[k]) / h))
+        row[2 * k : 2 * k + 4] = getattr(elements[k], _SHAPES[order])(np.array((x - nodes[k]) / h))
         return np.asarray(row[free])
 
     block = np.ix_(free, free)
@@ -141,14 +143,12 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         damping=damping[block],
         load=segment.load * unit_load[free],
         unit_load=unit_load[free],
-        inertia_load=inertia_load[free],
-        at=partial(read, "deflection"),
-        rotation=partial(read, "rotation"),
-        curvature=partial(read, "curvature"),
-        rotation_load=rotation_load[free],
-        breaks=nodes,
+        at=read,
         rigid_modes=segment.rigid_modes,
-        geometric=geometric[block],
+        geometric_stiffness=geometric[block],
+        rotation_load=rotation_load[free],
+        inertia_load=inertia_load[free],
+        breaks=nodes,
     )
 
 
@@ -172,21 +172,22 @@ def _twist(segment: Segment, nodes: Array) -> Component:
     fixed = [_nearest(nodes, support.x) for support in segment.supports]
     free = np.setdiff1d(np.arange(nodes.size), fixed)
 
-    def twist(x: float) -> Array:
+    def twist(x: float, order: int = 0) -> Array:
         k, h = _element(nodes, x)
         row = np.zeros(nodes.size)
         row[k : k + 2] = (nodes[k + 1] - x) / h, (x - nodes[k]) / h
         return np.asarray(row[free])
 
-    block = np.ix_(free, free)
+    block, nothing = np.ix_(free, free), np.zeros((free.size, free.size))
     return Component(
         stiffness=stiffness[block],
         mass=mass[block],
-        damping=np.zeros((free.size, free.size)),
+        damping=nothing,
         load=np.zeros(free.size),
         unit_load=unit_load[free],
         at=twist,
         rigid_modes=segment.rigid_twists,
+        geometric_stiffness=nothing,
     )
 
 

@@ -127,7 +127,7 @@ def kantorovich_bending(
             row = basis.at(support.x)
             stiffness += support.stiffness * np.outer(row, row)
         if support.rotation_stiffness is not None:
-            row = basis.slope_at(support.x)
+            row = basis.at(support.x, 1)
             stiffness += support.rotation_stiffness * np.outer(row, row)
     for point in (*segment.masses, *segment.stiffener_masses):
         row = basis.at(point.x)
@@ -144,11 +144,9 @@ def kantorovich_bending(
         load=segment.load * basis.integral,
         unit_load=basis.integral,
         at=basis.at,
-        rotation=basis.slope_at,
-        curvature=basis.curvature_at,
-        rotation_load=rotation_load,
         rigid_modes=min(max(0, segment.rigid_modes - printed), terms),
-        geometric=_geometric(segment.compression, basis.functions),
+        geometric_stiffness=_geometric(segment.compression, basis.functions),
+        rotation_load=rotation_load,
         inertia_load=inertia_load,
     )
 
@@ -184,11 +182,19 @@ def kantorovich_twist(segment: Segment, terms: int) -> Component:
         unit_load=basis.integral,
         at=basis.at,
         rigid_modes=segment.rigid_twists,
+        geometric_stiffness=np.zeros((terms, terms)),
     )
 
 
 def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
     """Return the functions of the deflection in one interpretation of (29)–(31).
+
+    With supports x0, x1, …, functions other than the complete ones vanish at the supports and span
+    (29): φ_i = x^i (x − x0)(x − x1) with i = 1 … terms as printed, where also the slope vanishes at
+    x0, and i = 0 … terms − 1 otherwise. A free segment from x2 to x4 has (30), (31): the rigid
+    motions 1 and x − x2, then (x − x2)^(i−1) (x − x4). This basis is incomplete: with all
+    functions, the deflection at x4 lies on the tangent at x2, so that the series does not converge
+    to a free beam.
 
     Raises:
         BoomError: clamped or elastic supports require the complete basis.
@@ -203,33 +209,9 @@ def bending_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
         return complete_basis(segment, conditions, terms)
     _check_supports(segment, base)
     if segment.supports:
-        return outer_basis(segment, terms, base)
-    return inner_basis(segment, terms)
-
-
-def outer_basis(segment: Segment, terms: int, base: Base) -> list[Legendre]:
-    """Return functions that vanish at the supports and span (29): φ_i = x^i (x − x0)(x − x1).
-
-    Args:
-        segment: segment with the supports x0, x1, …
-        terms: number of functions: i = 1 … terms as printed, i = 0 … terms − 1 otherwise.
-        base: interpretation; as printed, the slope also vanishes at x0.
-    """
-    supports = sorted(support.x for support in segment.supports)
-    roots = [supports[0], *supports] if base == "as printed" else supports
-    return _times_legendre(segment, Polynomial.fromroots(roots), terms)
-
-
-def inner_basis(segment: Segment, terms: int) -> list[Legendre]:
-    """Return the functions (30), (31) of a free segment: 1, x − x2, then (x − x2)^(i−1) (x − x4).
-
-    The basis is incomplete. With all functions, the deflection at x4 lies on the tangent at x2, so
-    that the series does not converge to a free beam.
-
-    Args:
-        segment: segment from x2 to x4.
-        terms: number of functions; the first two are the rigid motions.
-    """
+        supports = sorted(support.x for support in segment.supports)
+        roots = [supports[0], *supports] if base == "as printed" else supports
+        return _times_legendre(segment, Polynomial.fromroots(roots), terms)
     rigid = _times_legendre(segment, Polynomial([1.0]), min(terms, 2))
     bending = Polynomial.fromroots([segment.start, segment.start, segment.end])
     return rigid + _times_legendre(segment, bending, terms - 2)
@@ -284,25 +266,16 @@ class _Basis:
         nodes, weights = np.polynomial.legendre.leggauss(degree + 1 + tapering)
         self.x = segment.start + 0.5 * segment.length * (nodes + 1.0)
         self.weights = 0.5 * segment.length * weights
-        self._slopes = [function.deriv() for function in functions]
-        self._curvatures = [function.deriv(2) for function in functions]
+        slopes, curvatures = ([one.deriv(order) for one in functions] for order in (1, 2))
+        self._derived = functions, slopes, curvatures
         self.value, self.slope, self.curvature = (
-            np.array([function(self.x) for function in derived])
-            for derived in (functions, self._slopes, self._curvatures)
+            np.array([function(self.x) for function in derived]) for derived in self._derived
         )
         self.integral = self.value @ self.weights
 
-    def at(self, x: float) -> Array:
-        """Return the values (num_functions,) at x in m."""
-        return np.array([function(x) for function in self.functions])
-
-    def slope_at(self, x: float) -> Array:
-        """Return the slopes (num_functions,) at x in m."""
-        return np.array([slope(x) for slope in self._slopes])
-
-    def curvature_at(self, x: float) -> Array:
-        """Return the second derivatives (num_functions,) at x in m."""
-        return np.array([curvature(x) for curvature in self._curvatures])
+    def at(self, x: float, order: int = 0) -> Array:
+        """Return the values, or derivatives of the order 1 or 2, (num_functions,) at x in m."""
+        return np.array([function(x) for function in self._derived[order]])
 
 
 def _times_legendre(segment: Segment, seed: Polynomial, terms: int) -> list[Legendre]:
@@ -338,11 +311,11 @@ def _rigid_motion(segment: Segment) -> Component:
     if motions == 0:
         return _no_motion()
     straight = kantorovich_bending(segment, motions, "complete", rotary_inertia=True)
-    return replace(straight, curvature=None)
+    return replace(straight, bends=False)
 
 
 def _no_motion() -> Component:
     none, empty = np.zeros(0), np.zeros((0, 0))
     return Component(
-        empty, empty, empty, none, none, lambda x: none, 0, lambda x: none, rotation_load=none
+        empty, empty, empty, none, none, lambda x, order=0: none, 0, empty, bends=False
     )

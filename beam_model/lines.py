@@ -55,19 +55,17 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
     starts, lengths = breaks[:-1], np.diff(breaks)
     midpoints = 0.5 * (breaks[1:] + breaks[:-1])
     rows: dict[Quantity, Array] = {}
+    beam = modes.beams[number]
     for direction in boom.directions:
         deflection, moment, shear = _NAMES[direction]
-        rows[deflection] = _both_ends(
-            breaks, partial(modes.displacement, number, direction=direction)
-        )
-        if model.components[direction].curvature is not None:
+        rows[deflection] = _both_ends(breaks, partial(beam.at, direction))
+        if model.components[direction].bends:
             plane = segment if direction == "z" else segment.turned()
             early, late = (
                 # E J belongs to the section at x in this plane.
                 np.array(
                     [
-                        -plane.prismatic_at(x).bending_stiffness
-                        * modes.curvature(number, x, direction)
+                        -plane.prismatic_at(x).bending_stiffness * beam.at(direction, x, 2)
                         for x in starts + part * lengths
                     ]
                 )
@@ -81,8 +79,8 @@ def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Lin
     if boom.spatial:
         lateral = segment.lateral
         assert lateral is not None
-        rows["twist"] = _both_ends(breaks, partial(modes.twist, number))
-        if model.components["z"].curvature is not None:
+        rows["twist"] = _both_ends(breaks, beam.torque)
+        if model.components["z"].bends:
             stiffness = segment.material.shear_modulus * lateral.torsion_constant
             local = segment.property_ratio(attrgetter("lateral.torsion_constant"), midpoints)
             torque = stiffness * local[:, None] * _slope(breaks, rows["twist"])

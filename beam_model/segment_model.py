@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from beam_model.boom_modes import BoomModes, travels
+from beam_model.boom_modes import BoomModes, travel
 from beam_model.component import SegmentModel
 from dynamics.gap_builder import GapBuilder, OutputOperator
 from dynamics.gap_system import GapSystem
@@ -18,7 +18,7 @@ from geometry.contact_places import pads
 from geometry.cylinder import ground_lines
 from geometry.observation import Observation, Quantity
 from geometry.section import Side
-from geometry.telescoping import drives_below
+from geometry.telescoping import drives_below, telescoping_stations
 
 # Sides of the contact rows of a flat joint or a stop: one row for both sides, or one row per side.
 BOTH_SIDES: Sequence[Side] = (0,)
@@ -38,8 +38,9 @@ def gap_system(
     modes = BoomModes(boom, models)
     system = system_without_drives(boom, modes, sides)
     rows_at = partial(_rows, boom, modes, sides)
-    beams = [modes.beam(number) for number in range(len(boom.segments))]
-    return replace(system, travels=travels(boom, models, rows_at, beams))
+    groups = telescoping_stations(boom)
+    moved = [travel(boom, models, rows_at, modes.beams, group) for group in groups]
+    return replace(system, travels=moved)
 
 
 def system_without_drives(
@@ -51,7 +52,7 @@ def system_without_drives(
         boom, sides: as in :func:`gap_system`.
         modes: modes of the boom's segments.
     """
-    beams = [modes.beam(number) for number in range(len(boom.segments))]
+    beams = modes.beams
     ends: tuple[Quantity, ...] = ("deflection", "lateral") if boom.spatial else ("deflection",)
     return _rows(boom, modes, sides, {}).system(
         lambda row: row,
@@ -111,14 +112,15 @@ def _rows(
 
 def _row(place: Observation, modes: BoomModes) -> Array:
     """Return the row (num_modes,) of the displacement of an observation."""
+    beam = modes.beams[place.segment]
     match place.kind.displacement:
         case "rotation":
-            return modes.rotation(place.segment, place.x, "z")
+            return beam.moment(place.x, "z")
         case "twist":
-            return modes.twist(place.segment, place.x)
+            return beam.torque(place.x)
         case "lateral":
-            return modes.displacement(place.segment, place.x, "y")
+            return beam.at("y", place.x)
         case "distortion":
             raise ValueError("the cross-section of a beam keeps its shape")
         case "deflection":
-            return modes.displacement(place.segment, place.x, "z")
+            return beam.at("z", place.x)

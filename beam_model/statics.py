@@ -187,7 +187,7 @@ def _reactions(
     displacements = [
         row @ position
         for x in nodes
-        for row in (modes.displacement(number, x, "z"), modes.rotation(number, x, "z"))
+        for row in (modes.beams[number].at("z", x, order) for order in (0, 1))
     ]
     load = component.load.copy()
     for applied_load in boom.loads:

@@ -35,7 +35,7 @@ def probed(segment: Segment) -> ProbeResponses:
     for motion, component in model.components.items():
         rows = [component.at(x) for x in PLACES]
         if motion != "twist":
-            rows += [component.rotation_at(x) for x in (PLACES[0], PLACES[-1])]
+            rows += [component.at(x, 1) for x in (PLACES[0], PLACES[-1])]
         sigma = (2.0 * np.pi * PROBE_FREQUENCY) ** 2
         probes = np.array(rows)
         solved = np.linalg.solve(component.stiffness + sigma * component.mass, probes.T)

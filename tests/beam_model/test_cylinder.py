@@ -196,7 +196,7 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
     force = read / (1.0 / pair.stiffness + yielding)
     twist = 4.2 / twisting - force * lever * up * lug / twisting
     aside = force * lever * along * lug / bending * (4.2 - 0.5 * lug)
-    row = modes.twist(0, 7.2)
+    row = modes.beams[0].torque(7.2)
     at_rest = row / modes.omega2
     assert row @ at_rest == pytest.approx(twist, rel=1e-7)
     assert modes.displacement(0, 7.2, "y") @ at_rest == pytest.approx(aside, rel=1e-7)
@@ -206,7 +206,7 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
     assert found == pytest.approx([0.0, -force], rel=1e-7, abs=1e-9 * force)
     # One in the middle knows nothing of it.
     single = BoomModes(replace(boom, cylinders=(CYLINDER,)), models)
-    row = single.twist(0, 7.2)
+    row = single.beams[0].torque(7.2)
     free = 4.2 / twisting
     assert row @ (row / single.omega2) == pytest.approx(free, rel=1e-7)
     assert twist < 0.96 * free
