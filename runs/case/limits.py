@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from functools import reduce
 from typing import Annotated, Any, Literal
@@ -22,6 +22,25 @@ class CaseTable(BaseModel):
     def declared_units(self, key: str) -> tuple[str, ...]:
         """Return the units that a field declares by :class:`geometry.fields.In`."""
         return declared_units(type(self).model_fields[key])
+
+
+# Path to a value in nested tables and lists: keys, and indices from 0.
+Steps = tuple[str | int, ...]
+
+
+def key_of(steps: Iterable[str | int]) -> str:
+    """Return a path as the key in messages, with indices from 1: ``segment[2].span``."""
+    parts = (f"[{step + 1}]" if isinstance(step, int) else f".{step}" for step in steps)
+    return "".join(parts).removeprefix(".")
+
+
+def leaves(item: object, steps: Steps = ()) -> Iterator[tuple[Steps, object]]:
+    """Yield path and value of all entries of nested tables and lists that are none themselves."""
+    if isinstance(item, Mapping | list):
+        for step, value in item.items() if isinstance(item, Mapping) else enumerate(item):
+            yield from leaves(value, (*steps, step))
+    else:
+        yield steps, item
 
 
 def is_table(value: Any) -> bool:

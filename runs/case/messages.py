@@ -15,6 +15,7 @@ from geometry.fields import NAME, BoomError, describe, fields_of, names_of
 from geometry.typography import choices
 from runs.case import schema
 from runs.case.kinds import KINDS
+from runs.case.limits import key_of
 from runs.case.load_tables import AxialTable, HistoryTable
 from runs.case.sections import SHAPES
 from runs.process.terminal import shorten
@@ -149,21 +150,14 @@ def _pair(location: Sequence[int | str]) -> str:
 
 
 def _key(location: Sequence[int | str]) -> str:
-    """Return the key of a schema path: ``segment[2].span`` for ``('segment', 1, 'span')``."""
-    key = ""
-    for step in _without_kind(location):
-        key += f"[{step + 1}]" if isinstance(step, int) else f".{step}" if key else step
-    return key
-
-
-def _without_kind(location: Sequence[int | str]) -> list[int | str]:
+    """Return the key of a path in the schema, whose steps include the kinds of some tables."""
     steps = list(location)
     if len(steps) > 2 and steps[0] == "model":
         del steps[2]
     for key in ("section", "head_section", "calibrated_by"):
         if key in steps[:-1]:
             del steps[steps.index(key) + 1]
-    return steps
+    return key_of(steps)
 
 
 def _table(location: Sequence[int | str]) -> type:

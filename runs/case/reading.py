@@ -30,7 +30,15 @@ from runs.case.contact import ContactTable, table_law
 from runs.case.drive import TravelTable
 from runs.case.kinds.model import ModelBoom
 from runs.case.kinds.shell import check_mesh_size
-from runs.case.limits import MOST_MEMBERS, CaseTable, map_tables, units_of
+from runs.case.limits import (
+    MOST_MEMBERS,
+    CaseTable,
+    Steps,
+    key_of,
+    leaves,
+    map_tables,
+    units_of,
+)
 from runs.case.load_tables import HistoryTable
 from runs.case.messages import BadInput
 from runs.case.sanity import check_ranges
@@ -212,7 +220,10 @@ def _read(path: str) -> dict[str, object]:
     try:
         text = read_text(Path(path))
         tables = tomllib.loads(text)
-        _check_whole_numbers(tables, path)
+        for steps, value in leaves(tables):
+            # TOML requires integers of 64 bits; Python reads longer ones.
+            if isinstance(value, int) and not -(2**63) <= value < 2**63:
+                raise BadInput(path, key_of(steps), _TOO_MANY_DIGITS)
         _rename_keys(tables)
         return tables
     except FileNotFoundError:
@@ -233,86 +244,59 @@ def _rename_keys(tables: Mapping[str, object]) -> None:
                 _NOTICES.warning("the key tied of [[%s]] is read as bonded, its new name", key)
 
 
-def _check_whole_numbers(thing: object, path: str, key: str = "") -> None:
-    """Check that integers fit in 64 bits, as TOML requires; Python reads longer ones."""
-    if isinstance(thing, dict):
-        for name, value in thing.items():
-            _check_whole_numbers(value, path, f"{key}.{name}" if key else name)
-    elif isinstance(thing, list):
-        for number, value in enumerate(thing, start=1):
-            _check_whole_numbers(value, path, f"{key}[{number}]")
-    elif isinstance(thing, int) and not -(2**63) <= thing < 2**63:
-        raise BadInput(path, key, _TOO_MANY_DIGITS)
-
-
 def _read_files(case: Case, path: str) -> Case:
     """Return the case with the contents of CSV files in place of the names of the files."""
     system = System(case.units)
 
     def read(key: str, table: Any) -> dict[str, Any]:
         # A calibrating shell has no contact of its own.
-        if isinstance(table, ContactTable) and ".calibrated_by" not in key:
-            return _law(path, key, table, system)
-        if isinstance(table, HistoryTable):
-            return _history(path, key, table, system)
-        return _travel(path, key, table, system) if isinstance(table, TravelTable) else {}
+        own_contact = isinstance(table, ContactTable) and ".calibrated_by" not in key
+        if own_contact or isinstance(table, HistoryTable | TravelTable):
+            return _pairs_of_file(path, key, table, system)
+        return {}
 
     whole: Case = map_tables(case, read)
     return whole
 
 
-def _law(path: str, key: str, table: ContactTable, system: System) -> dict[str, Any]:
-    """Return the changed values of a contact law after reading its CSV file, if any."""
-    _check_columns(path, f"{key}.force_columns", table.force_columns, table.force_file)
-    if table.force_file is None:
+def _pairs_of_file(path: str, key: str, table: Any, system: System) -> dict[str, Any]:
+    """Return the changed values of a table after reading its CSV file, if any."""
+    prefix = "force_" if isinstance(table, ContactTable) else ""
+    names = file_key, columns_key, table_key = f"{prefix}file", f"{prefix}columns", f"{prefix}table"
+    file, headings, pairs = (getattr(table, name) for name in names)
+    if file is None:
+        if headings is not None:
+            what = "there is no file whose columns these are; leave it out"
+            raise BadInput(path, f"{key}.{columns_key}", what)
         return {}
-    key = f"{key}.force_file"
-    columns = Column("penetration", system.unit("m")), Column("force", system.unit("N"))
-    points = read_pairs(path, key, table.force_file, table.force_columns, columns).values
-    try:
-        table_law(points)
-    except ValueError as error:
-        raise BadInput(path, key, str(error)) from None
-    return {"force_file": None, "force_columns": None, "force_table": points}
+    key_of_file = f"{key}.{file_key}"
+    if pairs is not None:
+        raise BadInput(path, key_of_file, "table is given; leave one of them out")
+    read = read_pairs(path, key_of_file, file, headings, _columns(table, system))
+    changes = {file_key: None, columns_key: None, table_key: read.values}
+    if isinstance(table, ContactTable):
+        try:
+            table_law(read.values)
+        except ValueError as error:
+            raise BadInput(path, key_of_file, str(error)) from None
+    if isinstance(table, HistoryTable):
+        if not read.has_unit and table.amount not in table.model_fields_set:
+            what = describe(type(table).model_fields[table.amount])
+            raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
+        # Values that are set are in the units of the case file; defaults would be in SI units.
+        changes[table.amount] = getattr(table, table.amount)
+    return changes
 
 
-def _history(path: str, key: str, table: HistoryTable, system: System) -> dict[str, Any]:
-    """Return the changed values of a history after reading its CSV file, if any."""
-    _check_columns(path, f"{key}.columns", table.columns, table.file)
-    if table.file is None:
-        return {}
-    _check_file_alone(path, key, table.table)
-    (unit,) = units_of(table, table.amount)
-    columns = Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
-    read = read_pairs(path, f"{key}.file", table.file, table.columns, columns)
-    if not read.has_unit and table.amount not in table.model_fields_set:
-        what = describe(type(table).model_fields[table.amount])
-        raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
-    # Values that are set are in the units of the case file; defaults would be in SI units.
-    amount = {table.amount: getattr(table, table.amount)}
-    return {"file": None, "columns": None, "table": read.values, **amount}
-
-
-def _travel(path: str, key: str, travel: TravelTable, system: System) -> dict[str, Any]:
-    """Return the changed values of a drive, winch or turn after reading its CSV file, if any."""
-    _check_columns(path, f"{key}.columns", travel.columns, travel.file)
-    if travel.file is None:
-        return {}
-    _check_file_alone(path, key, travel.table)
-    _, unit = units_of(travel, "table")
-    columns = Column("time", system.unit("s")), Column("length", system.unit(unit))
-    read = read_pairs(path, f"{key}.file", travel.file, travel.columns, columns).values
-    return {"file": None, "columns": None, "table": read}
-
-
-def _check_file_alone(path: str, key: str, table: object) -> None:
-    if table is not None:
-        raise BadInput(path, f"{key}.file", "table is given; leave one of them out")
-
-
-def _check_columns(path: str, key: str, names: object, file: str | None) -> None:
-    if names is not None and file is None:
-        raise BadInput(path, key, "there is no file whose columns these are; leave it out")
+def _columns(table: Any, system: System) -> tuple[Column, Column]:
+    """Return the quantities and units of the columns of a table's CSV file."""
+    if isinstance(table, HistoryTable):
+        (unit,) = units_of(table, table.amount)
+        return Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
+    contact = isinstance(table, ContactTable)
+    names = ("penetration", "force") if contact else ("time", "length")
+    first, second = units_of(table, "force_table" if contact else "table")
+    return Column(names[0], system.unit(first)), Column(names[1], system.unit(second))
 
 
 def _unreadable(error: Exception, text: str) -> tuple[str, str]:
@@ -378,7 +362,7 @@ def _check_step(where: str, step: float | None, time: TimeTable) -> None:
 class Spread(NamedTuple):
     """Normal distribution of one number of a case file, in the units of the file."""
 
-    steps: tuple[str | int, ...]  #: path of keys and indices to the number
+    steps: Steps  #: path of keys and indices to the number
     mean: float  #: mean value, which runs and checks take
     sd: float  #: standard deviation
 
@@ -391,7 +375,7 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
     """
     spreads: list[Spread] = []
 
-    def replace_by_means(item: object, steps: tuple[str | int, ...]) -> object:
+    def replace_by_means(item: object, steps: Steps) -> object:
         if isinstance(item, list):
             return [replace_by_means(value, (*steps, i)) for i, value in enumerate(item)]
         if not isinstance(item, Mapping):
@@ -400,9 +384,8 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
             return {key: replace_by_means(value, (*steps, key)) for key, value in item.items()}
         mean, sd = item["mean"], item["sd"]
         if not (_is_finite(mean) and _is_finite(sd) and sd > 0.0):
-            key = "".join(f"[{s + 1}]" if isinstance(s, int) else f".{s}" for s in steps)[1:]
             what = f"must have a finite mean and an sd above 0, got {mean!r} and {sd!r}"
-            raise BadInput(file, key, what)
+            raise BadInput(file, key_of(steps), what)
         spreads.append(Spread(steps, float(mean), float(sd)))
         return mean
 

@@ -20,12 +20,11 @@ from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import dataclass, fields, is_dataclass, replace
 from hashlib import file_digest, sha256
 from importlib import import_module
-from io import BufferedIOBase
+from io import BufferedIOBase, BytesIO
 from pathlib import Path
 from struct import Struct
 from time import perf_counter
-from types import SimpleNamespace
-from typing import IO, TYPE_CHECKING, Any, Protocol, TypeVar
+from typing import IO, TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 import xarray as xr
@@ -67,9 +66,9 @@ def key(*content: Any) -> str:
     Raises:
         TypeError: an input is of a type that :func:`write_record` does not write.
     """
-    digest = sha256()
-    write_record((content, program()), SimpleNamespace(write=digest.update))
-    return digest.hexdigest()
+    record = BytesIO()
+    write_record((content, program()), record)
+    return sha256(record.getbuffer()).hexdigest()
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,15 +225,7 @@ def _head(key: str, file: BufferedIOBase) -> bytes:
     return file_digest(file, lambda: sha256(key.encode())).hexdigest().encode() + b"\n"
 
 
-class Writable(Protocol):
-    """Destination of bytes, such as a file."""
-
-    def write(self, data: bytes, /) -> object:
-        """Write more bytes."""
-        ...
-
-
-def write_record(thing: Any, file: Writable) -> None:
+def write_record(thing: Any, file: IO[bytes]) -> None:
     """Write a record.
 
     Args:

@@ -7,28 +7,27 @@ import math
 import re
 from collections.abc import Mapping, Sequence
 from copy import deepcopy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
+from pydantic.fields import FieldInfo
 
 from geometry.boom import Boom
-from geometry.fields import describe, fields_of, is_number, names_of
+from geometry.fields import describe, fields_of, is_number
 from geometry.fit import pad_room, room
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
-from runs.case.limits import is_table
 from runs.case.messages import BadInput
 from runs.case.reading import CheckedCase
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
 from runs.sweep.points import hold_plates, infer_plates
-from runs.sweep.variation import Place, Tables, numbers, unit_of
+from runs.sweep.variation import Place, Tables, innermost, numbers, unit_of, with_size
 
 # Name of the beam on the page, and number of its elements in the longest segment.
 BEAM, ELEMENTS = "beam", 4
@@ -121,15 +120,9 @@ class Draft:
         """The place and the value in SI units of each number that the page can edit, by key."""
         tables = {name: value for name, value in self._tables.items() if name not in _EXCLUDED}
         return {
-            place.name: (
-                replace(place, size=self.case.system.size(self._unit(place) or "1")),
-                float(value),
-            )
+            place.name: (with_size(place, self.case), float(value))
             for place, value in numbers(tables)
         }
-
-    def _unit(self, place: Place) -> str:
-        return unit_of(place, self.case)
 
     @property
     def keys(self) -> list[str]:
@@ -161,7 +154,7 @@ class Draft:
         if keys[0] not in self._numbers:
             raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
         place, value = self._numbers[keys[0]]
-        unit, system, field = self._unit(place), self.case.system, _field(self.case, place)
+        unit, system = unit_of(place, self.case), self.case.system
         ranges = [self._range(*self._numbers[one]) for one in keys]
         low, high = max(one[0] for one in ranges), min(one[1] for one in ranges)
         in_unit = [system.of(one, unit or "1") for one in (value, low, high)]
@@ -169,7 +162,7 @@ class Draft:
             key,
             keys,
             self._label(keys),
-            "" if field is None else describe(field),
+            describe(_field(self.case, place)),
             in_unit[0],
             system.label(unit) if unit else "",
             (in_unit[1], in_unit[2]) if low < high else None,
@@ -252,23 +245,14 @@ class Draft:
         return reading.check(beam_case, self.file)
 
 
-def _field(case: Case, place: Place) -> Any:
-    """Return the schema field of a number; None if the number is in a mapping of free keys."""
-    value: Any = case
-    field = None
-    for step in place.steps:
-        if is_table(value):
-            name = names_of(type(value))[str(step)]
-            field, value = fields_of(type(value))[name], getattr(value, name)
-        else:
-            value = value[step]
-    return field
+def _field(case: Case, place: Place) -> FieldInfo:
+    table, name = innermost(place, case)
+    return fields_of(type(table))[name]
 
 
 def _limits(case: Case, place: Place) -> tuple[float, float]:
     """Return the limits of a number in the schema; infinite if it has none."""
-    field = _field(case, place)
-    rules = [] if field is None else field.metadata
+    rules = _field(case, place).metadata
     low = max((rule.ge for rule in rules if hasattr(rule, "ge")), default=-math.inf)
     high = min((rule.le for rule in rules if hasattr(rule, "le")), default=math.inf)
     return float(low), float(high)

@@ -28,7 +28,7 @@ from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
 from runs.pipeline.quantities import Limit, case_limits
-from runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of
+from runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of, with_size
 
 Setting = tuple[Variation, float]
 
@@ -100,19 +100,11 @@ def plan(
     tables = tables_of(whole)
     variations = parse(texts, tables, file)
     first = _set_numbers(file, tables, tuple((v, v.values[0]) for v in variations))
-    system = whole.system
-    units = [system.unit(unit_of(variation.places[0], first)) for variation in variations]
+    units = [whole.system.unit(unit_of(variation.places[0], first)) for variation in variations]
     variations = [
-        replace(
-            one,
-            places=tuple(
-                replace(place, size=system.size(unit_of(place, first) or "1"))
-                for place in one.places
-            ),
-        )
+        replace(one, places=tuple(with_size(place, first) for place in one.places))
         for one in variations
     ]
-
     combinations = (
         tuple(zip(variations, values, strict=True))
         for values in product(*(variation.values for variation in variations))

@@ -9,7 +9,6 @@ the mean and the standard deviation of a linear result are exact.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
@@ -28,7 +27,7 @@ from runs.report.figure_context import new_sheet
 from runs.report.tables import Table
 from runs.sweep.points import Plan, Setting, chosen_beam, make_points
 from runs.sweep.run import Outcome
-from runs.sweep.variation import Place, Variation, unit_of
+from runs.sweep.variation import Place, Variation, with_size
 
 OPTION = "--samples"
 SAMPLES, CSV, CHART = "samples.csv", "sampling.csv", "sampling.png"
@@ -62,13 +61,12 @@ def plan_samples(
         what = f"must be a power of 2 above {len(spreads) + 1}, such as 64, got {count}"
         raise BadInput(file, OPTION, what)
     places = [Place(spread.steps) for spread in spreads]
-    sizes = [case.system.size(unit_of(place, case) or "1") for place in places]
     values = normal_points(len(spreads), count) * [one.sd for one in spreads]
     values += [one.mean for one in spreads]
     samples = pd.DataFrame(values, columns=[place.name for place in places])
     variations = [
-        Variation(place.name, tuple(column), (replace(place, size=size),))
-        for place, size, column in zip(places, sizes, values.T.tolist(), strict=True)
+        Variation(place.name, tuple(column), (with_size(place, case),))
+        for place, column in zip(places, values.T.tolist(), strict=True)
     ]
     settings: list[Sequence[Setting]] = [
         list(zip(variations, row, strict=True)) for row in values.tolist()

@@ -11,14 +11,14 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
 
 import numpy as np
 
 from geometry.fields import is_number, names_of
-from runs.case.limits import is_table, units_of
+from runs.case.limits import Steps, is_table, key_of, leaves, units_of
 from runs.case.messages import BadInput
 from runs.case.schema import PLAIN_NUMBER_KEYS, Case
 from runs.case.units import scale
@@ -48,14 +48,13 @@ _REMEDY = "give KEY=START:STOP:COUNT or KEY=A,B,..."
 class Place:
     """Location of a number in a case, as a path of keys and indices."""
 
-    steps: tuple[str | int, ...]  #: keys and indices of the path
+    steps: Steps  #: keys and indices of the path
     size: Fraction = Fraction(1)  #: size of the number's unit in SI units
 
     @property
     def name(self) -> str:
         """The path as text for messages, with indices from 1."""
-        parts = (f".{step}" if isinstance(step, str) else f"[{step + 1}]" for step in self.steps)
-        return "".join(parts).removeprefix(".")
+        return key_of(self.steps)
 
     def put(self, tables: Tables, value: Any) -> None:
         """Set the number in ``tables``, and create missing tables on its path."""
@@ -126,32 +125,35 @@ def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
     return variations
 
 
-def numbers(here: Any, steps: tuple[str | int, ...] = ()) -> Iterator[tuple[Place, float]]:
+def numbers(tables: Tables) -> Iterator[tuple[Place, float]]:
     """Yield all numbers in nested tables and lists with their places, except tabulated curves."""
-    if isinstance(here, Mapping):
-        for key, value in here.items():
-            if key not in _CURVES:
-                yield from numbers(value, (*steps, key))
-    elif isinstance(here, list):
-        for index, value in enumerate(here):
-            yield from numbers(value, (*steps, index))
-    elif is_number(here):
-        yield Place(steps), here
+    for steps, value in leaves(tables):
+        if is_number(value) and _CURVES.isdisjoint(steps):
+            yield Place(steps), value
+
+
+def innermost(place: Place, case: Case) -> tuple[Any, str]:
+    """Return the innermost table of a case that contains a number, and the field in this table."""
+    table, name, here = case, "", case
+    for step in place.steps:
+        if is_table(here):
+            table, name = here, names_of(type(here))[str(step)]
+            here = getattr(table, name)
+        else:
+            here = here[step]
+    key = PLAIN_NUMBER_KEYS.get(type(here))
+    return (table, name) if key is None else (here, key)
 
 
 def unit_of(place: Place, case: Case) -> str:
     """Return the SI unit of a number of a case; empty if dimensionless."""
-    here: Any = case
-    units: tuple[str, ...] = ()
-    for step in place.steps:
-        if is_table(here):
-            name = names_of(type(here))[str(step)]
-            units, here = units_of(here, name), getattr(here, name)
-        else:
-            here = here[step]
-    if type(here) in PLAIN_NUMBER_KEYS:
-        units = units_of(here, PLAIN_NUMBER_KEYS[type(here)])
+    units = units_of(*innermost(place, case))
     return units[0] if len(units) == 1 and units[0] != "1" else ""
+
+
+def with_size(place: Place, case: Case) -> Place:
+    """Return the place of a number with the size of the number's unit in a case."""
+    return replace(place, size=case.system.size(unit_of(place, case) or "1"))
 
 
 class InvalidVariation(Exception):
