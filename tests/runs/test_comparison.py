@@ -17,7 +17,7 @@ from protractile.cases import change
 from runs.case import reading as case_file
 from runs.case.schema import Case, StopTable
 from runs.paper.run_query import final_differences, peak_distances
-from runs.pipeline.comparison import Comparison, Distributions, PeakDifferences, compare
+from runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from runs.pipeline.low_pass import SlowPeaks, filter_low_pass, slow_peaks
 from runs.pipeline.model_quality import compare_models, reference_of
 from runs.pipeline.results import Results
@@ -115,13 +115,6 @@ def test_a_chaotic_system_is_like_itself() -> None:
 def test_times_must_agree() -> None:
     with pytest.raises(ValueError, match=r"^the ensembles must have the same times$"):
         compare(ensemble(), ensemble().isel(time=slice(5000)), CUTOFF)
-
-
-def test_every_level_has_a_description() -> None:
-    for level in (PointwiseDifferences, PeakDifferences, Distributions):
-        assert level.scope.count(".") == 1
-        assert "it does not show" in level.scope
-    assert list(Comparison.__slots__) == ["pointwise", "peaks", "distributions"]
 
 
 def test_final_differences_are_relative_to_the_larger_range() -> None:

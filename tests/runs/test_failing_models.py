@@ -76,14 +76,6 @@ def test_other_models_are_written_and_the_failure_is_reported(
     assert protractile("report", "out") == 0
 
 
-def test_nothing_is_written_if_all_models_fail(capsys: pytest.CaptureFixture[str]) -> None:
-    write_case(TOO_SHORT)
-    run = "run", "case.toml", "--models", "kantorovich-4", "--out", "out", "--large"
-    assert protractile(*run) == 3
-    assert capsys.readouterr().err.count("\n") == 1
-    assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
-
-
 def test_the_next_run_goes_on(moved: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
     """The first run is interrupted in its second model. Reference: an uninterrupted run."""
     write_case("1e-4")

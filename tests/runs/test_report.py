@@ -213,14 +213,6 @@ def test_escapes_everything(results: Results, figures: list[Figure]) -> None:
     assert page.all("img")[0]["alt"] == "Tip <of> the boom"
 
 
-def test_fits_a_telephone_and_paper(page: Page) -> None:
-    viewport = [meta for meta in page.all("meta") if meta.get("name") == "viewport"]
-    assert viewport == [{"name": "viewport", "content": "width=device-width, initial-scale=1"}]
-    assert "@media (max-width:" in page.style
-    assert "@media print" in page.style
-    assert "scroll" in [str(box.get("class")) for box in page.all("div")]
-
-
 def test_report_states_the_demands_of_the_case(results: Results, figures: list[Figure]) -> None:
     case = results.case.model_copy(update={"demand": ("S1",)})
     demanding = replace(results, case=case)

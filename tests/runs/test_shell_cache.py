@@ -125,23 +125,6 @@ def test_of_two_at_a_time_one_reduces(case: Case, tmp_path: Path) -> None:
     assert len(entries(cache)) == 1
 
 
-def test_a_damaged_entry_is_made_again(
-    case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
-) -> None:
-    cache = Cache(tmp_path / "cache")
-    whole = reduce(case, cache)
-    (entry,) = entries(cache)
-    content = bytearray(entry.read_bytes())
-    content[len(content) // 2] ^= 1
-    entry.write_bytes(content)
-    again = reduce(case, cache)
-    assert "reduction" in again.seconds
-    assert np.array_equal(again.system.omega2, whole.system.omega2)
-    message = f"{shorten(str(entry))}: is damaged; it is removed and computed again"
-    assert [record.getMessage() for record in caplog.records] == [message]
-    assert list(reduce(case, cache).seconds) == ["cache"]
-
-
 def test_unwritable_cache_gives_one_line(
     case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:

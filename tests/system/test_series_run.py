@@ -13,7 +13,6 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from protractile import run_case
 from runs.case.messages import BadInput
 from runs.case.reading import load
 from runs.paper.rules import judge
@@ -170,17 +169,6 @@ def test_a_pipe_in_place_of_fields_is_refused(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "fields.nc")
     with pytest.raises(BadInput, match="not a regular file"):
         read_fields(tmp_path / "fields.nc")
-
-
-def test_results_of_python_read_back(tmp_path: Path) -> None:
-    """Reference: by construction."""
-    case = load(COARSE)
-    case = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.02})})
-    results = run_case(case, ["beam-fe-bonded"])
-    results.save(str(tmp_path / "kept"))
-    again = Results.load(str(tmp_path / "kept"))
-    assert (again.case, again.summary) == (results.case, results.summary)
-    xr.testing.assert_identical(again.trajectories, results.trajectories)
 
 
 @pytest.mark.parametrize("name", ["trajectories.nc", "summary.json", "case.toml"])

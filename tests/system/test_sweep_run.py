@@ -2,11 +2,8 @@
 """The command ``sweep``: on all cores, on ranks, killed and resumed."""
 
 import io
-import os
 import shutil
 import subprocess
-import sys
-import time
 from collections.abc import Callable
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -14,9 +11,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from runs.folder.cache import Cache
-from runs.sweep.run import Outcome
-from tests.system.run_folder import COARSE, ROOT, files, protractile
+from tests.system.run_folder import COARSE, files, protractile
 
 pytestmark = pytest.mark.slow
 
@@ -92,15 +87,6 @@ def test_failures_are_lines_and_count_if_nothing_is_left(
     assert second.startswith(f"{opening}1e-12: kantorovich-4: a step of 1e-12 s makes ")
 
 
-def test_a_bad_key_is_one_line_and_no_folder(case: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert protractile("sweep", case, "--vary", "joint.plaz=0,1") == 2
-    assert capsys.readouterr() == (
-        "",
-        "protractile: case.toml: --vary joint.plaz: unknown key; the nearest known one is play\n",
-    )
-    assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
-
-
 def test_two_ranks_write_the_same_sweep_as_two_cores(
     two_ranks: Callable[..., subprocess.CompletedProcess[str]], swept: Path, case: str
 ) -> None:
@@ -110,31 +96,3 @@ def test_two_ranks_write_the_same_sweep_as_two_cores(
     assert answer.stdout.count("two/sweep.csv") == 1
     assert Path("two/sweep.csv").read_bytes() == (swept / "sweep.csv").read_bytes()
     assert stamps("two").keys() == stamps(swept).keys()
-
-
-@pytest.mark.usefixtures("in_this_process")
-def test_a_killed_sweep_leaves_whole_points_and_goes_on(case: str) -> None:
-    play, beams = "joint.play=0.004:0.014:3", "kantorovich-4"
-    arguments = ["sweep", case, "--vary", play, "--models", beams, "--out", "out"]
-    process = subprocess.Popen(
-        [sys.executable, "-c", COMMAND, *arguments],
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.DEVNULL,
-    )
-    points = Path("out/points")
-    while not list(points.glob("[!.]*")):
-        assert process.poll() is None
-        time.sleep(0.01)
-    process.kill()
-    process.wait()
-    before = stamps("out")
-    assert len(before) > 0
-    for name in before:
-        outcome = Cache(points).load(Path(name).stem, Outcome)
-        assert outcome.models
-    assert not Path("out/sweep.csv").exists()
-    assert protractile(*arguments) == 0
-    after = stamps("out")
-    assert len(after) == 3
-    assert before.items() <= after.items()

@@ -21,7 +21,7 @@ BEAM = "--models", "beam-fe-bonded"
     [
         pytest.param(lambda folder: flipped_bits.rows(folder, 3), 2, id="flipped bits"),
         pytest.param(lambda folder: full_disk.rows(folder, 2), 6, id="full disk"),
-        pytest.param(lambda folder: kills.killed(folder, 1, kills.COMMANDS[:1]), 1, id="killed"),
+        pytest.param(lambda folder: kills.killed(folder, 1, kills.COMMANDS[:2]), 2, id="killed"),
         pytest.param(lambda folder: [shared_cache.one_folder(folder, 1, BEAM)], 1, id="one folder"),
     ],
 )
