@@ -14,8 +14,8 @@ from geometry.boom import Direction
 from geometry.fields import PART, In, NotNegative, Number, Positive
 from geometry.joint import BareJoint
 from geometry.section import Side
-from runs.case.drive import DriveTable
 from runs.case.limits import CaseTable, Exponent, Text, error_at, superfluous_error
+from runs.case.motion_tables import DriveTable
 
 if TYPE_CHECKING:
     from dynamics.contact import ContactLaw

@@ -12,7 +12,7 @@ from dynamics.stick_slip import ElasticDrive
 from geometry.boom import Boom, BoomError
 from geometry.telescoping import drives_below, telescoping_stations
 from runs.case.contact import JointTable
-from runs.case.drive import DriveTable
+from runs.case.motion_tables import DriveTable
 from runs.case.schema import Case
 
 # Largest natural frequency or decay rate of an elastic drive in Hz; stiffer drives must be rigid.

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Hoisting of a load on a rope below the tip, in a case file."""
+"""Hoisting of a load on a rope below the tip."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
-
-from pydantic import Field
 
 from dynamics.contact import Gap
 from dynamics.excitation import HistorySum, is_constant
@@ -16,82 +13,14 @@ from dynamics.hanging_load import HangingLoad, Pendulum, RopeForce
 from dynamics.motion import initial_state
 from geometry.axial import AxialChange, Thrust, with_compression
 from geometry.boom import Boom, BoomError, Joint, Segment
-from geometry.fields import Few, Flag, In, NotNegative, Number, Positive
 from geometry.telescoping import drives_of
-from runs.case.drive import TravelTable, max_speed
-from runs.case.load_tables import HistoryTable, build_history
+from runs.case.load_tables import build_history
+from runs.case.motion_tables import WindTable
+from runs.case.schema import Case
 from runs.case.turning import frame_motion
-
-if TYPE_CHECKING:
-    from runs.case.schema import Case
 
 # Slack in m of a rope that never pulls.
 _SLACK = 1.0e6
-
-
-class WindTable(HistoryTable):
-    """A horizontal force, such as wind, on a load that swings."""
-
-    direction: Literal["x", "y"] = "y"
-    """the direction, which stands still: away from the crane at t = 0, or lateral"""
-    force: Annotated[Number, In("N")] = 1.0
-    """the force in N; a factor, 1 unless given, if the heading of its file has such a unit"""
-
-    amount: ClassVar[str] = "force"
-
-
-class HoistTable(TravelTable):
-    """A load on a rope below the tip, and the winch that hoists it."""
-
-    travel: Annotated[Number, In("m")] | None = None
-    """the length in m by which the winch hoists the load; negative where it lowers it"""
-    mass: Annotated[Positive, In("kg")]
-    """the mass in kg of the load"""
-    stiffness: Annotated[Positive, In("N/m")] | None = None
-    """the stiffness in N/m of all falls of the rope together; unless given, it follows from area,
-    modulus, length and falls"""
-    area: Annotated[Positive, In("m^2")] | None = None
-    """the metallic cross-section in m^2 of one fall"""
-    modulus: Annotated[Positive, In("Pa")] | None = None
-    """the modulus of elasticity in Pa of the rope"""
-    length: Annotated[Positive, In("m")] | None = None
-    """the length in m of the falls"""
-    falls: Annotated[int, Field(strict=True, ge=1, le=100)] = 1
-    """the number of falls"""
-    hanging: Flag = False
-    """whether the load hangs on the rope at t = 0; it lies on the ground unless given"""
-    slack: Annotated[NotNegative, In("m")] = 0.0
-    """the length in m that the winch takes up before the rope is straight, of a load that lies on
-    the ground"""
-    pendulum: Annotated[Positive, In("m")] | None = None
-    """the distance in m from the tip to a hanging load, which then swings; it only moves vertically
-    unless given"""
-    wind: Annotated[tuple[WindTable, ...], Few] = ()
-    """the forces of wind on a load that swings"""
-    dropped: Flag = False
-    """whether the hanging load is dropped at t = 0"""
-    phi_2_min: Annotated[Positive, In("1")] | None = None
-    """the least dynamic factor of the hoisting class, with beta_2: the results compare the computed
-    factor with φ₂ = phi_2_min + beta_2 v of the hoisting speed v (EN 13001-2)"""
-    beta_2: Annotated[NotNegative, In("s/m")] | None = None
-    """the increase in s/m of the dynamic factor with the hoisting speed, by the hoisting class"""
-
-    @property
-    def rope_stiffness(self) -> float:
-        """The stiffness in N/m of all falls together, if the data are complete."""
-        if self.stiffness is not None:
-            return self.stiffness
-        assert self.area
-        assert self.modulus
-        assert self.length
-        return self.falls * self.modulus * self.area / self.length
-
-    @property
-    def factor_by_class(self) -> float | None:
-        """The factor φ₂ of the hoisting class; None without its constants."""
-        if self.phi_2_min is None or self.beta_2 is None:
-            return None
-        return self.phi_2_min + self.beta_2 * max_speed(self.history("hoist"))
 
 
 def check_hoist(case: Case, spatial: bool) -> None:

@@ -27,7 +27,6 @@ from runs.case.build import build_boom, check_ensemble_data, check_names
 from runs.case.columns import Column, read_pairs
 from runs.case.combinations import check_combinations
 from runs.case.contact import ContactTable, table_law
-from runs.case.drive import TravelTable
 from runs.case.kinds.model import ModelBoom
 from runs.case.kinds.shell import check_mesh_size
 from runs.case.limits import (
@@ -41,6 +40,7 @@ from runs.case.limits import (
 )
 from runs.case.load_tables import HistoryTable
 from runs.case.messages import BadInput
+from runs.case.motion_tables import TravelTable
 from runs.case.sanity import check_ranges
 from runs.case.schema import Case, EnsembleTable, Model, TimeTable
 from runs.case.units import System, scale

@@ -11,7 +11,7 @@ import numpy as np
 from geometry.boom import Boom, BoomError, Segment
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.contact import JointTable
-from runs.case.drive import max_speed
+from runs.case.motion_tables import max_speed
 from runs.case.schema import Case
 from runs.case.units import System, Unit
 

@@ -32,7 +32,6 @@ from geometry.material import Material
 from geometry.observation import Observation, Recorded
 from geometry.support import Support
 from runs.case.contact import JointTable
-from runs.case.hoist import HoistTable
 from runs.case.kinds import KINDS
 from runs.case.kinds.calibration import CalibratedTable
 from runs.case.kinds.model import ModelTable
@@ -56,8 +55,8 @@ from runs.case.load_tables import (
     PayloadTable,
     SpectrumTable,
 )
+from runs.case.motion_tables import HoistTable, LuffTable, SlewTable
 from runs.case.sections import SegmentTable
-from runs.case.turning import LuffTable, SlewTable
 from runs.case.units import System, SystemName
 from runs.paper.statements import CaseKeys
 

@@ -1,55 +1,18 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Slewing and luffing of a boom, in a case file."""
+"""Slewing and luffing of a boom."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Annotated, ClassVar
 
-from pydantic import Field
-
-from dynamics.excitation import HistorySum, PiecewiseLinear, Spline
+from dynamics.excitation import HistorySum
 from dynamics.frame_motion import FrameAcceleration, FrameMotion, Spin
 from geometry.axial import AxialChange, Thrust, lumped_masses, with_compression
 from geometry.boom import BoomError, Direction, PointMass, Segment
-from geometry.fields import In, Number, Positive
 from geometry.joint import Joint
 from geometry.load import AngularAcceleration, Load
 from geometry.telescoping import drives_of
-from runs.case.drive import TravelTable
-from runs.case.limits import MOST_TIMES
-
-if TYPE_CHECKING:
-    from runs.case.schema import Case
-
-Angles = Annotated[
-    tuple[tuple[Number, Number], ...], In("s", "deg"), Field(min_length=2, max_length=MOST_TIMES)
-]
-
-
-class LuffTable(TravelTable):
-    """Luffing of the boom about its foot."""
-
-    travel: Annotated[Number, In("deg")] | None = None
-    """the angle in degrees by which the boom turns, positive where the tip rises"""
-    speed: Annotated[Positive, In("deg/s")] | None = None
-    """the speed in deg/s, instead of the duration"""
-    table: Angles | None = None
-    """pairs of a time in s and the angle in degrees since the start, on a cubic spline that is at
-    rest at both ends, instead of a travel"""
-
-    unit: ClassVar[str] = "degrees"
-    interpolation: ClassVar[type[PiecewiseLinear] | type[Spline]] = Spline
-
-
-class SlewTable(LuffTable):
-    """Slewing of the boom about the vertical."""
-
-    travel: Annotated[Number, In("deg")] | None = None
-    """the angle in degrees by which the boom turns, positive towards +y"""
-    radius: Annotated[Number, In("m")] = 0.0
-    """the horizontal distance in m of the boom's foot from the axis of slewing, negative where it
-    is behind the axis"""
+from runs.case.schema import Case
 
 
 def check_turning(case: Case, spatial: bool) -> None:

@@ -11,8 +11,8 @@ import numpy as np
 from geometry.boom import Boom
 from geometry.load import Load, PartialLoad
 from runs.case.actions import thrusts
-from runs.case.drive import resolving_times
 from runs.case.load_tables import HistoryTable, LoadTable, build_history
+from runs.case.motion_tables import resolving_times
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.report.formatting import number

@@ -20,7 +20,7 @@ from dynamics.trajectory import Trajectory
 from dynamics.travel import Travel
 from geometry.arrays import Array, Indices
 from geometry.typography import TO_MILLI
-from runs.case.drive import resolving_times
+from runs.case.motion_tables import resolving_times
 from runs.case.schema import Case, Model
 from runs.pipeline.metrics import Metric, Record
 from runs.pipeline.models import MotionPlan

@@ -26,7 +26,7 @@ from geometry.contact_places import contact_centres
 from geometry.cylinder import forces
 from geometry.telescoping import station_positions, travel
 from geometry.typography import TO_MILLI
-from runs.case.drive import resolving_times
+from runs.case.motion_tables import resolving_times
 from runs.pipeline.pads import SIGNS, loaded_pads, side_force
 from runs.pipeline.section_forces import LoadedModel, round_values
 

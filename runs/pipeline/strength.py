@@ -29,7 +29,6 @@ from runs.pipeline.section_forces import LoadedModel, round_values
 if TYPE_CHECKING:
     import xarray as xr
 
-    from runs.pipeline.results import Results
 
 # Numbers of cycles at the detail category, the constant-amplitude limit and the cut-off limit.
 CATEGORY_CYCLES, LIMIT, CUT_OFF = 2.0e6, 5.0e6, 1.0e8
@@ -338,31 +337,3 @@ class Utilisation(NamedTuple):
             f"{100.0 * self.value:.3g} % by {name} ({self.segment} segment, x = {self.x:.4g} m): "
             f"{relation} {limit}"
         )
-
-
-def utilisations(results: Results, model: str) -> dict[str, Utilisation]:
-    """Return, for each kind of part, the one with the largest utilisation, or load if unknown."""
-    governing: dict[str, Utilisation] = {}
-    for one in _loads(results, model):
-        other = governing.setdefault(one.part, one)
-        if (one.value or 0.0, one.load) > (other.value or 0.0, other.load):
-            governing[one.part] = one
-    return governing
-
-
-def _loads(results: Results, model: str) -> Iterator[Utilisation]:
-    results_of_model = results.summary.design.models.get(model)
-    if results_of_model is None:
-        return
-    if results_of_model.motion is not None:
-        for wall in results_of_model.motion.walls:
-            yield Utilisation("plate", wall.segment, wall.x, wall.patch, wall.utilisation)
-        for fibre in results_of_model.motion.fibres:
-            stress = abs(fibre.stress)
-            yield Utilisation("outer fibre", fibre.segment, fibre.x, stress, fibre.utilisation)
-    for pad in results.summary.pads:
-        if pad.model == model:
-            yield Utilisation("pad", pad.inner, pad.x, pad.pressure, pad.utilisation)
-    for life in results_of_model.life:
-        if (damage := life.life_damage) is not None:
-            yield Utilisation("detail", life.segment, life.x, damage, damage)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, NamedTuple
 
@@ -20,10 +21,11 @@ from dynamics.stick_slip import StickSlip
 from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.schema import EnsembleTable
 from runs.pipeline.comparison import Comparison
-from runs.pipeline.design_results import DesignResults
+from runs.pipeline.design_results import DesignResults, ModelDesignResults
 from runs.pipeline.low_pass import SlowPeaks
 from runs.pipeline.metrics import Metric
 from runs.pipeline.pads import PadLoad
+from runs.pipeline.strength import Utilisation
 from shell_model.stress.history import StressSummary
 
 # Number in JSON: None replaces NaN and infinity.
@@ -262,6 +264,30 @@ class Summary(SummaryTable):
             OSError, ValidationError: the file cannot be read, or is invalid.
         """
         return cls.model_validate_json(path.read_bytes())
+
+    def utilisations(self, model: str) -> dict[str, Utilisation]:
+        """Return the part of each kind with the largest utilisation, or load if unknown."""
+        governing: dict[str, Utilisation] = {}
+        for one in self._loaded_parts(model):
+            other = governing.setdefault(one.part, one)
+            if (one.value or 0.0, one.load) > (other.value or 0.0, other.load):
+                governing[one.part] = one
+        return governing
+
+    def _loaded_parts(self, model: str) -> Iterator[Utilisation]:
+        design = self.design.models.get(model, ModelDesignResults())
+        if design.motion is not None:
+            for wall in design.motion.walls:
+                yield Utilisation("plate", wall.segment, wall.x, wall.patch, wall.utilisation)
+            for fibre in design.motion.fibres:
+                stress = abs(fibre.stress)
+                yield Utilisation("outer fibre", fibre.segment, fibre.x, stress, fibre.utilisation)
+        for pad in self.pads:
+            if pad.model == model:
+                yield Utilisation("pad", pad.inner, pad.x, pad.pressure, pad.utilisation)
+        for life in design.life:
+            if (damage := life.life_damage) is not None:
+                yield Utilisation("detail", life.segment, life.x, damage, damage)
 
     def __str__(self) -> str:
         """Return the summary as JSON."""

@@ -19,8 +19,8 @@ from geometry.axial import lumped_masses
 from geometry.boom import Boom
 from geometry.telescoping import drives_of
 from geometry.typography import TO_KILO
-from runs.case.drive import resolving_times
 from runs.case.hoist import hanging_load
+from runs.case.motion_tables import resolving_times
 from runs.case.schema import Case
 from runs.case.turning import frame_motion
 from runs.pipeline.metrics import Metric, Record

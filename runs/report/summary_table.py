@@ -19,7 +19,7 @@ from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.pads import PadLoad
 from runs.pipeline.quantities import decay_time
 from runs.pipeline.results import Results
-from runs.pipeline.strength import Utilisation, utilisations
+from runs.pipeline.strength import Utilisation
 from runs.report.figure_context import farthest, tip_directions
 from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent, signed_percent
 from runs.report.result_tables import is_negligible, times
@@ -39,7 +39,7 @@ def summary_table(results: Results) -> Table | None:
     hertz = [one.modes[0].frequency if one.modes else None for one in designs]
     # Decay by modal damping alone.
     decay_times = [decay_time(results.case.damping.modal, f) for f in hertz]
-    used = [utilisations(results, name) for name in names]
+    used = [results.summary.utilisations(name) for name in names]
     walls, fibres = ([one.get(part) for one in used] for part in ("plate", "outer fibre"))
     hardest = governing_pads(results)
     pads = {name: pad_text(pad) for name, pad in hardest.items()}
@@ -157,7 +157,9 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
     categories the text is empty.
     """
     model = model or results.main_models[0]
-    governing = [one for one in utilisations(results, model).values() if one.value is not None]
+    governing = [
+        one for one in results.summary.utilisations(model).values() if one.value is not None
+    ]
     if not governing:
         return ""
     governing.sort(key=lambda one: one.value or 0.0, reverse=True)

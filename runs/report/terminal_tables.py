@@ -17,7 +17,6 @@ from runs.pipeline.combined_shells import shell_states
 from runs.pipeline.pad_walls import rigid_wall_note
 from runs.pipeline.proofs import proof_table, prove
 from runs.pipeline.results import Results
-from runs.pipeline.strength import utilisations
 from runs.process.terminal import Terminal, message, say, shorten
 from runs.report.figure_context import farthest
 from runs.report.formatting import number, percent
@@ -116,7 +115,7 @@ def result_table(results: Results) -> Table:
     if not pads:
         contacts = [largest_peak(designs[name], "contact force") for name in names]
         forces = [one.largest if one else None for one in contacts]
-    used = [utilisations(results, name).values() for name in names]
+    used = [results.summary.utilisations(name).values() for name in names]
     governing = [max(several, key=lambda one: one.value or 0.0, default=None) for several in used]
     shares = [
         f"{TO_PERCENT * one.value:.3g} {_GOVERNING[one.part]}" if one and one.value else None

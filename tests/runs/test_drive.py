@@ -13,8 +13,8 @@ from dynamics.excitation import PiecewiseLinear
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.drive import resolving_times
 from runs.case.elastic_drive import elastic_drives
+from runs.case.motion_tables import resolving_times
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.models import build
 from runs.report import theme

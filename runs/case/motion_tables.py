@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Keys of drives, which extend or retract an inner segment during the motion."""
+"""Keys of motions in a case file: drives, slewing, luffing and hoisting."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -12,9 +12,10 @@ from pydantic import Field
 from dynamics.arrays import Array
 from dynamics.excitation import History, MotionLaw, PiecewiseLinear, SCurve, Shaped, Spline, Stroke
 from geometry.boom import BoomError
-from geometry.fields import Distance, Few, In, NotNegative, Number, Positive, describe
+from geometry.fields import Distance, Few, Flag, In, NotNegative, Number, Positive, describe
 from geometry.joint import Carrier, Drive
 from runs.case.limits import MOST_TIMES, CaseTable, Text
+from runs.case.load_tables import HistoryTable
 
 # Shorter times in s are input errors; a shorter travel in m counts as none.
 _MIN_TIME, _MIN_TRAVEL = 1.0e-6, 1.0e-9
@@ -31,6 +32,11 @@ Ratio = Annotated[float, Field(strict=True, ge=0.0, lt=1.0)]
 
 TravelPairs = Annotated[
     tuple[tuple[Number, Number], ...], In("s", "m"), Field(min_length=2, max_length=MOST_TIMES)
+]
+
+
+Angles = Annotated[
+    tuple[tuple[Number, Number], ...], In("s", "deg"), Field(min_length=2, max_length=MOST_TIMES)
 ]
 
 
@@ -194,7 +200,7 @@ def max_speed(history: History) -> float:
 def resolving_times(histories: Sequence[History], duration: float) -> Array:
     """Return ascending times (num_times,) in s, up to ``duration``, that resolve all histories.
 
-    >>> from runs.case.drive import resolving_times
+    >>> from runs.case.motion_tables import resolving_times
     >>> 0.01 in resolving_times([pt.Ramp(0.01)], 1000.0)
     True
     """
@@ -216,3 +222,93 @@ def _carrier(place: float | Distance, where: str, what: str, inner: str) -> Carr
             "give 'tail' or 'head', or a distance from one",
         )
     return "inner" if place.head is None else "outer"
+
+
+class LuffTable(TravelTable):
+    """Luffing of the boom about its foot."""
+
+    travel: Annotated[Number, In("deg")] | None = None
+    """the angle in degrees by which the boom turns, positive where the tip rises"""
+    speed: Annotated[Positive, In("deg/s")] | None = None
+    """the speed in deg/s, instead of the duration"""
+    table: Angles | None = None
+    """pairs of a time in s and the angle in degrees since the start, on a cubic spline that is at
+    rest at both ends, instead of a travel"""
+
+    unit: ClassVar[str] = "degrees"
+    interpolation: ClassVar[type[PiecewiseLinear] | type[Spline]] = Spline
+
+
+class SlewTable(LuffTable):
+    """Slewing of the boom about the vertical."""
+
+    travel: Annotated[Number, In("deg")] | None = None
+    """the angle in degrees by which the boom turns, positive towards +y"""
+    radius: Annotated[Number, In("m")] = 0.0
+    """the horizontal distance in m of the boom's foot from the axis of slewing, negative where it
+    is behind the axis"""
+
+
+class WindTable(HistoryTable):
+    """A horizontal force, such as wind, on a load that swings."""
+
+    direction: Literal["x", "y"] = "y"
+    """the direction, which stands still: away from the crane at t = 0, or lateral"""
+    force: Annotated[Number, In("N")] = 1.0
+    """the force in N; a factor, 1 unless given, if the heading of its file has such a unit"""
+
+    amount: ClassVar[str] = "force"
+
+
+class HoistTable(TravelTable):
+    """A load on a rope below the tip, and the winch that hoists it."""
+
+    travel: Annotated[Number, In("m")] | None = None
+    """the length in m by which the winch hoists the load; negative where it lowers it"""
+    mass: Annotated[Positive, In("kg")]
+    """the mass in kg of the load"""
+    stiffness: Annotated[Positive, In("N/m")] | None = None
+    """the stiffness in N/m of all falls of the rope together; unless given, it follows from area,
+    modulus, length and falls"""
+    area: Annotated[Positive, In("m^2")] | None = None
+    """the metallic cross-section in m^2 of one fall"""
+    modulus: Annotated[Positive, In("Pa")] | None = None
+    """the modulus of elasticity in Pa of the rope"""
+    length: Annotated[Positive, In("m")] | None = None
+    """the length in m of the falls"""
+    falls: Annotated[int, Field(strict=True, ge=1, le=100)] = 1
+    """the number of falls"""
+    hanging: Flag = False
+    """whether the load hangs on the rope at t = 0; it lies on the ground unless given"""
+    slack: Annotated[NotNegative, In("m")] = 0.0
+    """the length in m that the winch takes up before the rope is straight, of a load that lies on
+    the ground"""
+    pendulum: Annotated[Positive, In("m")] | None = None
+    """the distance in m from the tip to a hanging load, which then swings; it only moves vertically
+    unless given"""
+    wind: Annotated[tuple[WindTable, ...], Few] = ()
+    """the forces of wind on a load that swings"""
+    dropped: Flag = False
+    """whether the hanging load is dropped at t = 0"""
+    phi_2_min: Annotated[Positive, In("1")] | None = None
+    """the least dynamic factor of the hoisting class, with beta_2: the results compare the computed
+    factor with φ₂ = phi_2_min + beta_2 v of the hoisting speed v (EN 13001-2)"""
+    beta_2: Annotated[NotNegative, In("s/m")] | None = None
+    """the increase in s/m of the dynamic factor with the hoisting speed, by the hoisting class"""
+
+    @property
+    def rope_stiffness(self) -> float:
+        """The stiffness in N/m of all falls together, if the data are complete."""
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.area
+        assert self.modulus
+        assert self.length
+        return self.falls * self.modulus * self.area / self.length
+
+    @property
+    def factor_by_class(self) -> float | None:
+        """The factor φ₂ of the hoisting class; None without its constants."""
+        if self.phi_2_min is None or self.beta_2 is None:
+            return None
+        return self.phi_2_min + self.beta_2 * max_speed(self.history("hoist"))
