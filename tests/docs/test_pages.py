@@ -33,12 +33,17 @@ def test_a_fragment_makes_a_boom(guide: str, nth: int, lift: str, tmp_path: Path
     assert build_boom(read_case(tmp_path, table("", **case))).segments[0].name == "base"
 
 
-def test_code_of_the_guides_runs(here: Path) -> None:
-    names: dict[str, Any] = {"pt": pt}
-    page = (DOCS / "how-to" / "notebooks.md").read_text("utf-8")
-    for code in page.split("```python\n")[1:]:
+def names_of(page: str, **names: Any) -> dict[str, Any]:
+    """Run the code of a page as it stands, and return its names."""
+    for code in (DOCS / page).read_text("utf-8").split("```python\n")[1:]:
         exec(code.split("```")[0], names)
+    return names
+
+
+def test_code_of_the_guides_runs(here: Path) -> None:
+    names = names_of("how-to/notebooks.md", pt=pt)
     assert names["loaded"].summary == names["results"].summary
+    assert 0.0 < names_of("api.md")["difference"].largest < 0.2
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)

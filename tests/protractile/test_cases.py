@@ -188,11 +188,3 @@ def test_examples_in_docstrings_hold(name: str, at_hand: dict[str, Any]) -> None
     for example in examples_of(import_module(name)):
         example.globs |= at_hand
         assert doctest.DocTestRunner().run(example).failed == 0
-
-
-def test_code_in_the_docs_runs() -> None:
-    """The code of the page on Python runs as it stands."""
-    names: dict[str, Any] = {}
-    for code in (ROOT / "docs/api.md").read_text("utf-8").split("```python\n")[1:]:
-        exec(code.split("```")[0], names)
-    assert 0.0 < names["difference"].largest < 0.2

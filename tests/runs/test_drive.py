@@ -13,7 +13,6 @@ from dynamics.excitation import PiecewiseLinear
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.elastic_drive import elastic_drives
 from runs.case.motion_tables import resolving_times
 from runs.pipeline.drives import drive_lines
 from runs.pipeline.models import build
@@ -24,7 +23,7 @@ from runs.report.figures import draw
 from runs.report.result_tables import drive_table, record_tables, rest_tables
 from runs.report.summary_table import summary_table
 from runs.sweep.points import plan
-from tests.runs.case_texts import edited, elements, read_case, refusal, shipped, table
+from tests.runs.case_texts import edited, read_case, refusal, shipped, table
 from tests.runs.summaries import printed_check
 
 DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
@@ -57,34 +56,6 @@ def test_a_drive_has_a_history(
         assert found.history(np.array([0.0, 2.5, 6.0])) == pytest.approx(ways)
         assert found.reach == pytest.approx(reach)
         assert found.carriers == ("inner", "outer")
-
-
-def test_a_drive_in_other_units(tmp_path: Path) -> None:
-    """Reference: analytic, 4000 mm are 4 m, 2e2 N/mm are 2e5 N/m, 0.5 N s/mm are 500 N s/m."""
-    text = DRAWN.split("[[segment]]")[0].replace("[time]", 'units = "mm-t-s"\n\n[time]')
-    arm, fly, law = (
-        {"mass_per_length": 8.316e-5, "second_moment_of_area": 3.7986e8},
-        {"mass_per_length": 5.507e-5, "second_moment_of_area": 2.1829e8},
-        {"stations": ["tail", "head"], "play": 14.0, "stiffness": 1e6, "exponent": 1.0},
-    )
-    way = {"travel": 4000.0, "speed": 1000.0, "least_overlap": 900.0}
-    way |= {"stiffness": 2e2, "dashpot": 0.5}
-    clamp = [{"x": 0.0, "kind": "clamped"}]
-    boom = (
-        table("[[segment]]", name="arm", length=10000.0, supports=clamp, **arm)
-        + table("[[segment]]", name="fly", length=10000.0, **fly)
-        + table("[[joint]]", outer="arm", inner="fly", extension=5000.0, drive=way, **law)
-    )
-    text = text.replace("2.1e11", "2.1e5").replace("7850.0", "7.85e-9")
-    case = read_case(tmp_path, text + boom + elements("beam", theory="euler-bernoulli"))
-    drive, (pulled,) = (
-        build_boom(case).joints[0].drive,
-        elastic_drives(case, build_boom(case)).values(),
-    )
-    assert (pulled.mass, pulled.stiffness, pulled.dashpot) == pytest.approx((550.7, 2e5, 500.0))
-    assert drive.reach == pytest.approx((0.0, 4.0))
-    assert drive.least_overlap == pytest.approx(0.9)
-    assert drive.history(np.array(2.0)) == pytest.approx(2.0)
 
 
 @pytest.mark.parametrize(

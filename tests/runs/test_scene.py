@@ -377,13 +377,7 @@ def test_a_force_down_points_down() -> None:
 
 def test_amounts_are_read_at_a_glance() -> None:
     """Reference: by hand."""
-    shown = [
-        abbreviate(30e6, "N/m"),
-        abbreviate(1595.0, "N"),
-        abbreviate(83.16, "N/m"),
-        abbreviate(-5e4, "N m"),
-    ]
-    assert shown == ["30 MN/m", "1.595 kN", "83.16 N/m", "−50 kN m"]
+    assert (abbreviate(83.16, "N/m"), abbreviate(-5e4, "N m")) == ("83.16 N/m", "−50 kN m")
 
 
 FRAMES = TIME[::40]

@@ -30,6 +30,7 @@ title = "A crane"
 time = {{ duration = 2.0 }}
 start = {{ velocity = {{ fly = 0.1, base = {{ turn = 0.02 }} }} }}
 damping = {{ stiffness = 1e-4, mass = 0.03 }}
+limits = {{ tip = 0.9, stress = 160e6 }}
 base = [{{ acceleration = 0.3, frequency = 1.7 }}]
 stop = [{{ segment = "fly", x = 15.0, play = 0.2, stiffness = 3e9, exponent = 1.5 }}]
 load = [
@@ -63,6 +64,7 @@ play = 0.0097
 stiffness = 1e13
 restitution = {{ coefficient = 0.8, speed = 0.1 }}
 dashpot = 2000.0
+drive = {{ travel = 0.4, speed = 0.7, least_overlap = 0.6, stiffness = 2e5, dashpot = 500.0 }}
 {beam}
 [[model]]
 name = "soft"
@@ -82,6 +84,10 @@ IN_MM = (
     ("viscous_damping = 3.0", "viscous_damping = 3e-6"), ("8.2", "8200.0"),
     ("head = 0.3", "head = 300.0"), ("0.0097", "9.7"), ("1e13", "1e7"),
     ("speed = 0.1", "speed = 100.0"), ("dashpot = 2000.0", "dashpot = 2.0"),
+    ("tip = 0.9, stress = 160e6", "tip = 900.0, stress = 160.0"),
+    ("travel = 0.4, speed = 0.7", "travel = 400.0, speed = 700.0"),
+    ("least_overlap = 0.6", "least_overlap = 600.0"),
+    ("stiffness = 2e5, dashpot = 500.0", "stiffness = 200.0, dashpot = 0.5"),
     ("15.0", "15000.0"), ("play = 0.2", "play = 200.0"), ("350.0", "3.5e5"), ("-12.0", "-0.012"),
     ("acceleration = 0.3", "acceleration = 300.0"), ("fly = 0.1", "fly = 100.0"),
     ("element_length = 0.25", "element_length = 250.0"),

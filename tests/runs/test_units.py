@@ -1,165 +1,87 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The same boom in SI units and in mm, t and s, to exclude dimensional constants in the program."""
+"""The same numbers in SI units and in mm, t and s, to exclude dimensional constants."""
 
-from collections.abc import Callable
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segment
-from beam_model.segment_model import gap_system
-from dynamics.contact import Gap, PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from dynamics.motion import Motion
-from geometry.boom import Boom, Joint, Lateral, Material, PadSize, PointMass, Segment, Support
-from geometry.section import BoxSection
-from tests.shell_model.booms import flat_boom
-from tests.touching import touching
+from geometry.joint import PadSize
+from runs.case.build import build_boom
+from runs.case.kinds import KINDS
+from runs.case.kinds.model import BuildContext
+from runs.case.reading import convert_to_si
+from runs.case.schema import Case
+from runs.pipeline.models import build
+from tests.runs.case_texts import shipped
+from tests.runs.summaries import rubbing
 
 pytestmark = pytest.mark.slow
 
-
-# Millimetres of a metre, tonnes of a kilogram.
-MM, T = 1.0e3, 1.0e-3
-
 # n = 1, so that the shell's contacts are no stiffer than a run's.
-LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
-QUADRATIC = PowerContact(stiffness=1.0e13, exponent=2.0).with_clearance(7.0e-3)
+LINEAR, QUADRATIC = {"stiffness": 1.0e9, "exponent": 1.0}, {"stiffness": 1.0e13, "exponent": 2.0}
+SERIES = {"kind": "kantorovich", "terms": (3, 3), "base": "complete", "rotary_inertia": True}
+ELEMENTS = {"kind": "finite-element", "element_length": 0.5, "rotary_inertia": True}
+SHELL = {"kind": "shell", "mesh_size": 0.5, "contact_tolerance": "any"}
 
 
-def law_in_mm(law: Gap) -> Gap:
-    """Return the law with k in N/mmⁿ, Δ in mm and d in s/mm."""
-    power = law.law
-    return replace(
-        power,
-        stiffness=power.stiffness / MM**power.exponent,
-        stiffness_below=power.below / MM**power.exponent,
-        damping=power.damping / MM,
-    ).with_clearance(law.above * MM)
+def case_of(table: dict[str, Any], friction: float = 0.2, **joint: Any) -> Case:
+    """Return the coarse case with one model, friction in its joint and other keys of it."""
+    case = rubbing(shipped("coarse"), friction) if friction else shipped("coarse")
+    model = KINDS[table["kind"]].model_validate({"name": "model", **table})
+    joints = tuple(replace(one, **joint) for one in case.joints)
+    return case.model_copy(update={"joints": joints, "models": (model,)})
 
 
-def boom_in_mm(boom: Boom) -> Boom:
-    return Boom(
-        tuple(_segment(segment) for segment in boom.segments),
-        tuple(_joint(joint) for joint in boom.joints),
-    )
-
-
-def _segment(segment: Segment) -> Segment:
-    material, section, lateral = segment.material, segment.section, segment.lateral
-    return replace(
-        segment,
-        start=segment.start * MM,
-        end=segment.end * MM,
-        material=Material(
-            material.youngs_modulus / MM**2, material.poissons_ratio, material.density * T / MM**3
-        ),
-        mass_per_length=segment.mass_per_length * T / MM,
-        second_moment_of_area=segment.second_moment_of_area * MM**4,
-        rotary_inertia=segment.rotary_inertia * T * MM,
-        section=section
-        and BoxSection(
-            *(MM * d for d in (section.height, section.width, section.flange, section.web))
-        ),
-        load=segment.load / MM,
-        supports=tuple(
-            Support(s.x * MM, s.kind, s.stiffness and s.stiffness / MM) for s in segment.supports
-        ),
-        masses=tuple(PointMass(mass.x * MM, mass.mass * T) for mass in segment.masses),
-        lateral=lateral
-        and Lateral(
-            lateral.second_moment_of_area * MM**4,
-            lateral.rotary_inertia * T * MM,
-            lateral.torsion_constant * MM**4,
-            lateral.polar_inertia * T * MM,
-            lateral.load / MM,
-        ),
-    )
-
-
-def _joint(joint: Joint) -> Joint:
-    return replace(
-        joint,
-        stations=tuple(x * MM for x in joint.stations),
-        play=joint.play * MM,
-        lateral_play=joint.lateral_play and joint.lateral_play * MM,
-        pad=joint.pad and PadSize(joint.pad.length * MM, joint.pad.width * MM),
-    )
-
-
-def series(boom: Boom, law: PowerContact) -> GapSystem:
-    models = [kantorovich_segment(s, 3, "complete", rotary_inertia=True) for s in boom.segments]
-    return gap_system(touching(boom, law), models)
-
-
-def elements(boom: Boom, law: PowerContact) -> GapSystem:
-    longest = 0.05 * max(segment.length for segment in boom.segments)
-    models = finite_element_segments(boom, longest, "timoshenko", True)
-    return gap_system(touching(boom, law), models)
-
-
-def _shell(line: str) -> Callable[[Boom, PowerContact], GapSystem]:
-    def shell(boom: Boom, law: PowerContact) -> GapSystem:
+def system_of(case: Case) -> GapSystem:
+    """Return the system of a case's model."""
+    (model,) = case.models
+    tools = None
+    if model.needs_shell:
         pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
         from mpi4py import MPI
 
-        from shell_model.boom_shell import ShellOptions
-        from shell_model.contact.surface import SurfaceOptions
-        from shell_model.reduced_shell import reduce_boom
-
-        options = ShellOptions(
-            mesh_size=0.05 * boom.segments[0].length,
-            contact_line="surface" if line == "surface" else "near webs",
-            surface=SurfaceOptions(points=(4, 2)),
-        )
-        return reduce_boom(touching(boom, law), options, MPI.COMM_SELF).system
-
-    return shell
+        tools = BuildContext(MPI.COMM_SELF)
+    return build(case, build_boom(case), model, tools).system
 
 
-def agree(
-    model: Callable[[Boom, PowerContact], GapSystem],
-    boom: Boom,
-    law: PowerContact,
-    integrator: Integrator,
-    duration: float,
-) -> None:
-    """Check that motions agree: tip within 1e-9 of its range, gaps and energies within 1e-8."""
-    si, mm = (
-        integrator(Motion(model(*data), duration))
-        for data in ((boom, law), (boom_in_mm(boom), law_in_mm(law)))
-    )
+def agree(case: Case, integrator: Integrator, duration: float) -> None:
+    """Check motions of numbers in m and in mm: tip within 1e-9 of its range, the rest 1e-8."""
+    in_mm = convert_to_si(case.model_copy(update={"units": "mm-t-s"}))
+    si, mm = (integrator(Motion(system_of(one), duration)) for one in (case, in_mm))
     assert mm.first_contact == pytest.approx(si.first_contact, rel=1.0e-6)
     assert mm.first_contact < 0.5
     assert mm.energy_residual == pytest.approx(si.energy_residual, rel=0.01, abs=1.0e-9)
-    for name, unit in (("tip", MM), ("tail", MM), ("gap", MM), ("work", MM), ("friction_loss", MM)):
+    for name in ("tip", "tail", "gap", "work", "friction_loss"):
         expected = si.data[name].values
-        apart = np.abs(mm.data[name].values / unit - expected).max()
+        apart = np.abs(1.0e3 * mm.data[name].values - expected).max()
         within = 1.0e-9 if name == "tip" else 1.0e-8
         assert apart <= within * np.ptp(expected), name
 
 
-@pytest.mark.parametrize("model", [series, elements], ids=["series", "elements"])
+@pytest.mark.parametrize("model", [SERIES, ELEMENTS], ids=["series", "elements"])
 @pytest.mark.parametrize("law", [LINEAR, QUADRATIC], ids=["linear", "quadratic"])
-def test_beams_do_not_know_the_units(
-    model: Callable[[Boom, PowerContact], GapSystem], law: PowerContact
-) -> None:
+def test_beams_do_not_know_the_units(model: dict[str, Any], law: dict[str, float]) -> None:
     """Reference: the model in SI units within 1e-9, with friction and contacts."""
-    agree(model, flat_boom(friction=0.2), law, FixedStep(1.0e-4), 1.0)
+    agree(case_of(model, **law), FixedStep(1.0e-4), 1.0)
 
 
 def test_steps_by_tolerance_do_not_know_the_units() -> None:
     """Reference: the same model in SI units, without play or without friction, until chaos."""
-    agree(series, flat_boom(), LINEAR.law.with_clearance(0.0), AdaptiveStep(), 0.3)
+    agree(case_of(SERIES, friction=0.0, play=0.0, **LINEAR), AdaptiveStep(), 0.3)
 
 
-@pytest.mark.parametrize("line", ["near webs", "pads", "surface"])
-def test_shells_do_not_know_the_units(line: str) -> None:
+@pytest.mark.parametrize(
+    ("line", "pad"),
+    [("near webs", None), ("near webs", PadSize(0.1, 0.06)), ("surface", None)],
+    ids=["near webs", "pads", "surface"],
+)
+def test_shells_do_not_know_the_units(line: str, pad: PadSize | None) -> None:
     """Reference: the model in SI units within 1e-9, a coarse mesh with friction."""
-    boom = flat_boom(friction=0.2)
-    if line == "pads":
-        boom = replace(boom, joints=(replace(boom.joints[0], pad=PadSize(0.1, 0.06)),))
-    agree(_shell(line), boom, LINEAR, FixedStep(1.0e-4), 0.6)
+    points = {"surface_points": (4, 2)} if line == "surface" else {}
+    model = SHELL | {"contact_line": line} | points
+    agree(case_of(model, pad=pad, **LINEAR), FixedStep(1.0e-4), 0.6)
