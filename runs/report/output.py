@@ -3,14 +3,11 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
-from io import StringIO
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
 import xarray as xr
 
@@ -144,28 +141,16 @@ def _write_pages(
 
 def write_csv(trajectories: xr.Dataset, path: Path) -> None:
     """Write trajectories as CSV, a line per model and time; station columns are ``NAME@PLACE``."""
-    columns = {}
     places = trajectories["place"].values if "place" in trajectories.coords else ()
-    for name, variable in trajectories.data_vars.items():
+    columns: dict[str, xr.DataArray] = {}
+    for name, variable in trajectories.reset_coords(drop=True).data_vars.items():
         if "station" in variable.dims:
-            of_stations = variable.drop_vars(["station", "direction", "place"])
-            for place, values in zip(places, of_stations.transpose("station", ...), strict=True):
-                columns[f"{name}@{place}"] = values
+            for i, place in enumerate(places):
+                columns[f"{name}@{place}"] = variable.isel(station=i, drop=True)
         else:
             columns[str(name)] = variable
-    values = xr.Dataset(columns).to_array().transpose("model", "time", "variable").values
-    time = trajectories["time"].values
-    line = ",%.9g" * (1 + len(columns)) + "\r\n"
-    with path.open("w", newline="", encoding="utf-8") as file:
-        table = csv.writer(file)
-        table.writerow(["model", "time", *columns])
-        for name, rows in zip(trajectories["model"].values, values, strict=True):
-            # numpy writes four times as fast as csv.writer.
-            begin = StringIO()
-            csv.writer(begin, lineterminator="").writerow([name])
-            numbers = np.column_stack([time, rows]).tolist()
-            lines = [(line % tuple(row)).replace("nan", "") for row in numbers]
-            file.writelines(f"{begin.getvalue()}{text}" for text in lines)
+    frame = xr.Dataset(columns).to_dataframe(["model", "time"])
+    frame.to_csv(path, float_format="%.9g", lineterminator="\r\n")
 
 
 def write_workbook(results: Results, folder: Path, name: str, option: str) -> None:
