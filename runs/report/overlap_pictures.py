@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -54,8 +54,8 @@ PIXELS = (SHEET[0], 625)
 STRESS_PIXELS, BOOM_PIXELS = (SHEET[0], 475), (1160, 195)
 BOOM_DISPLACEMENT = 0.1
 
-# Colours of the segments' cut walls in stress pictures.
-CUT_OUTER, CUT_INNER = "#ffffff", "#c8c8c8"
+# Colours of the cut walls of the outer and the inner segment in stress pictures.
+CUT_COLORS = "#ffffff", "#c8c8c8"
 
 # A peak force is shown beside the mean if it exceeds the mean by this factor.
 PEAK = 1.02
@@ -75,14 +75,6 @@ ENOUGH = 4
 
 # A round number above this fraction of the scale would overlap the number at its end.
 LAST_TICK = 0.65
-
-
-class HalfBox(NamedTuple):
-    """Half of a segment behind a cut: pyvista surface, its style, and colour of the cut walls."""
-
-    surface: Any
-    look: Mapping[str, Any]
-    cut: str
 
 
 @dataclass(frozen=True)
@@ -160,12 +152,6 @@ class OverlapView:
         """The numbers of the outer and the inner segment."""
         return self.overlap.outer, self.overlap.inner
 
-    @property
-    def names(self) -> tuple[str, str]:
-        """The names of the outer and the inner segment."""
-        outer, inner = (self.scene.boom.segments[number].name for number in self.numbers)
-        return outer, inner
-
     def places(self, time: float) -> Array:
         """Return the displayed points (num_points, 3) in m at a time in s."""
         return self.scene.magnify(self._relative_displacements(time), self.scale, 1.0)
@@ -190,11 +176,6 @@ class OverlapView:
         centre = np.array([self.midpoint, 0.0, np.mean(self.ends(places))])
         return Camera(centre, self.width, self.pixels, elevation=8.0)
 
-    def half(self, segment: int) -> Numbers:
-        """Return the point numbers (num_triangles, 3) of a segment's triangles behind the cut."""
-        mine = self.scene.segment == segment
-        return np.asarray(self.scene.triangles[self.behind & mine])
-
     def sheet(self, floor: int) -> Sheet:
         """Return a sheet with the x axis of the view; ``floor`` is its height in pixels."""
         sheet, half = Sheet(self.pixels, floor), 0.475 * self.width
@@ -202,7 +183,13 @@ class OverlapView:
         return sheet
 
     def draw(
-        self, plotter: Any, sheet: Sheet, time: float, places: Array, halves: Sequence[HalfBox]
+        self,
+        plotter: Any,
+        sheet: Sheet,
+        time: float,
+        places: Array,
+        cuts: Iterable[str],
+        stress: tuple[Array, StressScale] | None = None,
     ) -> None:
         """Draw both segments and the forces between them on a sheet.
 
@@ -211,15 +198,23 @@ class OverlapView:
             sheet: sheet of the picture.
             time: time in s.
             places: displayed points at that time.
-            halves: outer and inner segment behind the cut.
+            cuts: colours of the cut walls of the outer and the inner segment, which are also those
+                of the other walls unless these show stresses.
+            stress: stresses (num_triangles, 3) at corners in Pa, and their scale.
         """
         camera, wall = self.camera(places), self.scene.wall(self.overlap)
         plotter.clear_actors()
-        for number, half in zip(self.numbers, halves, strict=True):
-            plotter.add_mesh(half.surface, **(MATTE | MESHED | dict(half.look)))
+        for number, color in zip(self.numbers, cuts, strict=False):
+            mine = self.behind & (self.scene.segment == number)
+            half, look = surface(places, self.scene.triangles[mine]), {"color": color}
+            if stress is not None:
+                values, scale = stress
+                half = _surface_with_values(places, self.scene.triangles[mine], values[mine])
+                look = scale.look
+            plotter.add_mesh(half, **(MATTE | MESHED | look))
             for side in (-1, 1):
                 cut = _band(self.flange(places, number, side), wall)
-                plotter.add_mesh(cut, color=half.cut, **UNLIT)
+                plotter.add_mesh(cut, color=color, **UNLIT)
                 plotter.add_mesh(sharp_edges(cut), color=theme.INK, line_width=4.0, **UNLIT)
         sheet.show(camera.render(plotter))
         strongest = np.abs(self.motion["contact_force"].values).max()
@@ -256,7 +251,7 @@ def draw_overlap(
 ) -> Iterator[Image.Image]:
     """Yield sectional views of an overlap, with the forces at its stations."""
     view = OverlapView(scene, overlap, [instant.time for instant in instants])
-    outer, inner = view.names
+    outer, inner = (scene.boom.segments[number].name for number in view.numbers)
     labels = {theme.OUTER: outer, theme.INNER: inner, theme.FORCE: f"force of {inner} on {outer}"}
     aside = "seen from above, " if scene.from_above else ""
     sheet = view.sheet(floor=90)
@@ -269,12 +264,7 @@ def draw_overlap(
     )
     with stage(PIXELS) as plotter:
         for instant in instants:
-            places = view.places(instant.time)
-            halves = [
-                HalfBox(surface(places, view.half(number)), {"color": color}, color)
-                for number, color in zip(view.numbers, labels, strict=False)
-            ]
-            view.draw(plotter, sheet, instant.time, places, halves)
+            view.draw(plotter, sheet, instant.time, view.places(instant.time), labels)
             sheet.write(
                 instant.heading(scene),
                 f"{aside}cut open; play and displacements relative to {outer} × {view.scale:g}, "
@@ -359,19 +349,7 @@ def draw_stress(
             for instant, values, boom in zip(instants, corners, booms, strict=True):
                 sheet.show(boom, 20, 550)
                 places = view.places(instant.time)
-                halves = [
-                    HalfBox(
-                        _surface_with_values(
-                            places,
-                            view.half(number),
-                            values[view.behind & (scene.segment == number)],
-                        ),
-                        scale.look,
-                        color,
-                    )
-                    for number, color in zip(view.numbers, (CUT_OUTER, CUT_INNER), strict=True)
-                ]
-                view.draw(plotter, sheet, instant.time, places, halves)
+                view.draw(plotter, sheet, instant.time, places, CUT_COLORS, (values, scale))
                 sheet.write(
                     instant.heading(scene),
                     f"{aside}boom: displacements × {whole.scale:g}, sections × {SECTION_DRAWN:g}; "
