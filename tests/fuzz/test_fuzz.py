@@ -1,25 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A sample of ``make fuzz``, and detection of breaches."""
 
-import subprocess
-import sys
-from pathlib import Path
-
 import pytest
 
 from tests.fuzz.contract import Ending
+from tests.system.run_folder import python
 
 
 @pytest.mark.slow
 def test_a_sample_keeps_the_contract() -> None:
     """In a process of its own, which may fork."""
-    answer = subprocess.run(
-        [sys.executable, "-m", "tests.fuzz", "22"],
-        cwd=Path(__file__).parents[2],
-        check=False,
-        capture_output=True,
-        text=True,
-    )
+    answer = python("-m", "tests.fuzz", "22")
     assert (answer.returncode, answer.stderr) == (0, ""), answer.stdout
     assert answer.stdout.endswith("22 of 22 keep the contract\n")
 

@@ -3,7 +3,6 @@
 
 import doctest
 import inspect
-import subprocess
 import sys
 import tomllib
 from dataclasses import replace
@@ -20,7 +19,7 @@ import protractile as pt
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import simulate
 from runs.report import output
-from tests.system.run_folder import COARSE, files, protractile
+from tests.system.run_folder import COARSE, files, protractile, python, write_coarse
 
 BEAM = ["beam-fe-bonded"]
 TABLES = tomllib.loads(Path(COARSE).read_text("utf-8"))
@@ -57,17 +56,15 @@ def test_check_returns_the_output_of_the_command(capsys: pytest.CaptureFixture[s
 @pytest.mark.usefixtures("in_this_process", "unprinted")
 def test_a_sweep_writes_the_files_of_the_command(tmp_path: Path) -> None:
     """Reference: other code path, to the bit."""
-    case = tmp_path / "short.toml"
-    text = Path(COARSE).read_text("utf-8").replace("duration = 0.6", "duration = 0.02")
-    case.write_text(text, "utf-8")
-    command, python = tmp_path / "command", tmp_path / "python"
+    case = write_coarse(tmp_path, 0.02)
+    command, ours = tmp_path / "command", tmp_path / "python"
     vary = ["--vary", "joint.play=0.007,0.014", "--models", "kantorovich-4", "--out", command]
     assert protractile("sweep", case, *vary) == 0
     values = {"joint.play": [0.007, 0.014]}
-    data = pt.sweep(pt.load_case(case), values, ["kantorovich-4"], folder=python)
-    assert files(python) == files(command)
-    xr.testing.assert_identical(xr.load_dataset(python / "sweep.nc"), data)
-    assert (python / "sweep.csv").read_bytes() == (command / "sweep.csv").read_bytes()
+    data = pt.sweep(pt.load_case(case), values, ["kantorovich-4"], folder=ours)
+    assert files(ours) == files(command)
+    xr.testing.assert_identical(xr.load_dataset(ours / "sweep.nc"), data)
+    assert (ours / "sweep.csv").read_bytes() == (command / "sweep.csv").read_bytes()
 
 
 def test_frequencies_of_one_case_and_of_several() -> None:
@@ -129,9 +126,7 @@ def test_without_openpyxl_one_line_says_so(
 @pytest.mark.usefixtures("few_figures", "unprinted")
 def test_a_run_in_python_writes_the_folder_of_the_command(tmp_path: Path) -> None:
     """Reference: other code path."""
-    case = tmp_path / "short.toml"
-    text = Path(COARSE).read_text("utf-8").replace("duration = 0.6", "duration = 0.02")
-    case.write_text(text, "utf-8")
+    case = write_coarse(tmp_path, 0.02)
     assert protractile("run", case, "--models", BEAM[0], "--out", tmp_path / "command") == 0
     pt.run_case(pt.load_case(case), BEAM, folder=tmp_path / "python")
     assert files(tmp_path / "python") == files(tmp_path / "command")
@@ -151,10 +146,7 @@ EXPLAINED = sorted(
 
 def test_nothing_heavy_comes_with_the_import() -> None:
     told = f"import sys, protractile; print(sorted({set(HEAVY)} & set(sys.modules)))"
-    answer = subprocess.run(
-        [sys.executable, "-c", told], capture_output=True, text=True, check=True
-    )
-    assert answer.stdout.strip() == "[]"
+    assert python("-c", told).stdout.strip() == "[]"
 
 
 def test_unknown_name_is_refused() -> None:

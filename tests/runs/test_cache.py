@@ -3,8 +3,6 @@
 
 import os
 import pickle
-import subprocess
-import sys
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import replace
@@ -23,8 +21,8 @@ from dynamics.gap_system import Observer
 from geometry.boom import Boom
 from runs.folder.cache import Cache, key, read_record, write_record
 from runs.process.terminal import shorten
+from tests.system.run_folder import python
 
-ROOT = Path(__file__).parents[2]
 # The file of the entry "a".
 ENTRY = "a.record"
 
@@ -75,8 +73,7 @@ def test_cache_removes_files_of_a_killed_process(tmp_path: Path) -> None:
         "import os; from pathlib import Path; from runs.folder.cache import Cache; "
         f"os.replace = lambda *_: os._exit(9); Cache(Path({str(tmp_path)!r})).store('a', 'first')"
     )
-    killed = subprocess.run([sys.executable, "-c", program], cwd=ROOT, check=False)
-    assert killed.returncode == 9
+    assert python("-c", program).returncode == 9
     (left,) = tmp_path.iterdir()
     cache = Cache(tmp_path)
     assert cache.load("a", str) is None

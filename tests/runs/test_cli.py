@@ -8,18 +8,19 @@ import resource
 import subprocess
 import sys
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
 from runs import cli
+from tests.runs.case_texts import COARSE
+from tests.system.run_folder import python, write_coarse
 from tests.unprinted import ONE_BLANK_FIGURE
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 
-ROOT = Path(__file__).parents[2]
-COARSE = (ROOT / "runs" / "cases" / "coarse.toml").read_text(encoding="utf-8")
 SHORT = "duration = 0.02"
 SERIES = "--models kantorovich-4,kantorovich-5"
 
@@ -59,21 +60,9 @@ def in_a_process(
     folder: Path, *arguments: str, limit: int | None = None, **environment: str
 ) -> subprocess.CompletedProcess[str]:
     """Run Python in a folder with the coarse case, with limited memory in bytes if given."""
-    (folder / "case.toml").write_text(COARSE.replace("duration = 0.6", "duration = 0.2"), "utf-8")
-
-    def keep_to_limit() -> None:
-        if limit is not None:
-            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-
-    return subprocess.run(
-        [sys.executable, *arguments],
-        cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"} | environment,
-        capture_output=True,
-        text=True,
-        check=False,
-        preexec_fn=keep_to_limit,
-    )
+    write_coarse(folder, 0.2)
+    keep = limit and partial(resource.setrlimit, resource.RLIMIT_AS, (limit, limit))
+    return python(*arguments, folder=folder, prepare=keep, **environment)
 
 
 def test_check_prints_inferred_boxes(protractile: Protractile) -> None:

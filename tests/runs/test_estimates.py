@@ -3,8 +3,6 @@
 
 import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 from time import process_time
 
@@ -29,8 +27,7 @@ from runs.pipeline.estimates import (
 from runs.sweep import points as sweep_points
 from tests.runs.case_texts import COARSE, edited, refused, shipped
 from tests.runs.summaries import printed
-
-ROOT = Path(__file__).parents[2]
+from tests.system.run_folder import python
 
 PROGRAM = """
 import sys
@@ -60,13 +57,8 @@ def write(edits: dict[str, str]) -> None:
 
 def memory(*arguments: str) -> int:
     """Return the largest resident set of a run in bytes."""
-    answer = subprocess.run(
-        [sys.executable, "-c", PROGRAM, "run", "case.toml", "--out", "out", *arguments],
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        check=True,
-        capture_output=True,
-        text=True,
-    )
+    command = "run", "case.toml", "--out", "out", *arguments
+    answer = python("-c", PROGRAM, *command, folder=Path())
     return int(answer.stdout.split()[-1])
 
 

@@ -4,10 +4,7 @@
 from __future__ import annotations
 
 import ast
-import os
 import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
 from importlib.metadata import PackageNotFoundError, version
@@ -20,8 +17,8 @@ from runs.folder.versions import packages, program, sources
 from runs.paper.statements import STATEMENTS
 from runs.paper.verdicts import addition, evidence
 from tests.runs.case_texts import shipped
+from tests.system.run_folder import ROOT, python
 
-ROOT = Path(__file__).parents[2]
 # What each room knows besides itself.
 BELOW = {"geometry", "dynamics"}
 ROOMS = {
@@ -103,14 +100,8 @@ def test_the_paper_is_a_client(graph: dict[str, set[str]]) -> None:
 
 def answer(*arguments: str) -> tuple[str, set[str]]:
     """Return the output of a successful command, and the modules that it has imported."""
-    done = subprocess.run(
-        [sys.executable, "-c", PROGRAM, *arguments],
-        cwd=ROOT,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
-        check=True,
-        capture_output=True,
-        text=True,
-    )
+    done = python("-c", PROGRAM, *arguments)
+    assert done.returncode == 0, done.stderr
     return done.stdout, set(done.stderr.split())
 
 
@@ -135,10 +126,7 @@ def test_version_is_the_installed_one() -> None:
 
 def test_importing_the_package_keeps_warnings() -> None:
     program = "import warnings, protractile as pt; pt.load_case; warnings.warn('heard')"
-    done = subprocess.run(
-        [sys.executable, "-c", program], cwd=ROOT, check=True, capture_output=True, text=True
-    )
-    assert "UserWarning: heard" in done.stderr
+    assert "UserWarning: heard" in python("-c", program).stderr
 
 
 def test_modules_in_all_folders_count(tmp_path: Path) -> None:

@@ -5,7 +5,6 @@ import base64
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from html.parser import HTMLParser
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -32,6 +31,7 @@ from runs.report.pages import Addition
 from runs.report.terminal_tables import print_models
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import changed, model_summary, printed, summary_of
+from tests.system.run_folder import Page
 
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-bonded"]
 GIF = base64.b64decode("R0lGODlhAQABAIAAAP///wAAACwAAAAAAQABAAACAkQBADs=")
@@ -47,28 +47,6 @@ def figures(tmp_path: Path) -> list[Figure]:
     image.imsave(tmp_path / "tip.png", np.zeros((2, 2)))
     path = tmp_path / "tip.png"
     return [Figure(path, "Tip <of> the boom", "A caption & more.")]
-
-
-class Page(HTMLParser):
-    """Parser of tags with attributes, and of the text outside the style sheet."""
-
-    def __init__(self, text: str) -> None:
-        super().__init__()
-        self.tags: list[tuple[str, dict[str, str | None]]] = []
-        self.text = ""
-        self.style = ""
-        self.feed(text)
-
-    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
-        self.tags.append((tag, dict(attrs)))
-
-    def handle_data(self, data: str) -> None:
-        if self.tags and self.tags[-1][0] == "style":
-            self.style += data
-        self.text += data
-
-    def all(self, tag: str) -> list[dict[str, str | None]]:
-        return [attributes for name, attributes in self.tags if name == tag]
 
 
 def report(

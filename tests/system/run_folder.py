@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The command line of a user, and the required files of every run."""
+"""The command line of a user, also in a process of its own, and the files of every run."""
 
 import csv
 import json
+import os
+import subprocess
+import sys
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Callable
 from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any
@@ -29,6 +32,32 @@ def protractile(*arguments: str | Path) -> int | str | None:
     return ended.value.code
 
 
+def python(
+    *arguments: str | Path,
+    folder: Path = ROOT,
+    prepare: Callable[[], object] | None = None,
+    **environment: str,
+) -> subprocess.CompletedProcess[str]:
+    """Run Python in a process of its own, which imports this program and is no test worker."""
+    outside = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
+    return subprocess.run(
+        [sys.executable, *arguments],
+        cwd=folder,
+        env=outside | {"PYTHONPATH": str(ROOT), "OMP_NUM_THREADS": "1"} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+        preexec_fn=prepare,
+    )
+
+
+def write_coarse(folder: Path, duration: float) -> Path:
+    """Write the coarse case with a duration in s to case.toml, and return its path."""
+    text = Path(COARSE).read_text("utf-8").replace("duration = 0.6", f"duration = {duration:g}")
+    (folder / "case.toml").write_text(text, "utf-8")
+    return folder / "case.toml"
+
+
 def files(folder: Path) -> set[str]:
     """All files of a folder, by their paths in it."""
     return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
@@ -44,26 +73,31 @@ def trajectories(folder: Path) -> xr.Dataset:
     return xr.load_dataset(folder / "trajectories.nc", engine="scipy")
 
 
-class _Page(HTMLParser):
-    """Parser of unclosed tags, and of external resources of a page."""
+class Page(HTMLParser):
+    """Parser of tags, all of which must be closed, and of the text outside the style sheet."""
 
-    def __init__(self) -> None:
+    def __init__(self, text: str) -> None:
         super().__init__()
+        self.tags: list[tuple[str, dict[str, str | None]]] = []
         self.open: list[str] = []
-        self.fetched: list[str] = []
-        self.pictures = 0
+        self.text = self.style = ""
+        self.feed(text)
 
-    def handle_starttag(self, tag: str, attrs: Sequence[tuple[str, str | None]]) -> None:
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.tags.append((tag, dict(attrs)))
         if tag not in {"meta", "link", "img", "br", "hr", "input", "col", "wbr"}:
             self.open.append(tag)
-        source = dict(attrs).get("src") or ""
-        if tag == "img" and source.startswith("data:image/"):
-            self.pictures += 1
-        elif source or tag == "link":
-            self.fetched.append(source)
 
     def handle_endtag(self, tag: str) -> None:
         assert self.open.pop() == tag
+
+    def handle_data(self, data: str) -> None:
+        if self.tags and self.tags[-1][0] == "style":
+            self.style += data
+        self.text += data
+
+    def all(self, tag: str) -> list[dict[str, str | None]]:
+        return [attributes for name, attributes in self.tags if name == tag]
 
 
 def check_common_files(folder: Path, models: list[str]) -> None:
@@ -89,8 +123,9 @@ def check_common_files(folder: Path, models: list[str]) -> None:
     for picture in (folder / "figures").iterdir():
         with Image.open(picture) as image:
             image.verify()
-    page = _Page()
-    page.feed((folder / "report.html").read_text(encoding="utf-8"))
-    assert (page.open, page.fetched) == ([], [])
+    page = Page((folder / "report.html").read_text(encoding="utf-8"))
+    assert page.open == page.all("link") == []
+    sources = [str(attributes["src"]) for _, attributes in page.tags if attributes.get("src")]
+    assert all(source.startswith("data:image/") for source in sources)
     pictures = [*(folder / "figures").iterdir(), *summary["snapshots"]["written"]]
-    assert page.pictures == len(pictures)
+    assert len(sources) == len(pictures)

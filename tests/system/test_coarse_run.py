@@ -27,6 +27,7 @@ from tests.system.run_folder import (
     protractile,
     summary_of,
     trajectories,
+    write_coarse,
 )
 
 pytestmark = pytest.mark.slow
@@ -56,10 +57,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.fixture
 def short(tmp_path: Path) -> Path:
     """Return the file of the case for 0.02 s."""
-    text = Path(COARSE).read_text(encoding="utf-8").replace("duration = 0.6", "duration = 0.02")
-    path = tmp_path / "case.toml"
-    path.write_text(text, encoding="utf-8")
-    return path
+    return write_coarse(tmp_path, 0.02)
 
 
 @pytest.fixture

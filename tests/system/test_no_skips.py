@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """A skipped test fails in runs that must not skip tests."""
 
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parents[2]
+from tests.system.run_folder import python
+
 MARKED = "import pytest\n@pytest.mark.skip(reason='no tool')\ndef test(): pass\n"
 ASKED = "import pytest\ndef test(): pytest.skip('no tool')\n"
 WHOLE = "import pytest\npytest.skip('no tool', allow_module_level=True)\n"
@@ -18,15 +16,8 @@ EXPECTED = "import pytest\n@pytest.mark.xfail\ndef test(): assert False\n"
 def outcome(folder: Path, text: str, *arguments: str) -> tuple[int, str]:
     """Exit status and output of pytest on one file."""
     (folder / "test_it.py").write_text(text, encoding="utf-8")
-    outside = {k: v for k, v in os.environ.items() if not k.startswith("PYTEST_")}
-    done = subprocess.run(
-        [sys.executable, "-m", "pytest", "-p", "no:cacheprovider", *arguments, "test_it.py"],
-        cwd=folder,
-        env=outside | {"PYTHONPATH": str(ROOT)},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    command = "-m", "pytest", "-p", "no:cacheprovider", *arguments, "test_it.py"
+    done = python(*command, folder=folder)
     return done.returncode, done.stdout
 
 

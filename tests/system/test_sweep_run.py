@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from PIL import Image
 
-from tests.system.run_folder import COARSE, files, protractile
+from tests.system.run_folder import files, protractile, write_coarse
 
 pytestmark = pytest.mark.slow
 
@@ -21,18 +21,10 @@ COMMAND = "from runs import cli; cli.main()"
 PLAYS = "--vary", "joint.play=0.006:0.014:3"
 
 
-def write_case(folder: Path) -> Path:
-    """Write the coarse case until shortly after its first contact, as case.toml."""
-    path = folder / "case.toml"
-    text = Path(COARSE).read_text(encoding="utf-8")
-    path.write_text(text.replace("duration = 0.6", "duration = 0.2"), encoding="utf-8")
-    return path
-
-
 @pytest.fixture
 def case(here: Path) -> str:
-    """Write case.toml to the current folder."""
-    return write_case(here).name
+    """Write the case until shortly after its first contact to the current folder."""
+    return write_coarse(here, 0.2).name
 
 
 @pytest.fixture(scope="module")
@@ -41,7 +33,7 @@ def swept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     folder = tmp_path_factory.mktemp("swept")
     out, said = folder / "out", io.StringIO()
     with redirect_stdout(said):
-        assert protractile("sweep", write_case(folder), *PLAYS, *MODELS, "--out", out) == 0
+        assert protractile("sweep", write_coarse(folder, 0.2), *PLAYS, *MODELS, "--out", out) == 0
     (folder / "said").write_text(said.getvalue(), encoding="utf-8")
     return out
 

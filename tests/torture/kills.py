@@ -18,13 +18,11 @@ from typing import Any
 
 import numpy as np
 
-from runs import CASES
 from tests.fuzz.contract import PROGRESS
+from tests.system.run_folder import ROOT, write_coarse
 from tests.torture.shared_cache import COMMAND, IN_THE_MAKING, Row, left
 from tests.unprinted import ONE_BLANK_FIGURE
 
-_ROOT = Path(__file__).parents[2]
-_COARSE = CASES / "coarse.toml"
 # The first moment of all is late in a command, where it writes.
 _SEED = 76
 _COMMAND = sys.executable, "-c", COMMAND
@@ -71,11 +69,11 @@ def killed(
     for name, command in commands:
         place = folder / name
         place.mkdir()
-        _write_case(place, 0.1)
+        write_coarse(place, 0.1)
         assert _start(place, command).wait() == 0
         shutil.copytree(place, folder / "old", symlinks=True)
         old = left(place / "out")
-        _write_case(place, 0.2)
+        write_coarse(place, 0.2)
         begin = time.monotonic()
         assert _start(place, command).wait() == 0
         lasts = time.monotonic() - begin
@@ -84,7 +82,7 @@ def killed(
         for moment in random.uniform(0.0, lasts, tries):
             shutil.rmtree(place)
             shutil.copytree(folder / "old", place, symlinks=True)
-            _write_case(place, 0.2)
+            write_coarse(place, 0.2)
             process = _start(place, command)
             time.sleep(moment)
             _kill(process)
@@ -107,7 +105,7 @@ def terminated(place: Path, tries: int, options: Sequence[str] = ("--mesh-size",
     """
     command = *_COLD_SHELL, *options
     random = np.random.default_rng(_SEED)
-    _write_case(place, 0.1)
+    write_coarse(place, 0.1)
     process, begin = _cold_shell(place, command), time.monotonic()
     assert process.communicate()
     assert process.returncode == 0
@@ -149,19 +147,12 @@ def listens(process: subprocess.Popen[Any]) -> bool:
     return False
 
 
-def _write_case(place: Path, duration: float) -> None:
-    """Write the coarse case with a duration in s."""
-    text = _COARSE.read_text(encoding="utf-8")
-    text = text.replace("duration = 0.6", f"duration = {duration:g}")
-    (place / "case.toml").write_text(text, encoding="utf-8")
-
-
 def _start(
     place: Path, command: Sequence[str], err: int = subprocess.DEVNULL
 ) -> subprocess.Popen[bytes]:
     """Start a command in a session of its own."""
     (place / "tmp").mkdir(exist_ok=True)
-    own = {"PYTHONPATH": str(_ROOT), "PROTRACTILE_CACHE": "cache", "TMPDIR": str(place / "tmp")}
+    own = {"PYTHONPATH": str(ROOT), "PROTRACTILE_CACHE": "cache", "TMPDIR": str(place / "tmp")}
     # A process that has entered MPI by itself must not pass its own rank on.
     outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_C", "PMIX_", "PMI"))}
     return subprocess.Popen(
