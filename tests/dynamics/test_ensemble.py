@@ -129,17 +129,6 @@ def test_another_rank_gives_the_same(
     assert (answer.returncode, answer.stdout.split()) == (0, ["identical"]), answer.stderr
 
 
-def test_keeps_labels_and_nothing_more() -> None:
-    ensemble = integrate_ensemble(Motion(CHAOTIC, 1.0, 1e-2), 4, 1e-6, 1, "load")
-    assert dict(ensemble.sizes) == {"member": 4, "time": 101, "station": 1}
-    assert set(ensemble.data_vars) == {"tip", "contact_force", "energy_residual"}
-    assert ensemble["contact_force"].dims == ("member", "time", "station")
-    units = [ensemble[name].attrs["units"] for name in ("tip", "contact_force", "time")]
-    assert units == ["m", "N", "s"]
-    assert set(ensemble.attrs) == {"vary", "relative", "seed", "integrator", "step"}
-    assert ensemble.attrs["integrator"] == "AdaptiveStep(tolerance=0.001)"
-
-
 def test_changes_are_uniform_and_spare_member_0() -> None:
     """Reference: analytic. Uniform within ±ε: the mean is 0, the deviation ε/√3."""
     changes = perturbations(10_001, 1e-3, 5)
@@ -168,12 +157,6 @@ def test_completed_motion_serves_as_member_0() -> None:
         for unchanged in (None, way(motion))
     ]
     xr.testing.assert_identical(*found)
-
-
-def test_tells_its_progress() -> None:
-    parts: list[float] = []
-    integrate_ensemble(Motion(LINEAR, 1.0, 1e-2), 4, 1e-6, 1, "load", progress=parts.append)
-    assert parts == [1.0 / 3.0, 2.0 / 3.0, 1.0]
 
 
 def test_failing_member_ends_the_ensemble() -> None:
@@ -391,9 +374,3 @@ def test_progress_of_horizons_is_reported() -> None:
     )
     assert np.all(np.diff(parts) >= 0.0)
     assert parts[-1] == 1.0
-
-
-def test_insensitive_systems_are_refused() -> None:
-    message = "the velocity is zero, so that no relative change moves it"
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        measure_horizons(Motion(LINEAR, 1.0), [1e-9], "velocity")

@@ -63,8 +63,7 @@ def test_unsupported_mass_has_no_equilibrium() -> None:
 
 def test_buckled_system_has_no_equilibrium() -> None:
     """The axial forces exceed the stiffness of its spring."""
-    free = {"rows": np.zeros((0, 1)), "laws": [], "station_of_row": np.zeros(0, dtype=np.int64)}
-    buckled = replace(mass_over_stop(1.0, 900.0), **free, geometric_stiffness=np.array([[901.0]]))
+    buckled = modal_system([900.0], [0.0], geometric_stiffness=np.array([[901.0]]))
     message = "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
     with pytest.raises(NumericsError, match=f"^{message}$"):
         equilibrium(buckled, np.ones(1))

@@ -3,7 +3,7 @@
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -92,25 +92,17 @@ class Stretch:
         pull = system.load - system.omega2 * state[:n]
         return np.concatenate([state[n:], pull + system.friction_rows.T @ self.forces(state)])
 
+    def turn(self, j: int) -> Callable[[float, Array], float]:
+        """Return the event of row j: it comes to rest, or cannot stick any longer."""
 
-@dataclass(frozen=True)
-class Turn:
-    """Event of row j: it comes to rest, or cannot stick any longer.
+        def left(_: float, state: Array) -> float:
+            if self.sign[j] == 0.0:
+                return float(self.limits[j] - abs(self.forces(state)[j]))
+            speed = self.system.friction_rows[j] @ state[self.system.num_modes :]
+            return float(self.sign[j] * speed)
 
-    ``terminal`` and ``direction`` are attributes for scipy's ``solve_ivp``.
-    """
-
-    stretch: Stretch
-    j: int
-    terminal: bool = True
-    direction: float = -1.0
-
-    def __call__(self, _: float, state: Array) -> float:
-        stretch, j = self.stretch, self.j
-        if stretch.sign[j] == 0.0:
-            return float(stretch.limits[j] - abs(stretch.forces(state)[j]))
-        speed = stretch.system.friction_rows[j] @ state[stretch.system.num_modes :]
-        return float(stretch.sign[j] * speed)
+        left.terminal, left.direction = True, -1.0
+        return left
 
 
 def motion_by_events(system: GapSystem, limits: Array, velocity: Array, times: Array) -> Array:
@@ -128,7 +120,7 @@ def motion_by_events(system: GapSystem, limits: Array, velocity: Array, times: A
             continue
         part = solve_ivp(
             stretch.rate, (now, times[-1]), state, "DOP853", rtol=1e-11, atol=1e-13,
-            events=[Turn(stretch, j) for j in range(limits.size)], dense_output=True,
+            events=[stretch.turn(j) for j in range(limits.size)], dense_output=True,
         )  # fmt: skip
         inside = times[(times > now) & (times <= part.t[-1])]
         out.extend(part.sol(inside).T[:, :n] if inside.size else [])

@@ -36,21 +36,15 @@ def test_numbers_of_a_system() -> None:
     assert system.num_modes == 3
     assert system.frequencies == pytest.approx([0.0, 1.0, 1.5], rel=1e-14)
     assert system.row_masses == pytest.approx([1.0 / 25.0, 4.0], rel=1e-14)
-    assert not system.damping.any()
-    assert system.damping.shape == (3,)
+    assert system.damping.tolist() == [0.0, 0.0, 0.0]
 
 
-def test_friction_excitations_and_directions_are_optional() -> None:
+def test_friction_and_directions_are_optional_and_loads_add_up() -> None:
     system = GapSystem(**parts())
     assert system.friction_rows.shape == (0, 3)
-    assert not system.frictions
-    assert not system.excitations
     assert tuple(system.station_directions) == ("z", "z")
-    assert system.largest_load.tolist() == [1.0, 2.0, 3.0]
-    excited = GapSystem(
-        **parts()
-        | {"excitations": [Excitation(np.array([0.0, -1.0, 2.0]), PiecewiseLinear([0.0], [-3.0]))]}
-    )
+    push = Excitation(np.array([0.0, -1.0, 2.0]), PiecewiseLinear([0.0], [-3.0]))
+    excited = replace(system, excitations=[push])
     assert excited.largest_load.tolist() == [1.0, 5.0, 9.0]
 
 
@@ -80,21 +74,15 @@ def test_no_rest_with_a_rigid_mode() -> None:
         ("load", np.ones(2), "load must have the shape (3,), got (2,)"),
         ("omega2", np.ones((3, 1)), "omega2 must have the shape (3,), got (3, 1)"),
         ("rows", np.ones((2, 2)), "rows must have the shape (2, 3), got (2, 2)"),
-        ("rows", np.ones((1, 3)), "rows must have the shape (2, 3), got (1, 3)"),
-        ("laws", [LAW], "rows must have the shape (1, 3), got (2, 3)"),
         ("station_of_row", np.array([0]), "station_of_row must have the shape (2,), got (1,)"),
         ("damping", np.ones(4), "damping must have the shape (3,), got (4,)"),
         ("dashpots", np.ones((2, 2)), "dashpots must have the shape (2, 3), got (2, 2)"),
-        ("dashpots", np.full((1, 3), np.nan), "dashpots must be finite"),
         ("observers", {"tip": Observer(np.ones(2))},
          "observer 'tip' must have the shape (3,), got (2,)"),
         ("load", np.array([0.0, np.nan, 0.0]), "load must be finite"),
-        ("rows", np.full((2, 3), np.inf), "rows must be finite"),
-        ("observers", {"tip": Observer(np.full(3, np.nan))}, "observer 'tip' must be finite"),
         ("damping", np.array([0.0, -1.0, 0.0]), "damping must not be negative"),
         ("station_of_row", np.array([0, 2]), "station_of_row must hold positions in stations"),
         ("friction_rows", np.ones((1, 3)), "friction_rows must have the shape (0, 3), got (1, 3)"),
-        ("frictions", [RUB], "friction_rows must have the shape (1, 3), got (0, 3)"),
         ("excitations", [Excitation(np.ones(2), Step())],
          "excitation 0 must have the shape (3,), got (2,)"),
         ("station_directions", ("z",),

@@ -98,18 +98,9 @@ def test_a_hanging_load_rests() -> None:
 
 def mass_on_springs() -> GapSystem:
     """Return a tip of 500 kg on springs of 2 MN/m across and 0.5 MN/m sideways, without loads."""
-    system, mass = mass_on_spring(), 500.0
-    rows = np.eye(2) / np.sqrt(mass)
-    return replace(
-        system,
-        omega2=np.array([2.0e6, 0.5e6]) / mass,
-        load=np.zeros(2),
-        rows=np.zeros((0, 2)),
-        observers={"tip": Observer(rows[0]), "tip_lateral": Observer(rows[1])},
-        **dict.fromkeys(("damping", "dashpots", "friction_rows"), np.zeros(0)),
-        released_load=np.zeros(0),
-        initial_impulse=np.zeros(0),
-    )
+    tip, aside = (Observer(row) for row in np.eye(2) / np.sqrt(500.0))
+    seen = {"tip": tip, "tip_lateral": aside}
+    return modal_system([2.0e6 / 500.0, 0.5e6 / 500.0], np.zeros(2), observers=seen)
 
 
 def test_pendulum_on_a_support_with_a_constant_acceleration() -> None:

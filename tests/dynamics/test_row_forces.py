@@ -8,14 +8,13 @@ import pytest
 
 from dynamics import time_step
 from dynamics.arrays import Array
-from dynamics.contact import TERM, ContactLaw, DryFriction, PowerContact
+from dynamics.contact import ContactLaw, DryFriction, PowerContact
 from dynamics.contact_table import TableContact
 from dynamics.failure import NumericsError
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.kernels import march
 from dynamics.kernels.row_forces import (
-    discrete_gradient,
     row_laws,
     row_problem,
     solve_contact_forces,
@@ -33,6 +32,7 @@ LAWS: list[ContactLaw] = [
     TableContact((1.0e-4, 1.0e-3), (20.0, 300.0)).with_clearance(1.0e-3),
     PowerContact(1.0e9, 3.0, stiffness_below=1.0e4).with_clearance(1.0e-3, 2.0e-3),
     PowerContact(1.0e4, 1.0).with_clearance(-1.0e-3),
+    PowerContact(1.0e8, 2.7).with_clearance(1.0e-3),
 ]
 
 
@@ -132,29 +132,6 @@ def test_equal_friction_rows_stick_at_once() -> None:
         assert solve_contact_forces(row_laws(system), problem, compliance, start, time)
         slip = (problem.free - compliance @ problem.force)[2:]
         assert np.abs(slip).max() < 1e-12 * np.abs(problem.free).max()
-
-
-@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 3.0, 2.7])
-@pytest.mark.parametrize(
-    ("before", "after"),
-    [(0.0, 3e-3), (3e-3, 0.0), (2e-3, 3e-3), (2e-3, 2.000000002e-3), (2e-3, 2e-3), (0.0, 5e-4)],
-)
-def test_the_discrete_gradient(exponent: float, before: float, after: float) -> None:
-    """Reference: analytic, ΔV/Δy, and the force if y is constant. If the slope is exact, central
-    differences are its reference.
-    """
-    term = np.array([(0, -1.0, 1.0e6, 1.0e-3, exponent)], TERM)[0]
-    law = PowerContact(1.0e6, exponent).lower().with_clearance(1.0e-3)
-    mean, slope = discrete_gradient(term, -before, -after)
-    if abs(after - before) > 1e-4:
-        gained = law.energy(np.array([-before, -after])) @ [-1.0, 1.0]
-        assert mean == pytest.approx(gained / (before - after), rel=1e-12)
-        h = 1e-8
-        near = [discrete_gradient(term, -before, -after + side * h)[0] for side in (-1, 1)]
-        assert slope == pytest.approx((near[1] - near[0]) / (2.0 * h), rel=1e-5, abs=1e-9)
-    else:
-        assert mean == pytest.approx(float(law.force(np.array(-before))), rel=3e-8)
-        assert slope > 0.0
 
 
 def wedge(friction: float) -> GapSystem:

@@ -45,11 +45,10 @@ ACROSS = np.array([[0.3, 0.6, 0.8, -0.5], [-0.7, 0.4, 0.2, 0.6]])
 def boom(law: ContactLaw = POWER, **changes: Any) -> GapSystem:
     """Return one rigid and three elastic modes with two contacts."""
     numbers: dict[str, Any] = {
-        "omega2": np.array([0.0, 40.0, 900.0, 2.5e4]), "load": np.array([-8.0, 3.0, 2.0, 1.0]),
-        "rows": ROWS, "laws": [law, law], "station_of_row": np.array([0, 1]),
-        "stations": [0.0, 1.0], "observers": {"tip": Observer(np.array([1.0, 0.7, -0.4, 0.2]))},
+        "omega2": [0.0, 40.0, 900.0, 2.5e4], "load": [-8.0, 3.0, 2.0, 1.0], "rows": ROWS,
+        "laws": [law, law], "tip": [1.0, 0.7, -0.4, 0.2],
     }  # fmt: skip
-    return GapSystem(**numbers | changes)
+    return modal_system(**numbers | changes)
 
 
 def rubbing(*frictions: DryFriction, **changes: Any) -> GapSystem:

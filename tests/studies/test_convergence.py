@@ -10,17 +10,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Self
 
-import numpy as np
 import pytest
 from rich.console import Console
-from scipy.integrate import quad
 
-from dynamics.excitation import PiecewiseLinear
 from runs.report.tables import Table
 from studies import convergence
 from studies.refined import Reference, Refined, refined_table
 from studies.study import Plot, Study, Verification
-from tests.dynamics.histories import response
 
 DOCUMENT = Path(__file__).parents[2] / "docs" / "verification.md"
 
@@ -174,17 +170,3 @@ def test_the_finest_is_held_against_its_reference() -> None:
     first, second = refined_table("t", "T", [short, long], "h = {:g}").data
     assert (first["quantity"], first["h = 4"], first["h = 2"]) == ("p (m)", None, 1.2)
     assert (second["h = 4"], second["order"]) == (1.4, pytest.approx(1.0))
-
-
-@pytest.mark.parametrize("omega", [0.0, 3.0])
-def test_the_closed_form_is_duhamel_s_integral(omega: float) -> None:
-    """Reference: other code, scipy's quadrature of ∫ g(s) sin(ω (t − s))/ω ds."""
-    table = PiecewiseLinear((0.2, 0.5, 1.1), (0.4, -1.0, 2.0))
-    (found,) = response(omega, table, np.array([1.7]))
-    expected, _ = quad(
-        lambda s: float(table(np.array(s))) * (1.7 - s) * np.sinc(omega * (1.7 - s) / np.pi),
-        0.0,
-        1.7,
-        points=[0.2, 0.5, 1.1],
-    )
-    assert found == pytest.approx(expected, rel=1e-10)
