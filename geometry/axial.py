@@ -74,9 +74,9 @@ def with_compression(
     loaded = list(segments)
     for number in reversed(range(len(segments))):
         segment = segments[number]
+        weights, spread = _weights(segment, gravity)
         points = [(t.x, t.force) for t in thrusts if t.segment == number]
-        points += transferred[number] + _weights(segment, gravity)
-        spread = _distributed_weights(segment, gravity)
+        points += transferred[number] + weights
         joint = _lock(joints, number)
         anchor = segment.start if joint is not None or segment.foot is None else segment.foot.x
         if joint is not None:
@@ -273,38 +273,27 @@ def axial_force(
     return total
 
 
-def _weights(segment: Segment, gravity: float) -> list[tuple[float, float]]:
-    """Return (x in m, weight in N) of each point mass of a segment."""
-    weights = [(point.x, point.mass * gravity) for point in segment.masses]
+def _weights(
+    segment: Segment, gravity: float
+) -> tuple[list[tuple[float, float]], list[tuple[float, float, float]]]:
+    """Return (x in m, weight in N) of point masses; (start, end in m, weight in N/m) of others."""
+    points = [(point.x, point.mass * gravity) for point in segment.masses]
+    spread = [(segment.start, segment.end, segment.mass_per_length * gravity)]
+    density = segment.material.density
+    if segment.head_section is not None:
+        steps = pairwise(np.linspace(segment.start, segment.end, _STEPS + 1).tolist())
+        ends = [(a, b, segment.section_at(a), segment.section_at(b)) for a, b in steps]
+        spread = [(a, b, density * mean_area(tail, head) * gravity) for a, b, tail, head in ends]
     if segment.section is not None:
-        plate = segment.material.density * gravity
-        weights += [
-            (each.x, plate * segment.section_at(each.x).enclosed_area * each.thickness)
-            for each in segment.diaphragms
+        points += [
+            (one.x, density * gravity * segment.section_at(one.x).enclosed_area * one.thickness)
+            for one in segment.diaphragms
         ]
-    return weights
-
-
-def _distributed_weights(segment: Segment, gravity: float) -> list[tuple[float, float, float]]:
-    """Return (start in m, end in m, weight in N/m) of each distributed mass of a segment."""
-    weights = list(_plain_weights(segment, gravity))
-    if segment.section is not None:
-        doubler = segment.material.density * gravity
-        weights += [
-            (*each.span, doubler * segment.mean_width(each) * each.thickness)
-            for each in segment.collars
+        spread += [
+            (*one.span, density * gravity * segment.mean_width(one) * one.thickness)
+            for one in segment.collars
         ]
-    return weights
-
-
-def _plain_weights(segment: Segment, gravity: float) -> Iterator[tuple[float, float, float]]:
-    """Yield (start in m, end in m, weight in N/m) without stiffeners, in steps for a taper."""
-    if segment.head_section is None:
-        yield segment.start, segment.end, segment.mass_per_length * gravity
-        return
-    for start, end in pairwise(np.linspace(segment.start, segment.end, _STEPS + 1).tolist()):
-        area = mean_area(segment.section_at(start), segment.section_at(end))
-        yield start, end, segment.material.density * area * gravity
+    return points, spread
 
 
 def _lock(joints: Sequence[Joint], number: int) -> Joint | None:

@@ -202,8 +202,7 @@ def pads(boom: Boom) -> list[Pad]:
             if joint.bonded:
                 continue
             overlap = boom.overlap(joint)
-            extended = 0.0 if joint.drive is None else joint.drive.reach[1]
-            length = joint.contact_length or _OF_OVERLAP * (overlap[1] - overlap[0] - extended)
+            length = joint.contact_length or _OF_OVERLAP * boom.smallest_overlap(joint)
             inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
             for k, x in enumerate(joint.stations):
                 normal_force = joint.normal_forces[k] if joint.normal_forces else None

@@ -19,6 +19,7 @@ import numpy as np
 from geometry.arrays import Array, Indices
 from geometry.section import (
     COMPONENT,
+    OUTWARDS,
     BoxSection,
     Direction,
     Face,
@@ -26,7 +27,6 @@ from geometry.section import (
     Plate,
     Section,
     SectionError,
-    Side,
 )
 from geometry.walls import trapezoids
 
@@ -79,31 +79,27 @@ class PolygonSection(Section):
     @cached_property
     def plates(self) -> tuple[Plate, ...]:
         """The plates, anticlockwise from the lowest corner, or from the left one of two."""
-        corners = self._upwards[0] - np.array(self.centroid)
+        corners = self.upwards[0] - np.array(self.centroid)
         for axis in self.mirrors:
             # Meshes require that mirror images are exactly equal.
             image = _mirror(corners, axis)
             corners = 0.5 * (corners + image[_partners(corners, image)])
-        return _plates(corners, self._upwards[1])
+        return _plates(corners, self.upwards[1])
 
     @cached_property
     def area(self) -> float:
-        """The cross-sectional area in m²."""
         return float(sum(plate.length * plate.thickness for plate in self.plates))
 
     @cached_property
     def second_moment_of_area(self) -> float:
-        """The second moment about y (bending in the plane x-z) in m⁴."""
         return float(_moments(trapezoids(self.plates))[3])
 
     @cached_property
     def lateral_second_moment_of_area(self) -> float:
-        """The second moment about z (bending in the plane x-y) in m⁴."""
         return float(_moments(trapezoids(self.plates))[2])
 
     @cached_property
     def torsion_constant(self) -> float:
-        """The torsion constant in m⁴ (Bredt 1896)."""
         around = sum(plate.length / plate.thickness for plate in self.plates)
         return 4.0 * self.enclosed_area**2 / around
 
@@ -120,7 +116,7 @@ class PolygonSection(Section):
     @cached_property
     def centroid(self) -> Offset:
         """The centroid (y, z) in m in the coordinates of ``corners``."""
-        parts = _moments(trapezoids(_plates(*self._upwards)))
+        parts = _moments(trapezoids(_plates(*self.upwards)))
         return float(parts[0]), float(parts[1])
 
     @cached_property
@@ -128,7 +124,7 @@ class PolygonSection(Section):
         """The outermost plate of each direction and side, if exactly one plate is normal to it."""
         ends = np.array([(plate.start, plate.end) for plate in self.plates])
         faces = []
-        for direction, side in _OUTWARDS:
+        for direction, side in OUTWARDS:
             outwards = side * ends[:, :, COMPONENT[direction] - 1]
             outermost = np.flatnonzero(outwards.min(axis=1) > outwards.max() - self.near)
             if len(outermost) == 1:
@@ -138,7 +134,7 @@ class PolygonSection(Section):
     @cached_property
     def mirrors(self) -> tuple[Direction, ...]:
         """The normals of the symmetry planes of corners and thicknesses."""
-        corners, thicknesses = self._upwards
+        corners, thicknesses = self.upwards
         corners = corners - np.array(self.centroid)
         midpoints = 0.5 * (corners + np.roll(corners, -1, axis=0))
         directions: list[Direction] = []
@@ -152,8 +148,14 @@ class PolygonSection(Section):
         return tuple(directions)
 
     def shear_plates(self, direction: Direction) -> tuple[tuple[int, float], ...]:
-        """Return (index, force in N along the tangent) of the plates, by the shear flow."""
-        return shear_plates(self.plates, direction)
+        """Return (index, force in N along the tangent) of the plates, by the shear flow.
+
+        A torque shifts the shear force from the shear centre to the axis.
+        """
+        flow = ShearFlow.from_plates(self.plates, direction)
+        around = flow.moment / (flow.arms @ flow.lengths)
+        forces = flow.forces - around * flow.lengths
+        return tuple((n, force) for n, force in enumerate(forces.tolist()) if abs(force) > _NO_PART)
 
     def __str__(self) -> str:
         sizes = " x ".join(f"{1e3 * self.size(axis):.4g}" for axis in ("z", "y"))
@@ -161,19 +163,10 @@ class PolygonSection(Section):
         return f"{sizes} x {walls}, {len(self.plates)} plates"
 
     def turned(self) -> PolygonSection:
-        """Return the section rotated by 90°, with y and z exchanged."""
         return PolygonSection(tuple((z, y) for y, z in self.corners), self.thicknesses)
 
-    @property
-    def in_order(self) -> PolygonSection:
-        """The section with its corners in the order of its plates, for tapers."""
-        corners, thicknesses = self._upwards
-        return PolygonSection(
-            tuple((float(y), float(z)) for y, z in corners), tuple(map(float, thicknesses))
-        )
-
     @cached_property
-    def _upwards(self) -> tuple[Array, Array]:
+    def upwards(self) -> tuple[Array, Array]:
         """The corners (num_plates, 2) and thicknesses (num_plates,) in m in the order of plates."""
         corners, thicknesses = np.array(self.corners), np.array(self.thicknesses)
         if _double_enclosed_area(corners) < 0.0:
@@ -182,9 +175,6 @@ class PolygonSection(Section):
         low = np.flatnonzero(corners[:, 1] < corners[:, 1].min() + near)
         first = low[corners[low, 0].argmin()]
         return np.roll(corners, -first, axis=0), np.roll(thicknesses, -first)
-
-
-_OUTWARDS: Sequence[tuple[Direction, Side]] = (("z", -1), ("y", 1), ("z", 1), ("y", -1))
 
 
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:
@@ -204,7 +194,9 @@ def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> S
     """
     section = PolygonSection(tuple(corners), tuple(thicknesses))
     if len(section.plates) != 4 or len(section.faces) != 4:
-        return section.in_order
+        # Tapers need corners in the order of plates.
+        ordered, walls = section.upwards
+        return PolygonSection(tuple((y, z) for y, z in ordered.tolist()), tuple(walls.tolist()))
     bottom, right, top, left = (plate.thickness for plate in section.plates)
     return BoxSection(section.size("z"), section.size("y"), top, right, bottom, left)
 
@@ -374,15 +366,3 @@ class ShearFlow:
     def moment(self) -> float:
         """The moment about the axis in N·m per N: the lever arm in m of the shear force."""
         return float(self.arms @ self.forces)
-
-
-def shear_plates(plates: Sequence[Plate], direction: Direction) -> tuple[tuple[int, float], ...]:
-    """Return (index, force in N along the tangent) of the plates under a shear force of 1 N.
-
-    The shear force acts on the axis. The forces of the plates follow from the shear flow, and from
-    the torque that shifts the shear force from the shear centre to the axis.
-    """
-    flow = ShearFlow.from_plates(plates, direction)
-    around = flow.moment / (flow.arms @ flow.lengths)
-    forces = flow.forces - around * flow.lengths
-    return tuple((n, force) for n, force in enumerate(forces.tolist()) if abs(force) > _NO_PART)

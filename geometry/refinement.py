@@ -10,14 +10,14 @@ error is proportional to the square of the edge length.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.contact_places import ContactInterval, ContactLine, Pad, StopPatch
+from geometry.contact_places import ContactInterval, ContactLine, Pad, pads, stop_patches
 from geometry.section import Direction, Face, Section
 
 # Tolerance for which the fractions below are calibrated.
@@ -70,12 +70,7 @@ class RefinementZone:
 
 
 def refinement_zones(
-    boom: Boom,
-    number: int,
-    tolerance: float,
-    line: ContactLine,
-    stop_patches: Sequence[StopPatch],
-    pads: Sequence[Pad],
+    boom: Boom, number: int, tolerance: float, line: ContactLine
 ) -> list[RefinementZone]:
     """Return the refinement zones of a segment with a section.
 
@@ -86,25 +81,14 @@ def refinement_zones(
     """
     finer = float(np.sqrt(tolerance / CALIBRATION_TOLERANCE))
     # Zones with the same data, such as mirror images, are merged.
-    measured = dict.fromkeys(_zones(boom, number, line, stop_patches, pads))
     return [
-        RefinementZone(low, high, finer * size, finer * growth)
-        for low, high, size, growth in measured
+        replace(zone, size=finer * zone.size, growth=finer * zone.growth)
+        for zone in dict.fromkeys(_zones(boom, number, line))
     ]
 
 
-_Place = tuple[float, float, float]
-_Zone = tuple[_Place, _Place, float, float]
-
-
-def _zones(
-    boom: Boom,
-    number: int,
-    line: ContactLine,
-    stop_patches: Sequence[StopPatch],
-    pads: Sequence[Pad],
-) -> Iterator[_Zone]:
-    """Yield (low, high, size, growth) of each zone for the ``CALIBRATION_TOLERANCE``."""
+def _zones(boom: Boom, number: int, line: ContactLine) -> Iterator[RefinementZone]:
+    """Yield the zones for the ``CALIBRATION_TOLERANCE``."""
     segment = boom.segments[number]
     section = segment.widest
     lowest, high = section.bounds
@@ -114,22 +98,18 @@ def _zones(
     )
     across = min(section.size("y"), section.size("z"))
     for x in _walls(boom, number):
-        yield (x, low_y, low_z), (x, *high), _WALLS * across, _WALLS_GROWTH
-    for rest in stop_patches:
+        yield RefinementZone((x, low_y, low_z), (x, *high), _WALLS * across, _WALLS_GROWTH)
+    for rest in stop_patches(boom):
         if rest.stop.segment == number:
             extended = [rest.at_extension(boom, extension) for extension in rest.reach]
             for face in _faces(section, "z"):
                 yield _envelope(_corner(one.interval, face) for one in extended)
-    for pad in pads:
+    for pad in pads(boom):
         for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
             if of == number:
                 for face in _faces(section, pad.direction):
-                    telescoping_pads = (
-                        pad.at_extension(boom, extension) for extension in pad.reach
-                    )
-                    yield _envelope(
-                        _pad_zone(boom, one, end, face, line) for one in telescoping_pads
-                    )
+                    extended_pads = (pad.at_extension(boom, extension) for extension in pad.reach)
+                    yield _envelope(_pad_zone(boom, one, end, face, line) for one in extended_pads)
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
@@ -157,28 +137,28 @@ def _faces(section: Section, direction: Direction) -> list[Face]:
     ]
 
 
-def _place(face: Face, x: float, across: float) -> _Place:
+def _place(face: Face, x: float, across: float) -> tuple[float, float, float]:
     return (x, across, face.offset) if face.direction == "z" else (x, face.offset, across)
 
 
-def _corner(stretch: ContactInterval, face: Face) -> _Zone:
+def _corner(stretch: ContactInterval, face: Face) -> RefinementZone:
     size = _CORNER * (stretch.end - stretch.start)
     low, high = (_place(face, x, face.high) for x in (stretch.start, stretch.end))
-    return low, high, size, _CORNER_GROWTH
+    return RefinementZone(low, high, size, _CORNER_GROWTH)
 
 
-def _envelope(places: Iterable[_Zone]) -> _Zone:
+def _envelope(zones: Iterable[RefinementZone]) -> RefinementZone:
     """Return the zone that covers zones which differ in x only."""
-    lows, highs, sizes, growths = zip(*places, strict=True)
-    return min(lows), max(highs), sizes[0], growths[0]
+    first, last = zones
+    return replace(first, low=min(first.low, last.low), high=max(first.high, last.high))
 
 
-def _pad_zone(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> _Zone:
+def _pad_zone(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> RefinementZone:
     """Return the zone of a pad on a face of the inner (``end`` 0) or outer segment (``end`` 1)."""
     covered = pad.patch
     if covered is None:
-        low, high, size, growth = _corner(pad.intervals[end], face)
-        return (low if line != "across" else (low[0], 0.0, low[2])), high, size, growth
+        zone = _corner(pad.intervals[end], face)
+        return replace(zone, low=(zone.low[0], 0.0, zone.low[2])) if line == "across" else zone
     size = _PAD * min(covered.end - covered.start, covered.width)
     near, far = covered.across(
         boom.segments[pad.joint.inner].widest.face(face.direction, face.side)
@@ -187,4 +167,4 @@ def _pad_zone(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> 
         _place(face, x + pad.travel[end], across)
         for x, across in ((covered.start, near), (covered.end, far))
     )
-    return low, high, size, _PAD_GROWTH
+    return RefinementZone(low, high, size, _PAD_GROWTH)

@@ -70,11 +70,20 @@ class Plate(NamedTuple):
 
     def distance(self, places: Array) -> Array:
         """Return the distance (num_places,) in m of points (num_places, 2) from the mid-line."""
-        tangent = self.tangent
-        arms = places - np.array(self.start)
-        along = arms @ tangent
-        beyond = np.maximum(np.maximum(-along, along - self.length), 0.0)
-        return np.asarray(np.hypot(beyond, arms[:, 0] * tangent[1] - arms[:, 1] * tangent[0]))
+        return distance_from_line(np.array(self.start), np.array(self.end), places)
+
+
+def distance_from_line(start: Array, end: Array, places: Array) -> Array:
+    """Return the distance (num_places,) in m of points (num_places, 2) from a line or from lines.
+
+    ``start`` and ``end`` (2,), or (num_places, 2) for a line of each point, are its ends in m.
+    """
+    arms, length = places - start, np.linalg.norm(end - start, axis=-1)
+    tangent = (end - start) / length[..., None]
+    along = (arms * tangent).sum(axis=-1)
+    beyond = np.maximum(np.maximum(-along, along - length), 0.0)
+    across = arms[..., 0] * tangent[..., 1] - arms[..., 1] * tangent[..., 0]
+    return np.asarray(np.hypot(beyond, across))
 
 
 class Face(NamedTuple):
@@ -232,32 +241,8 @@ class Section(Protocol):
 _ON_PLATE = 1.0e-7
 
 
-def rectangle(
-    low: Offset, high: Offset, bottom: float, right: float, top: float, left: float
-) -> tuple[Plate, ...]:
-    """Return the four plates of a rectangle.
-
-    Args:
-        low, high: (y, z) in m of opposite corners of the mid-lines.
-        bottom, right, top, left: thicknesses in m.
-    """
-    (y0, z0), (y1, z1) = low, high
-    return (
-        Plate("bottom", (y0, z0), (y1, z0), bottom),
-        Plate("right", (y1, z0), (y1, z1), right),
-        Plate("top", (y1, z1), (y0, z1), top),
-        Plate("left", (y0, z1), (y0, z0), left),
-    )
-
-
-def rectangle_faces(plates: Sequence[Plate]) -> tuple[Face, ...]:
-    """Return the faces of the four plates of a rectangle."""
-    return (
-        Face.from_plate(plates, 0, "z", -1),
-        Face.from_plate(plates, 1, "y", 1),
-        Face.from_plate(plates, 2, "z", 1),
-        Face.from_plate(plates, 3, "y", -1),
-    )
+# Outward normals of the plates of a rectangle in their order: bottom, right, top, left.
+OUTWARDS: Sequence[tuple[Direction, Side]] = (("z", -1), ("y", 1), ("z", 1), ("y", -1))
 
 
 @dataclass(frozen=True, slots=True)
@@ -317,22 +302,18 @@ class BoxSection(Section):
 
     @property
     def area(self) -> float:
-        """The cross-sectional area in m²."""
         return self.shear_area + self.lateral_shear_area
 
     @property
     def second_moment_of_area(self) -> float:
-        """The second moment about y (bending in the plane x-z) in m⁴."""
         return _hollow_rectangle(self.width, self.height, *reversed(self._walls))[1]
 
     @property
     def lateral_second_moment_of_area(self) -> float:
-        """The second moment about z (bending in the plane x-y) in m⁴."""
         return _hollow_rectangle(self.height, self.width, *self._walls)[1]
 
     @property
     def torsion_constant(self) -> float:
-        """The torsion constant in m⁴ (Bredt 1896)."""
         (top, bottom), (right, left) = self._walls
         around = self.height / right + self.height / left
         around += self.width / top + self.width / bottom
@@ -363,7 +344,6 @@ class BoxSection(Section):
         return f"{1e3 * self.height:.4g} x {1e3 * self.width:.4g} x {' / '.join(walls)}"
 
     def turned(self) -> BoxSection:
-        """Return the box rotated by 90°, with y and z exchanged."""
         (top, bottom), (right, left) = self._walls
         return BoxSection(self.width, self.height, right, top, left, bottom)
 
@@ -372,12 +352,18 @@ class BoxSection(Section):
         """The four plates in the order bottom, right, top, left."""
         (y, z), b, h = self.centroid, 0.5 * self.width, 0.5 * self.height
         (top, bottom), (right, left) = self._walls
-        return rectangle((-b - y, -h - z), (b - y, h - z), bottom, right, top, left)
+        (y0, z0), (y1, z1) = (-b - y, -h - z), (b - y, h - z)
+        return (
+            Plate("bottom", (y0, z0), (y1, z0), bottom),
+            Plate("right", (y1, z0), (y1, z1), right),
+            Plate("top", (y1, z1), (y0, z1), top),
+            Plate("left", (y0, z1), (y0, z0), left),
+        )
 
     @property
     def faces(self) -> tuple[Face, ...]:
         """The faces of all plates."""
-        return rectangle_faces(self.plates)
+        return tuple(Face.from_plate(self.plates, n, *normal) for n, normal in enumerate(OUTWARDS))
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
@@ -50,30 +50,23 @@ class TelescopingStations:
 
 def telescoping_stations(boom: Boom) -> list[TelescopingStations]:
     """Return the stations that move, grouped by drives; stops on moving segments are included."""
-    moved: dict[tuple[int, ...], list[int]] = {}
-    for station, joints in _driven_stations(boom):
-        if joints:
-            moved.setdefault(joints, []).append(station)
+    movers: list[tuple[int, ...]] = [
+        () if joint.drive is None else (number,)
+        for _ in boom.directions
+        for number, joint in enumerate(boom.joints)
+        if not joint.bonded
+        for _ in joint.stations
+    ]
+    movers += [drives_below(boom.joints, stop.segment) for stop in boom.stops]
     return [
         TelescopingStations(
             joints,
             tuple(drive for n in joints if (drive := boom.joints[n].drive) is not None),
-            tuple(stations),
+            tuple(station for station, by in enumerate(movers) if by == joints),
         )
-        for joints, stations in moved.items()
+        for joints in dict.fromkeys(movers)
+        if joints
     ]
-
-
-def _driven_stations(boom: Boom) -> Iterator[tuple[int, tuple[int, ...]]]:
-    """Yield each station, with the indices of the joints whose drives move it."""
-    station = 0
-    for _ in boom.directions:
-        for number, joint in enumerate(boom.joints):
-            for _ in () if joint.bonded else joint.stations:
-                yield station, () if joint.drive is None else (number,)
-                station += 1
-    for station, stop in boom.numbered_stops:
-        yield station, drives_below(boom.joints, stop.segment)
 
 
 def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
@@ -103,8 +96,7 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
 
 def farthest_travel(boom: Boom, segment: int) -> float:
     """Return a segment's largest outward travel in m; negative if the segment only retracts."""
-    drives = [boom.joints[number].drive for number in drives_below(boom.joints, segment)]
-    reaches = [drive.reach for drive in drives if drive is not None]
+    reaches = (drive.reach for drive in drives_of(boom.joints, segment))
     return sum(high or low for low, high in reaches)
 
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.section import Plate, Section
+from geometry.section import Plate, Section, distance_from_line
 from geometry.segment import Segment
 
 # Sine of the angle between plates below which they have a butt joint instead of a mitre, which
@@ -113,10 +113,4 @@ class WallsAlong:
         Point i is at the x of index i.
         """
         start, end = self.starts(plate), self.starts((plate + 1) % self._starts.shape[1])
-        length = np.linalg.norm(end - start, axis=1)
-        tangent = (end - start) / length[:, None]
-        arms = places - start
-        along = (arms * tangent).sum(axis=1)
-        beyond = np.maximum(np.maximum(-along, along - length), 0.0)
-        across = arms[:, 0] * tangent[:, 1] - arms[:, 1] * tangent[:, 0]
-        return np.asarray(np.hypot(beyond, across))
+        return distance_from_line(start, end, places)

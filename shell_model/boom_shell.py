@@ -15,7 +15,7 @@ from dynamics.gap_builder import GapBuilder, OutputOperator
 from geometry.arrays import Array
 from geometry.axial import pin_moments
 from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine, pads, stop_patches
+from geometry.contact_places import ContactLine
 from geometry.cylinder import GroundLine, ground_lines
 from geometry.grading import graded_mesh
 from geometry.load import Load
@@ -202,7 +202,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
         mesh = mesh_segment(*box, closed=closed, across=across)
     else:
         tolerance, line = options.contact_tolerance, options.contact_line
-        fine = refinement_zones(boom, number, tolerance, line, stop_patches(boom), pads(boom))
+        fine = refinement_zones(boom, number, tolerance, line)
         mesh = graded_mesh(*box, fine, closed=closed, across=across)
     plated = add_thickness(segment, mesh)
     return plated if segment.head_section is None else tapered_mesh(segment, plated)

@@ -21,7 +21,6 @@ from scipy.spatial import cKDTree
 
 from geometry.arrays import Array, Indices
 from geometry.boom import Boom, Collar, Diaphragm, PadSize
-from geometry.contact_places import pads
 from geometry.grading import graded_mesh
 from geometry.mesh import (
     SegmentMesh,
@@ -375,19 +374,19 @@ def test_refinement_zones_are_at_loads_supports_and_stiffeners(paper_boom: Boom)
     b, h = 0.5 * outer.section.width, 0.5 * outer.section.height
     stiff = replace(outer, collars=(Collar((8.0, 8.5), 0.01),), diaphragms=(Diaphragm(5.0, 0.01),))
     boom = replace(paper_boom, segments=(stiff, inner))
-    found = refinement_zones(boom, 0, 0.01, "near webs", [], pads(boom))
+    found = refinement_zones(boom, 0, 0.01, "near webs")
     assert [zone.low[0] for zone in found[:-2]] == [0.0, 2.0, 8.0, 8.5, 5.0]
     assert all(zone.low[1:] == (0.0, 0.0) and zone.high[1:] == (b, h) for zone in found[:-2])
     for zone, start in zip(found[-2:], (8.95, 9.9), strict=True):
         assert zone.low == pytest.approx((start, b, h))
         assert zone.high == pytest.approx((start + 0.1, b, h))
         assert zone.size == pytest.approx(0.02)
-    loose = refinement_zones(boom, 0, 0.04, "near webs", [], pads(boom))
+    loose = refinement_zones(boom, 0, 0.04, "near webs")
     assert [zone.size for zone in loose] == pytest.approx([2.0 * zone.size for zone in found])
     (joint,) = boom.joints
     padded = replace(boom, joints=(replace(joint, pad=PadSize(0.1, 0.06)),))
     near = 0.5 * inner.section.width
-    of_pads = refinement_zones(padded, 0, 0.01, "near webs", [], pads(padded))[-2:]
+    of_pads = refinement_zones(padded, 0, 0.01, "near webs")[-2:]
     for zone, start in zip(of_pads, (9.0, 9.9), strict=True):
         assert zone.low == pytest.approx((start, near - 0.06, h))
         assert zone.high == pytest.approx((start + 0.1, near, h))

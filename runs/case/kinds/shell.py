@@ -11,7 +11,6 @@ import numpy as np
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
-from geometry.contact_places import pads, stop_patches
 from geometry.fields import In, Length, Positive
 from geometry.refinement import refinement_zones
 from runs.case.kinds.model import (
@@ -201,12 +200,12 @@ class Shell(ModelTable):
         squares = _surface(boom) / self.mesh_size**2
         if self.contact_tolerance == "any" or self.contact_line == "surface":
             return _DOFS * squares
-        contacts = self.contact_line, stop_patches(boom), pads(boom)
+        graded = self.contact_tolerance, self.contact_line
         return _GRADED_DOFS * squares + _DOFS_AT_ZONES * sum(
             (1 << len(segment.mirrors)) * zone.num_squares(self.mesh_size)
             for number, segment in enumerate(boom.segments)
             if segment.section is not None
-            for zone in refinement_zones(boom, number, self.contact_tolerance, *contacts)
+            for zone in refinement_zones(boom, number, *graded)
         )
 
     def _check_contact(self, where: str, model_boom: ModelBoom) -> None:
