@@ -30,16 +30,6 @@ Limits = npt.NDArray[np.void]
 Displacement = Any
 OfTerm = Callable[[Any, Displacement], Displacement]
 
-# Record of a term in the law of a row.
-TERM = np.dtype(
-    [
-        ("row", np.int64),
-        ("side", np.float64),
-        ("stiffness", np.float64),
-        ("onset", np.float64),
-        ("exponent", np.float64),
-    ]
-)
 # Record of the y in m between which a contact is open, and of its damping χ in s/m.
 LIMITS = np.dtype([("low", np.float64), ("high", np.float64), ("damping", np.float64)])
 
@@ -55,6 +45,10 @@ class Term(NamedTuple):
     stiffness: float  #: k in N/mⁿ; negative where a law becomes softer
     onset: float  #: distance in m from y = 0 at which contact begins
     exponent: float  #: n, at least 1
+
+
+# Record of a term in the law of a row.
+TERM = np.dtype([("row", np.int64), *((name, np.float64) for name in Term._fields)])
 
 
 def force_of(term: np.void, y: Displacement) -> Displacement:

@@ -103,16 +103,18 @@ class FrameAcceleration:
     extension: MotionLaw = _RESTING  #: travel of the segment with the point
 
     @property
+    def _laws(self) -> tuple[MotionLaw, MotionLaw, MotionLaw]:
+        return self.frame.slew, self.frame.luff, self.extension
+
+    @property
     def kinks(self) -> tuple[float, ...]:
         """The times in s at which an angle or the extension has a kink."""
-        laws = (self.frame.slew, self.frame.luff, self.extension)
-        return tuple(sorted({time for law in laws for time in law.kinks}))
+        return HistorySum(self._laws).kinks
 
     @property
     def fastest(self) -> float:
         """An upper bound of the frequency in rad/s, for products of angles and extension."""
-        laws = (self.frame.slew, self.frame.luff, self.extension)
-        return 2.0 * sum(law.fastest for law in laws)
+        return 2.0 * sum(law.fastest for law in self._laws)
 
     @property
     def peak(self) -> float:

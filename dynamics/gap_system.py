@@ -157,7 +157,7 @@ class GapSystem:
         if (self.damping < 0.0).any():
             raise ValueError("damping must not be negative")
         for number, travel in enumerate(self.travels):
-            if any(one.num_modes != n for one in (travel.table, *travel.axial_forces)):
+            if travel.table.num_modes != n:
                 raise ValueError(f"the rows of travel {number} must have {n} modes")
             if any(not 0 <= row < len(getattr(self, kind)) for kind, row in travel.moved_rows):
                 raise ValueError(f"travel {number} must move rows of the system")
@@ -177,11 +177,6 @@ class GapSystem:
         """The stiffness (num_modes, num_modes) in 1/s²."""
         elastic = np.diag(self.omega2)
         return elastic - self.geometric_stiffness if self.geometric_stiffness.size else elastic
-
-    @property
-    def damping_matrix(self) -> Array:
-        """The damping matrix C (num_modes, num_modes) in 1/s."""
-        return np.diag(self.damping) + self.dashpots.T @ self.dashpots
 
     @property
     def omega(self) -> Array:

@@ -54,15 +54,12 @@ class Integrator(Protocol):
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
         """Return the trajectory. ``progress`` receives the completed fraction, 0 to 1."""
-        ...
 
     def like(self, trajectory: Trajectory) -> Integrator:
         """Return an integrator with the steps of ``trajectory``, which this integrator computed."""
-        ...
 
     def finer(self) -> Integrator:
         """Return an integrator with smaller errors, for comparison."""
-        ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,12 +70,6 @@ class StepSchedule:
     #: windows
     substeps: tuple[int, ...]
     window: int  #: number of output intervals of a window
-
-    @classmethod
-    def from_trajectory(cls, trajectory: Trajectory) -> StepSchedule:
-        """Return the integrator with the steps of a trajectory."""
-        attributes = trajectory.data.attrs
-        return cls(tuple(np.atleast_1d(attributes["substeps"]).tolist()), attributes["window"])
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
         run = Integration.begin(motion)
@@ -154,7 +145,7 @@ class AdaptiveStep:
             raise ValueError(f"tolerance must be between 0 and 1, got {self.tolerance}")
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
-        run, error = Integration.begin(motion), _WindowError.from_system(motion.system)
+        run, error = Integration.begin(motion), _WindowError(motion.system)
         outputs, output_step = motion.outputs, motion.output_step
         window = _power_of_two(error.period / output_step, 1, _LONGEST)
         histories = [x.history for x in run.motion.system.excitations]
@@ -200,45 +191,39 @@ class AdaptiveStep:
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
         """Return the integrator with the steps of a trajectory."""
-        return StepSchedule.from_trajectory(trajectory)
+        attributes = trajectory.data.attrs
+        substeps = tuple(np.atleast_1d(attributes["substeps"]).tolist())
+        return StepSchedule(substeps, attributes["window"])
 
     def finer(self) -> AdaptiveStep:
         """Return the integrator with a quarter of the tolerance, and about half the step."""
         return AdaptiveStep(0.25 * self.tolerance)
 
 
-@dataclass(frozen=True, slots=True)
 class _WindowError:
     """Error of a window: difference of the deflections for a step and for twice that step.
 
-    Args:
-        rows: rows (num_observed, num_modes) of the deflections.
+    Attributes:
         period: period of the slowest elastic mode in s.
-        places, speeds: free response (num_times, num_observed, num_modes) of the deflections to
-            a unit initial displacement and a unit initial velocity of each mode, over a quarter of
-            the period.
     """
 
-    rows: Array
-    period: float
-    places: Array
-    speeds: Array
-
-    @classmethod
-    def from_system(cls, system: GapSystem) -> _WindowError:
+    def __init__(self, system: GapSystem) -> None:
         observed = [x.row for x in system.observers.values() if (x.unit, x.derivative) == ("m", 0)]
-        rows = np.array(observed or system.rows).reshape(-1, system.num_modes)
+        self._rows = np.array(observed or system.rows).reshape(-1, system.num_modes)
         omega = system.omega
-        period = 2.0 * np.pi / min(omega[omega > 0.0], default=_DEFAULT_OMEGA)
-        times = _FREE_TIMES[:, None] * period
+        self.period = 2.0 * np.pi / min(omega[omega > 0.0], default=_DEFAULT_OMEGA)
+        # Free response (num_times, num_observed, num_modes) of the deflections to a unit initial
+        # displacement and a unit initial velocity of each mode, over a quarter of the period.
+        times = _FREE_TIMES[:, None] * self.period
         sines = np.divide(np.sin(omega * times), omega, out=times + 0.0 * omega, where=omega > 0.0)
-        return cls(rows, period, rows * np.cos(omega * times)[:, None], rows * sines[:, None])
+        self._places = self._rows * np.cos(omega * times)[:, None]
+        self._speeds = self._rows * sines[:, None]
 
     def __call__(self, fine: Output, coarse: Output, state: State, other: State) -> float:
         """Return the largest difference in m, within the window and in free motion after it."""
         within = np.abs(self._read(fine.states - coarse.states))
-        places = (self.places * (state.a - other.a)).sum(axis=2)
-        after = np.abs(places + (self.speeds * (state.v - other.v)).sum(axis=2))
+        places = (self._places * (state.a - other.a)).sum(axis=2)
+        after = np.abs(places + (self._speeds * (state.v - other.v)).sum(axis=2))
         return float(max(within.max(initial=0.0), after.max(initial=0.0)))
 
     def scale(self, states: Array) -> float:
@@ -249,7 +234,7 @@ class _WindowError:
 
     def _read(self, states: Array) -> Array:
         # BLAS is not used, since its last bits depend on addresses in memory.
-        return np.asarray(np.einsum("ti,ri->tr", states, self.rows))
+        return np.asarray(np.einsum("ti,ri->tr", states, self._rows))
 
 
 def _copy(state: State) -> State:

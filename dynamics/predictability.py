@@ -296,17 +296,16 @@ def measure_horizons(
     partners: int = 3,
     integrator: Integrator | None = None,
     executor: Executor | None = None,
-    shares: Sequence[float] = (EARLY, SHARES[0]),
     observer: str = "tip",
     progress: Callable[[float], None] = lambda part: None,
     unchanged: Trajectory | None = None,
 ) -> Horizons:
     """Return the horizons of a motion for a finer step and for changes of each size.
 
-    If runs with the largest change do not diverge to the first share, smaller changes are not run.
-    Runs that diverge to all shares end early. Few partners suffice for the growth rate at a small
-    share, whose error ``scatter`` measures. Horizons at large shares are random, and become earlier
-    with more partners.
+    The shares are ``EARLY`` and the first of ``SHARES``. If runs with the largest change do not
+    diverge to the first share, smaller changes are not run. Runs that diverge to both end early.
+    Few partners suffice for the growth rate at a small share, whose error ``scatter`` measures.
+    Horizons at large shares are random, and become earlier with more partners.
 
     >>> kicked = Motion(ball, duration=1.0, velocity=[3.0])
     >>> horizons = measure_horizons(kicked, [1e-9, 1e-6], "velocity", observer="height")
@@ -322,7 +321,6 @@ def measure_horizons(
         integrator: integrator of the unchanged run, :class:`AdaptiveStep` unless given. The other
             runs use its steps; the run with a finer step uses half of each.
         executor: executor as in :func:`dynamics.predictability.run_members`.
-        shares: fractions of the observer's range, ascending.
         observer: name of the compared output.
         progress: callback that receives the completed fraction, 0 to 1.
         unchanged: trajectory of the motion, if it is available.
@@ -332,6 +330,7 @@ def measure_horizons(
         NumericsError: a run cannot be computed.
     """
     check_varied(motion, vary)
+    shares = (EARLY, SHARES[0])
     integrator = integrator or AdaptiveStep()
     unchanged = integrator(motion) if unchanged is None else unchanged
     sizes = np.sort(np.asarray(relatives, dtype=float))

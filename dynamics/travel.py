@@ -152,11 +152,6 @@ class MovingAxialForce:
     force: float  #: P_t in N, positive if it compresses the length between 0 and a positive s
     table: RowTable  #: rows (num_planes, num_modes) of the deflections at the force, over s in m
 
-    @property
-    def num_modes(self) -> int:
-        """The number of modal coordinates."""
-        return self.table.num_modes
-
     def transform(self, shapes: Array) -> MovingAxialForce:
         """Return the force in other coordinates, as :meth:`RowTable.transform`."""
         return replace(self, table=self.table.transform(shapes))
@@ -217,11 +212,6 @@ class ChangingAxialForce:
         matter = np.abs(factors) * peak > _LEAST_CHANGE
         return cls(factors[matter], np.ascontiguousarray((stiffness @ shapes[:, matter]).T))
 
-    @property
-    def num_modes(self) -> int:
-        """The number of modal coordinates."""
-        return self.vectors.shape[1]
-
     def transform(self, shapes: Array) -> ChangingAxialForce:
         """Return the force in other coordinates, as :meth:`RowTable.transform`."""
         return replace(self, vectors=self.vectors @ shapes)
@@ -277,8 +267,8 @@ class Travel:
             winch; none unless given.
 
     Raises:
-        ValueError: the table has another number of rows or shifts, or a history that moves rows
-            does not begin with 0.
+        ValueError: the table has another number of rows, or a history that moves rows does not
+            begin with 0.
     """
 
     history: History
@@ -294,8 +284,6 @@ class Travel:
         rows = self.table.coefficients.shape[2]
         if rows != len(self.moved_rows):
             raise ValueError(f"the table has {rows} rows, and {len(self.moved_rows)} move")
-        if len(self.shifts) not in (0, rows):
-            raise ValueError(f"shifts must be none or {rows}, got {len(self.shifts)}")
         start = float(self.history(np.zeros(())))
         if rows and abs(start) > 1.0e-9:
             raise ValueError(f"a travel must be 0 at t = 0, got {start:g} m")

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from dynamics.arrays import Array
 from dynamics.contact import ContactLaw
 from dynamics.gap_system import GapSystem, Observer
 
@@ -37,6 +38,11 @@ def modal_system(
     }
     contacts = np.array(rows, dtype=float).reshape(len(laws), modes.size)
     return GapSystem(modes, np.array(load, dtype=float), contacts, laws, **usual | more)
+
+
+def damping_matrix(system: GapSystem) -> Array:
+    """Return C (num_modes, num_modes) in 1/s."""
+    return np.diag(system.damping) + system.dashpots.T @ system.dashpots
 
 
 def oscillator() -> GapSystem:

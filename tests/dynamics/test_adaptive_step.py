@@ -53,7 +53,7 @@ def test_a_schedule_makes_its_steps() -> None:
     assert StepSchedule((4, 1), 30).finer() == StepSchedule((8, 2), 30)
     assert FixedStep(0.2).finer() == FixedStep(0.1)
     assert AdaptiveStep(1e-3).finer() == AdaptiveStep(2.5e-4)
-    assert StepSchedule.from_trajectory(run) == StepSchedule((4, 16, 2), 30)
+    assert AdaptiveStep().like(run) == StepSchedule((4, 16, 2), 30)
 
 
 def test_the_step_fits_the_output(one_mass: OneMass) -> None:

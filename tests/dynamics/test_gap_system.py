@@ -48,14 +48,6 @@ def test_friction_and_directions_are_optional_and_loads_add_up() -> None:
     assert excited.largest_load.tolist() == [1.0, 5.0, 9.0]
 
 
-def test_rates_and_dashpots_are_one_matrix() -> None:
-    """Reference: analytic, diag(c) + Gᵀ G."""
-    rates = GapSystem(**parts() | {"damping": np.array([0.0, 3.0, 0.0])})
-    both = replace(rates, dashpots=np.array([[1.0, -2.0, 0.0]]))
-    expected = [[1.0, -2.0, 0.0], [-2.0, 7.0, 0.0], [0.0, 0.0, 0.0]]
-    np.testing.assert_array_equal(both.damping_matrix, expected)
-
-
 def test_rest_under_a_force() -> None:
     system = GapSystem(**parts() | {"omega2": np.array([4.0, 1.0, 2.0])})
     assert static_response(system, np.array([1.0, 2.0, 3.0])) == pytest.approx([0.25, 2.0, 1.5])
