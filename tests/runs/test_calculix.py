@@ -15,7 +15,6 @@ from geometry.arrays import Array
 from runs.case import reading
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
-from runs.case.messages import BadInput
 from runs.folder.cache import Cache
 from runs.pipeline.models import build
 from studies.reference_models.statics import static_response
@@ -149,12 +148,11 @@ def test_documented_factor_of_calculix(tmp_path: Path) -> None:
 
 def test_unsupported_cases_are_refused(tmp_path: Path) -> None:
     case = pt.load_case(pt.CASES / "spatial.toml")
-    with pytest.raises(BadInput) as error:
-        write(case, "case.toml", MPI.COMM_SELF, tmp_path / "x.inp", None)
-    assert str(error.value) == (
+    with refused(
         "case.toml: joint.lateral_play: cannot be exported to CalculiX, for which one process "
         "writes a flat boom, with no load on a rope; leave it out"
-    )
+    ):
+        write(case, "case.toml", MPI.COMM_SELF, tmp_path / "x.inp", None)
     beams = reading.select(case, "", ["beam-fe"])
     with refused("case.toml: --model: must be a shell, and there is none"):
         write(beams, "case.toml", MPI.COMM_SELF, tmp_path / "x.inp", None)

@@ -12,6 +12,7 @@ import jsonschema
 import pytest
 
 from dynamics.contact import PowerContact
+from geometry.boom import Boom
 from geometry.walls import free_room
 from runs import CASES
 from runs.case import toml
@@ -40,22 +41,14 @@ def test_any_text_and_number_survives_writing(tmp_path: Path) -> None:
     assert read_case(tmp_path, toml.dumps(case)) == case
 
 
-def test_the_paper_case_is_the_paper() -> None:
-    """Reference: external, the data of the paper."""
+def test_the_paper_case_is_the_paper(paper_boom: Boom) -> None:
+    """Reference: external, the data of the paper, which gives no sections."""
     case = shipped("paper")
     boom = build_boom(case)
-    outer, inner = boom.segments
-    assert (outer.start, outer.supports[1].x, inner.start, outer.end, inner.end) == (
-        0.0, 2.0, 9.0, 10.0, 19.0
-    )  # fmt: skip
-    assert (outer.second_moment_of_area, inner.second_moment_of_area) == (3.7986e-4, 2.1829e-4)
-    assert (outer.mass_per_length, inner.mass_per_length) == (83.16, 55.07)
-    assert (outer.rotary_inertia, inner.rotary_inertia) == (3.48, 1.68)
-    assert (outer.load, inner.load) == (83.16, 55.07)
-    assert outer.material.youngs_modulus == 2.1e11
-    (joint,) = boom.joints
-    assert (joint.stations, joint.play) == ((9.0, 10.0), 0.014)
-    assert case.joints[0].law("z") == PowerContact(1e13, 2.0)
+    own, paper = ([replace(s, section=None) for s in b.segments] for b in (boom, paper_boom))
+    assert own == paper
+    law = PowerContact(1e13, 2.0)
+    assert boom.joints == (replace(paper_boom.joints[0], contact=law),)
 
 
 def test_a_given_section_makes_mass_stiffness_and_rotary_inertia(tmp_path: Path) -> None:
@@ -244,28 +237,16 @@ def test_it_accepts_keys_in_all_their_forms() -> None:
         assert faults(case) == []
 
 
-ENSEMBLE = {"members": 8, "relative": 1e-9, "seed": 1}
-
-
 @pytest.mark.parametrize(
     ("place", "value"),
     [
         ("durration", 1.0), ("time.duration", "0.6"), ("time.duration", -1.0),
         ("title", "two\nlines"), ("segment.0.supports.0", True), ("segment.0.span", [0.0]),
         ("segment.0.supports.0", {"y": 1.0}), ("segment.0.mass_per_length", -83.16),
-        ("segment.0.collars", [{"span": [1.0, 2.0], "thickness": 0.0}]),
-        ("segment.0.diaphragms", [{"x": 1.0, "thickness": -0.008}]), ("joint.0.stations", []),
-        ("joint.0.stations.0", "tip"), ("joint.0.exponent", 0.5), ("joint.0.friction", -0.2),
-        ("joint.0.dashpot", -1e3), ("joint.0.contact_length", 0.0), ("joint.0.extension", -1.0),
-        ("joint.0.drive", {"stiffness": 0.0}), ("joint.0.drive", {"dashpot": -1.0}),
-        ("joint.0.drive", {"static_friction": 0.0}), ("model.1.terms.1", 0),
-        ("model.5.modes", 0), ("model.5.modes", "many"), ("model.0.kind", "plate"),
-        ("gravity", {"angle": 100.0}), ("gravity", {"acceleration": -9.8}),
-        ("damping", {"modal": 2.0}), ("payload", {"mass": -1.0}), ("limits", {"tip": -0.9}),
-        ("life", {"detail_category": 0.0}), ("ensemble", ENSEMBLE | {"seed": -1}),
-        ("ensemble", ENSEMBLE | {"members": 1}), ("ensemble", ENSEMBLE | {"members": 20000}),
-        ("ensemble", ENSEMBLE | {"relative": 1.0}),
-        ("combination", [{"name": "A", "factors": {"dead": [-1.0]}}]),
+        ("segment.0.collars", [{"span": [1.0, 2.0], "thickness": 0.0}]), ("joint.0.stations", []),
+        ("joint.0.stations.0", "tip"), ("joint.0.friction", -0.2), ("model.5.modes", 0),
+        ("model.5.modes", "many"), ("model.0.kind", "plate"), ("gravity", {"angle": 100.0}),
+        ("damping", {"modal": 2.0}), ("combination", [{"name": "A", "factors": {"dead": [-1.0]}}]),
     ],
 )  # fmt: skip
 def test_it_refuses_a_slip(place: str, value: object) -> None:

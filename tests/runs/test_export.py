@@ -173,9 +173,6 @@ def test_unsupported_cases_are_refused(tmp_path: Path) -> None:
         "leave it out"
     ):
         write(case_file.select(case, "", ["beam-fe"]), "case.toml", None, tmp_path / "x.py", None)
-
-
-def test_series_are_not_exported(tmp_path: Path) -> None:
     case = case_file.select(friction_case(), "", ["kantorovich-5"])
     with refused("case.toml: --model: must be beam elements with play, and there are none"):
         write(case, "case.toml", None, tmp_path / "x.py", None)

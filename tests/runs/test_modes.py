@@ -10,7 +10,7 @@ import pytest
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments, rigid_segment
+from beam_model.kantorovich import kantorovich_segments
 from beam_model.lines import lines
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
@@ -77,19 +77,6 @@ def test_modes_match_in_any_order(arm: Boom) -> None:
     sideways = [mode for mode in there if mode.motion == "bending in y"]
     upright = [mode for mode in here if mode.motion == "bending in z"]
     assert match_modes(arm, upright, sideways) == [None] * len(upright)
-
-
-def test_rigid_segments_swing_on_their_springs(steel: Material) -> None:
-    """Reference: analytic, a bar on two springs: ω² = 2k/m in translation, k L²/2I in rotation."""
-    bar = Segment.of_section("bar", 0.0, 4.0, steel, BOX)
-    segment = replace(bar, supports=(Support(0.0, stiffness=1e6), Support(4.0, stiffness=1e6)))
-    boom = Boom((segment,), ())
-    system = gap_system(boom.bonded, [rigid_segment(segment)])
-    found = modes(LoadedModel.of(boom, system, lines(boom, [rigid_segment(segment)])), np.zeros(2))
-    mass = bar.mass_per_length * 4.0
-    inertia = mass * 4.0**2 / 12.0 + bar.rotary_inertia * 4.0
-    expected = np.sqrt([2e6 / mass, 2e6 * 2.0**2 / inertia]) / (2.0 * np.pi)
-    np.testing.assert_allclose([mode.frequency for mode in found], expected, rtol=1e-9)
 
 
 def test_rigid_segment_has_modes_of_its_contacts() -> None:

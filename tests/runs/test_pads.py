@@ -9,7 +9,7 @@ import pytest
 from dynamics.contact import PowerContact
 from dynamics.contact_table import TableContact
 from dynamics.motion import initial_state
-from protractile.cases import change, run_case
+from protractile.cases import run_case
 from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.contact import JointTable
@@ -21,7 +21,7 @@ from runs.pipeline.summary import Summary
 from runs.report.result_tables import pad_table
 from runs.report.summary_table import summary_table
 from tests.runs.case_texts import COARSE, elements, read_case, refusal
-from tests.runs.summaries import motion_of, printed_check
+from tests.runs.summaries import printed_check
 from tests.touching import contact_laws
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"
@@ -260,15 +260,6 @@ def test_table_approximates_the_sampled_law(tmp_path: Path) -> None:
     assert -1e-6 < above.min() < 1e-6
     assert above.max() == pytest.approx(0.25 * 1e13 * (5.0e-6) ** 2, rel=1e-2)
     assert read_case(tmp_path, toml.dumps(case)) == case
-
-
-def test_motion_of_a_table_follows_the_sampled_law(tmp_path: Path) -> None:
-    """Reference: the power law. At 10 kN the chords have an error of 60 N."""
-    tips = []
-    for law in (LAW, f"force_table = {POINTS}\n"):
-        case = change(table_case(tmp_path, law), **{"time.duration": 0.25})
-        tips.append(motion_of(case, 1).data["tip"].values)
-    assert np.abs(tips[1] - tips[0]).max() < 1e-3 * np.ptp(tips[0])
 
 
 def test_a_file_and_a_model_s_own_table_are_the_same(tmp_path: Path) -> None:

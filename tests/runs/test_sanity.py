@@ -96,9 +96,6 @@ LOAD = '{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }'
         (PLAY, "play = 0.003\nstiffness = 1e8\ndrive = { travel = 1.199999999, time = 9.0 }\n",
          "joint[1].drive: the overlap of 'fly' that the drive leaves is 1e-09 m, usual is from "
          "0.18 m"),
-        ("[0.7, -1.1]", "[2.4, -0.250000001]",
-         "cylinder[1].ground: the length of cylinder 1 is 1e-09 m, usual is from 0.226 up to 11.3 "
-         "m"),
         ("[0.7, -1.1]", "[0.7, -700.0]",
          "cylinder[1].ground: the length of cylinder 1 is 699.75 m, usual is from 0.226 up to "
          "11.3 m; if it is in mm, give 0.69975 m"),
@@ -122,9 +119,6 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
          "joint[1].pad.thickness: the thickness of the pad is 0.2 m, usual is from 0.0005 up to "
          "0.1 m; if it is in cm, give 0.002 m\njoint[1].pad.thickness: a pad of 200 mm is "
          "thicker than the gap of 33 mm between 'base' and 'fly', both sides together"),
-        (PLAY, f"{PLAY}drive = {{ travel = -4.0, time = 1.0 }}\n",
-         "joint[1].drive: the largest speed at which 'fly' moves is 8 m/s, usual is up to 5 "
-         "m/s; if it is in mm/s, give 0.008 m/s"),
         (PLAY, f"{PLAY}normal_forces = [1e3, 1e3]\n",
          "joint[1].normal_forces: they have no effect, since friction is 0; "
          "give friction, usual is 0.05 to 0.3, or leave them out"),
@@ -145,17 +139,11 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
         ("-1595.0", "-230.0",
          "load[1].magnitude: -230 N at the tip is 3 % of the boom's weight; if it is in kg, give "
          "its weight, -1595 N"),
-        ("thickness = 0.012", "thickness = 0.04",
-         "joint[1].pad.thickness: a pad of 40 mm is thicker than the gap of 33 mm between 'base' "
-         "and 'fly', both sides together"),
         ("-1595.0", "-2942.0",
          "load[1].magnitude: if -2942 N at the tip is the weight of the payload, it acts already; "
          "leave it out"),
         (LOAD, f"{LOAD}, {LOAD}",
          "load[2]: repeats load[1]; leave one of them out"),
-        ("height = 0.3,", "height = 3.0,",
-         "segment[1].section: the height of 'base' is 3 m, usual is from 0.013 up to 1.3 m; if it "
-         "is in cm, give 0.03 m"),
         ("mass = 300.0", "mass = 3.0",
          "the payload of 3 kg is less than a fiftieth of the boom's 472 kg; check the units"),
         ("0.004 }", "0.004 }\nload = -4.7e6",
