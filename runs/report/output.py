@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import csv
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor
 from contextlib import contextmanager
@@ -150,7 +151,14 @@ def write_csv(trajectories: xr.Dataset, path: Path) -> None:
         else:
             columns[str(name)] = variable
     frame = xr.Dataset(columns).to_dataframe(["model", "time"])
-    frame.to_csv(path, float_format="%.9g", lineterminator="\r\n")
+    line = ",".join(["%.9g"] * (1 + len(columns)))
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["model", "time", *columns])
+        # pandas formats numbers three times as slowly.
+        for (name, time), row in zip(frame.index, frame.to_numpy().tolist(), strict=True):
+            texts = (line % (time, *row)).replace("nan", "").split(",")
+            writer.writerow([name, *texts])
 
 
 def write_workbook(results: Results, folder: Path, name: str, option: str) -> None:
