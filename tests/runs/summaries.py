@@ -33,6 +33,12 @@ _MODEL = {
     "first_peak": {"tip": [0.554, 0.16888]}, "peak_contact_force": 441_005.9,
     "energy_residual": 5.6e-5, "seconds": {"build": 0.1, "motion": 0.2},
 }  # fmt: skip
+# Measured horizons of a model.
+HORIZONS = {
+    "relatives": [1e-12, 1e-6], "shares": [0.01, 0.2], "times": [[1.5, 6.0], [1.0, None]],
+    "of_step": [1.2, None], "rate": [27.63, None], "step_change": None,
+    "limits": ["step", "physics"],
+}  # fmt: skip
 
 
 def model_summary(**changes: Any) -> ModelSummary:

@@ -101,17 +101,6 @@ def test_the_ground_s_acceleration_is_a_load_on_every_mass(tmp_path: Path) -> No
     assert found == pytest.approx(expected, abs=1e-9 * np.ptp(expected))
 
 
-def test_damping_of_all_modes_takes_the_energy(tmp_path: Path) -> None:
-    """Reference: analytic, e^(−ζ ω t) (cos ω' t + ζ ω / ω' sin ω' t) with ω' = √(1 − ζ²) ω."""
-    released = load(x=10.0, magnitude=-500.0, released=True)
-    moved = tip(tmp_path, table("[damping]", modal=0.05) + released)
-    time = np.arange(moved.size) / 1000
-    slower = np.sqrt(1.0 - 0.05**2) * FIRST
-    swings = np.cos(slower * time) + 0.05 * FIRST / slower * np.sin(slower * time)
-    expected = moved[0] * np.exp(-0.05 * FIRST * time) * swings
-    assert moved == pytest.approx(expected, abs=0.06 * abs(moved[0]))
-
-
 def test_histories_follow_the_case(tmp_path: Path) -> None:
     (tmp_path / "gust.csv").write_text("0, 0\n0.5, 1\n2, -0.25\n", encoding="utf-8")
     given = {}, {"ramp": 0.3}, {"frequency": 2.0}, {"table": [[0, 1], [1, 2]]}, {"file": "gust.csv"}

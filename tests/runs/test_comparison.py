@@ -28,7 +28,14 @@ from runs.report.predictability import comparison_tables, predictability_tables
 from tests.dynamics.two_stops import CHAOTIC
 from tests.runs.case_texts import shipped
 from tests.runs.paper_curves import members
-from tests.runs.summaries import PRESSED, model_summary, rubbing, steps_for_peaks, summary_of
+from tests.runs.summaries import (
+    HORIZONS,
+    PRESSED,
+    model_summary,
+    rubbing,
+    steps_for_peaks,
+    summary_of,
+)
 
 TIME = np.arange(10_001) * 1e-3
 CUTOFF, SLOW = 1.7, 2.0
@@ -364,11 +371,6 @@ LEVELS = {
         "deviation": [0.0478, 0.04], "distance": 0.199,
     },
 }  # fmt: skip
-MEASURED = {
-    "relatives": [1e-12, 1e-6], "shares": [0.01, 0.2], "times": [[1.5, 6.0], [1.0, None]],
-    "of_step": [1.2, None], "rate": [27.63, None], "step_change": None,
-    "limits": ["step", "physics"],
-}  # fmt: skip
 
 
 def test_nothing_is_known_of_a_run_without_ensembles() -> None:
@@ -414,7 +416,7 @@ def test_missing_peaks_make_no_table() -> None:
 
 
 def test_growth_names_the_limit() -> None:
-    _, growth, _ = predictability_tables(results(ensemble=ENSEMBLE, horizons=MEASURED))
+    _, growth, _ = predictability_tables(results(ensemble=ENSEMBLE, horizons=HORIZONS))
     assert growth.headings[2:4] == ("change 1 × 10⁻¹²\ns", "change 1 × 10⁻⁶\ns")
     assert growth.rows == [
         ("kantorovich-4", "1 %", "1.50", "1.00", "1.20", "28", "the step"),

@@ -26,7 +26,7 @@ from runs.report.force_figures import contact_peaks, first_contacts, friction
 from runs.report.model_tables import model_table
 from runs.report.motion_figures import close_up, energies, heads, horizons, tip
 from tests.runs.case_texts import shipped
-from tests.runs.summaries import changed, rubbing
+from tests.runs.summaries import HORIZONS, changed, rubbing
 
 pytestmark = pytest.mark.slow
 
@@ -359,12 +359,7 @@ def test_a_boom_in_space_moves_to_the_sides(results: Results, drawn: Drawn) -> N
 def test_measured_horizons_are_drawn(results: Results, drawn: Drawn) -> None:
     """Reference: the numbers of the summary."""
     assert drawn(horizons, results) == []
-    measured = {
-        "relatives": [1e-12, 1e-6], "shares": [0.01, 0.2], "times": [[1.5, 6.0], [1.0, None]],
-        "of_step": [1.2, None], "rate": [27.6, None], "step_change": None,
-        "limits": ["step", "physics"],
-    }  # fmt: skip
-    drawn(horizons, changed(results, "beam-fe", horizons=measured))
+    drawn(horizons, changed(results, "beam-fe", horizons=HORIZONS))
     (axes,) = drawn.sheets["horizons"].axes
     points = [np.asarray(line.get_xydata()) for line in axes.get_lines() if line.get_xydata().size]
     first, of_step, last = points

@@ -146,16 +146,6 @@ def test_files_are_in_the_units_of_the_case_unless_they_say_others() -> None:
         assert gust.magnitude * gust.table[1][1] == pytest.approx(-12.0, rel=1e-15)
 
 
-def test_files_with_units_need_no_magnitude() -> None:
-    """Reference: analytic. -50 N/m is that whatever the units of the case."""
-    in_mm()
-    text = Path("crane.toml").read_text(encoding="utf-8")
-    Path("gust.csv").write_text("t [s],F [N/m]\n0,0\n3,-50\n", encoding="utf-8")
-    Path("crane.toml").write_text(text.replace("magnitude = -0.012, ", ""), encoding="utf-8")
-    gust = reading.load("crane.toml").loads[2]
-    assert gust.magnitude * gust.table[1][1] == pytest.approx(-50.0, rel=1e-15)
-
-
 @pytest.mark.parametrize(
     ("own", "sides", "power"),
     [
