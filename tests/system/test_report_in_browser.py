@@ -14,7 +14,7 @@ from runs.case.schema import EnsembleTable
 from runs.client import judge
 from runs.pipeline.results import prepare, read_netcdf
 from runs.report import output
-from tests.runs.summaries import HORIZONS, finished
+from tests.runs.summaries import finished
 from tests.system.browser import Page, blank_page, find_browser
 from tests.system.run_folder import COARSE
 
@@ -49,7 +49,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     time = case.time.model_copy(update={"duration": 2.0})
     case = case.model_copy(update={"time": time, "ensemble": ensemble})
     run = finished(case)
-    run.results.summary.models["kantorovich-5"].horizons = HORIZONS
+    run.results.summary.models["kantorovich-5"].horizons = {
+        "relatives": [1e-12, 1e-9, 1e-6, 1e-3], "shares": [0.01, 0.2],
+        "times": [[1.5, 1.9], [1.2, None], [0.9, None], [0.6, None]], "of_step": [1.3, None],
+        "rate": [23.0, None], "step_change": None, "limits": ["step", "physics"],
+    }  # fmt: skip
     out = prepare(str(tmp_path_factory.mktemp("run") / "out"), "")
     out.mkdir()
     output.write(run, judge(run.results), out)
