@@ -12,6 +12,11 @@ from dataclasses import dataclass, replace
 from types import UnionType
 from typing import ClassVar, get_args, get_type_hints
 
+from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
+
+# Conversion factors from SI units by the first character of the displayed unit.
+_PREFIXES = {"m": TO_MILLI, "k": TO_KILO, "M": TO_MEGA, "%": TO_PERCENT}
+
 
 @dataclass(frozen=True, slots=True)
 class Metric:
@@ -20,12 +25,16 @@ class Metric:
     name: str  #: name in files of sweeps; "." for the name of the field; empty to omit the result
     unit: str  #: SI unit in files
     title: str  #: a lower-case phrase for display
-    factor: float  #: conversion factor from the SI unit to the displayed unit
     shown_unit: str  #: displayed unit
-    logarithmic: bool = False  #: True for a logarithmic scale in charts
-    charted: bool = True  #: True if the result is smooth enough for a chart
     heading: str = ""  #: heading in tables of reports; empty to omit the result there
     form: str = ".4g"  #: number format in tables of reports
+    charted: bool = True  #: True if the result is smooth enough for a chart
+    logarithmic: bool = False  #: True for a logarithmic scale in charts
+
+    @property
+    def factor(self) -> float:
+        """The conversion factor from the SI unit to the displayed unit."""
+        return 1.0 if self.shown_unit in (self.unit, "–") else _PREFIXES[self.shown_unit[0]]
 
     @property
     def unit_of_heading(self) -> str:

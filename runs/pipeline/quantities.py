@@ -10,7 +10,7 @@ from math import log, pi
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
+from geometry.typography import TO_MILLI
 from runs.case.schema import LimitsTable
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.largest_loads import StaticExtreme, StaticKind
@@ -44,21 +44,21 @@ RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummar
 # Static, dynamic and accuracy quantities.
 QUANTITIES = (
     Metric("tip_at_rest", "m", "static tip deflection (maximum load)", TO_MILLI, "mm"),
-    Metric("tip", "m", "tip deflection", TO_MILLI, "mm"),
-    Metric("tip_lateral", "m", "lateral tip deflection", TO_MILLI, "mm"),
-    Metric("tip_amplitude", "m", "tip amplitude", TO_MILLI, "mm"),
-    Metric("dynamic_factor", "1", "dynamic factor", 1.0, "–"),
-    Metric("contact_force", "N", "contact force", TO_KILO, "kN"),
-    Metric("stress", "Pa", "bending stress", TO_MEGA, "MPa"),
-    Metric("wall_stress", "Pa", "local plate stress", TO_MEGA, "MPa"),
-    Metric("pad_pressure", "Pa", "pad pressure", TO_MEGA, "MPa"),
-    Metric("damage", "1", "damage", 1.0, "–", logarithmic=True),
-    Metric("first_frequency", "Hz", "first frequency", 1.0, "Hz"),
-    Metric("decay_time", "s", "decay time to 10 %", 1.0, "s"),
-    Metric("mass", "kg", "mass", 1.0, "kg"),
-    Metric("settling_time", "s", "settling time", 1.0, "s"),
-    Metric("drive_force", "N", "largest force of an elastic drive", TO_KILO, "kN"),
-    Metric("drive_slip", "m", "longest slip on a drive", TO_MILLI, "mm"),
+    Metric("tip", "m", "tip deflection", "mm"),
+    Metric("tip_lateral", "m", "lateral tip deflection", "mm"),
+    Metric("tip_amplitude", "m", "tip amplitude", "mm"),
+    Metric("dynamic_factor", "1", "dynamic factor", "–"),
+    Metric("contact_force", "N", "contact force", "kN"),
+    Metric("stress", "Pa", "bending stress", "MPa"),
+    Metric("wall_stress", "Pa", "local plate stress", "MPa"),
+    Metric("pad_pressure", "Pa", "pad pressure", "MPa"),
+    Metric("damage", "1", "damage", "–", logarithmic=True),
+    Metric("first_frequency", "Hz", "first frequency", "Hz"),
+    Metric("decay_time", "s", "decay time to 10 %", "s"),
+    Metric("mass", "kg", "mass", "kg"),
+    Metric("settling_time", "s", "settling time", "s"),
+    Metric("drive_force", "N", "largest force of an elastic drive", "kN"),
+    Metric("drive_slip", "m", "longest slip on a drive", "mm"),
     *(one for kind in RECORD_CLASSES for one in metrics(kind).values() if one.name),
 )
 

@@ -19,7 +19,6 @@ from dynamics.gap_system import GapSystem
 from dynamics.trajectory import Trajectory
 from dynamics.travel import Travel
 from geometry.arrays import Array, Indices
-from geometry.typography import TO_MILLI
 from runs.case.motion_tables import resolving_times
 from runs.case.schema import Case, Model
 from runs.pipeline.metrics import Metric, Record
@@ -30,9 +29,8 @@ _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
 
-# Metrics of a length, with and without a chart.
-_metres = partial(Metric, unit="m", factor=TO_MILLI, shown_unit="mm")
-_level = partial(_metres, charted=False)
+# Metric of a vibration at constant extension.
+_level = partial(Metric, unit="m", shown_unit="mm", charted=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,16 +46,13 @@ class ResidualVibration(Record):
     #: largest distance of the tip from its static position in m
     tip: Annotated[
         float,
-        _metres("residual_vibration", title="residual vibration", heading="residual\nvibration"),
+        Metric("residual_vibration", "m", "residual vibration", "mm", "residual\nvibration"),
     ]
     #: time of this distance in s
-    time: Annotated[
-        float,
-        Metric("", "s", "time of the residual vibration", 1.0, "s", heading="at", form=".3f"),
-    ]
+    time: Annotated[float, Metric("", "s", "time of the residual vibration", "s", "at", ".3f")]
     #: mean speed in m/s of the fastest drive while it moves
     speed: Annotated[
-        float, Metric("drive_speed", "m/s", "mean speed of the drive", 1.0, "m/s", charted=False)
+        float, Metric("drive_speed", "m/s", "mean speed of the drive", "m/s", charted=False)
     ]
     #: largest distance in m at constant initial extension, under the same loads; None if it cannot
     #: be computed

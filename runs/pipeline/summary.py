@@ -18,7 +18,6 @@ from pydantic_core import to_jsonable_python
 
 from dynamics.failure import NumericsError
 from dynamics.stick_slip import StickSlip
-from geometry.typography import TO_KILO, TO_PERCENT
 from runs.case.schema import EnsembleTable
 from runs.pipeline.comparison import Comparison
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
@@ -160,7 +159,7 @@ class ModelSummary(SummaryTable):
     seconds: dict[str, float]
     step: float
     steps: int
-    first_contact: Annotated[FiniteNumber, Metric("first_contact", "s", "first contact", 1.0, "s")]
+    first_contact: Annotated[FiniteNumber, Metric("first_contact", "s", "first contact", "s")]
     contact_changes: int
     energy_residual: Annotated[
         float,
@@ -168,25 +167,23 @@ class ModelSummary(SummaryTable):
             "energy_residual",
             "1",
             "energy residual",
-            1.0,
             "–",
+            "energy residual\n/ largest work",
+            ".1g",
             charted=False,
-            heading="energy residual\n/ largest work",
-            form=".1g",
         ),
     ]
     first_peak: dict[str, FirstPeak]
     peak_contact_force: Annotated[
         FiniteNumber,
-        Metric("peak_contact_force", "N", "peak force of an impact", TO_KILO, "kN", charted=False),
+        Metric("peak_contact_force", "N", "peak force of an impact", "kN", charted=False),
     ]
     wall_time: Annotated[
-        float | None,
-        Metric("", "s", "computing time", 1.0, "s", heading="computing time", form=".1f"),
+        float | None, Metric("", "s", "computing time", "s", "computing time", ".1f")
     ] = None
     step_error: Annotated[
         FiniteNumber,
-        Metric("step_error", "1", "time-step error of the tip", TO_PERCENT, "%", charted=False),
+        Metric("step_error", "1", "time-step error of the tip", "%", charted=False),
     ] = None
     resolving_step: FiniteNumber = None
     ensemble: EnsembleSummary | None = None

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import partial
 from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
@@ -18,7 +17,6 @@ from dynamics.trajectory import Trajectory
 from geometry.axial import lumped_masses
 from geometry.boom import Boom
 from geometry.telescoping import drives_of
-from geometry.typography import TO_KILO
 from runs.case.hoist import hanging_load
 from runs.case.motion_tables import resolving_times
 from runs.case.schema import Case
@@ -38,12 +36,9 @@ _SMALL = 0.2
 _SHAPED, _SHARE = 2, 0.05
 
 
-_metres = partial(Metric, unit="m", factor=1.0, shown_unit="m", form=".3g")
-
-
 def _kilo(unit: str, title: str, heading: str) -> Metric:
     """Return the metric of a result that is displayed in thousands of its SI unit."""
-    return Metric(".", unit, title, TO_KILO, f"k{unit}", heading=heading, form=".3g")
+    return Metric(".", unit, title, f"k{unit}", heading, ".3g")
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,36 +86,28 @@ class Hoisting(Record):
 
     lift_off: Annotated[
         float | None,
-        Metric(
-            "lift_off", "s", "lift-off", 1.0, "s", charted=False, heading="lift-off", form=".3f"
-        ),
+        Metric("lift_off", "s", "lift-off", "s", "lift-off", ".3f", charted=False),
     ]
     force: Annotated[
         float,
-        Metric(
-            "rope_force", "N", "force of the rope", TO_KILO, "kN",
-            heading="rope force,\nmaximum", form=".3g",
-        ),
-    ]  # fmt: skip
+        Metric("rope_force", "N", "force of the rope", "kN", "rope force,\nmaximum", ".3g"),
+    ]
     factor: Annotated[
-        float,
-        Metric(
-            "rope_factor", "1", "factor φ₂ of the rope", 1.0, "–", heading="factor φ₂", form=".3f"
-        ),
+        float, Metric("rope_factor", "1", "factor φ₂ of the rope", "–", "factor φ₂", ".3f")
     ]
     by_class: Annotated[
         float | None,
         Metric(
-            "rope_factor_by_class", "1", "factor φ₂ of the hoisting class", 1.0, "–",
-            heading="φ₂ of the\nclass", form=".3f",
+            "rope_factor_by_class", "1", "factor φ₂ of the hoisting class", "–",
+            "φ₂ of the\nclass", ".3f",
         ),
     ]  # fmt: skip
     swing_out: Annotated[
         float | None,
-        _metres("swing_out", title="swing in the plane of the boom", heading="swing\nin plane"),
+        Metric("swing_out", "m", "swing in the plane of the boom", "m", "swing\nin plane", ".3g"),
     ]
     swing_aside: Annotated[
-        float | None, _metres("swing_aside", title="swing aside", heading="swing\naside")
+        float | None, Metric("swing_aside", "m", "swing aside", "m", "swing\naside", ".3g")
     ]
 
 

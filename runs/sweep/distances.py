@@ -16,7 +16,6 @@ import numpy as np
 from dynamics.failure import NumericsError
 from dynamics.predictability import SHARES, EnsembleMember, Vary, horizon, run_members
 from geometry.arrays import Array
-from geometry.typography import TO_PERCENT
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.case.schema import Case, Model
@@ -39,11 +38,11 @@ AVERAGING_TIME = 0.02
 TIP_DEVIATION = "tip_off"
 # Relative differences from the reference.
 DISTANCES = (
-    Metric("first_peak_off", "1", "first peak deviation", TO_PERCENT, "%"),
-    Metric("slow_period_off", "1", "slow period deviation", TO_PERCENT, "%"),
-    Metric("pad_force_off", "1", "pad force deviation", TO_PERCENT, "%"),
-    Metric("stress_off", "1", "stress deviation", TO_PERCENT, "%"),
-    Metric(TIP_DEVIATION, "1", "tip deviation", TO_PERCENT, "%"),
+    Metric("first_peak_off", "1", "first peak deviation", "%"),
+    Metric("slow_period_off", "1", "slow period deviation", "%"),
+    Metric("pad_force_off", "1", "pad force deviation", "%"),
+    Metric("stress_off", "1", "stress deviation", "%"),
+    Metric(TIP_DEVIATION, "1", "tip deviation", "%"),
 )
 # Name of the variable with the time in s up to which tips are compared.
 UNTIL = "compared_until"
