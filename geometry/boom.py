@@ -112,6 +112,11 @@ class Boom:
         return self.tip - self.segments[0].start
 
     @property
+    def mass(self) -> float:
+        """The mass in kg, with point masses, collars and diaphragms."""
+        return sum(segment.mass for segment in self.segments)
+
+    @property
     def spatial(self) -> bool:
         """True if the segments also move along y and twist."""
         return any(joint.lateral_play is not None for joint in self.joints)

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from geometry.boom import Boom, BoomError, Segment
+from geometry.material import Material
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.contact import JointTable
 from runs.case.motion_tables import max_speed
@@ -90,7 +91,7 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
     for number, cylinder in enumerate(boom.cylinders, start=1):
         where, what = f"cylinder[{number}].ground", f"the length of cylinder {number}"
         yield UsualRange(where, what, cylinder.length, "m", 0.02 * boom.length, boom.length, 10.0)
-    weight = STANDARD_GRAVITY * sum(segment.mass for segment in boom.segments)
+    weight = STANDARD_GRAVITY * boom.mass
     for number, axial in enumerate(case.axial, start=1):
         if axial.force is not None:
             where, what = f"axial[{number}].force", "the size of the force along the boom"
@@ -110,12 +111,17 @@ def _category_range(where: str, category: float, least: float) -> UsualRange:
     return UsualRange(f"{where}.detail_category", what, category, "1", least, 160.0, 10.0)
 
 
-def _material_ranges(case: Case) -> Iterator[UsualRange]:
-    """Yield the material data. The ranges cover solids from plastics to tungsten."""
+def materials(case: Case) -> Iterator[tuple[str, Material]]:
+    """Yield each material of a case, after its key."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
     for where, table in {"material": case.material, **tables}.items():
-        if table is None:
-            continue
+        if table is not None:
+            yield where, table
+
+
+def _material_ranges(case: Case) -> Iterator[UsualRange]:
+    """Yield the material data. The ranges cover solids from plastics to tungsten."""
+    for where, table in materials(case):
         for key, what, unit, limits in (
             ("youngs_modulus", "Young's modulus", "Pa", (1.0e9, 1.0e12, 3.0)),
             ("density", "the density", "kg/m^3", (500.0, 2.5e4, 1000.0)),

@@ -148,15 +148,12 @@ class RunQuery:
             raise MissingData("It takes two models with play to compare.")
         return models
 
-    def with_friction(self) -> None:
-        """Check that the case has friction."""
-        if not any(joint.friction > 0.0 for joint in self.case.joints):
-            raise MissingData("This case has no friction; it takes the case with friction.")
-
-    def without_friction(self) -> None:
-        """Check that the case has no friction."""
-        if any(joint.friction > 0.0 for joint in self.case.joints):
-            raise MissingData("This case has friction; it takes the case without.")
+    def check_friction(self, present: bool) -> None:
+        """Check that the case has friction if ``present``, else that it has none."""
+        if any(joint.friction > 0.0 for joint in self.case.joints) == present:
+            return
+        has, takes = ("no ", "with friction") if present else ("", "without")
+        raise MissingData(f"This case has {has}friction; it takes the case {takes}.")
 
     def last_until(self, end: float) -> None:
         """Check that the run lasts until ``end`` in s."""

@@ -9,7 +9,7 @@ reduce the stiffness.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -26,12 +26,11 @@ from runs.pipeline.largest_loads import (
     StaticKind,
     beam_note,
     in_units,
-    least_of_units,
+    without_negligible,
 )
 from runs.pipeline.statics import boom_with_play
 from runs.pipeline.strength import WallStress
 from runs.pipeline.wall_buckling import WallBuckling
-from runs.report.formatting import without_round_off
 from runs.report.tables import Column, Table
 
 # Mark of governing values in a table.
@@ -103,10 +102,9 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
 
 def combination_results(case: Case) -> list[CombinationResult]:
     """Return the static results of all combinations; empty without load cases and combinations."""
-    has_combinations = case.load_cases or case.combinations
-    return (
-        [one.result for one in combination_states(case, moving=False)] if has_combinations else []
-    )
+    if not (case.load_cases or case.combinations):
+        return []
+    return [one.result for one in combination_states(case, moving=False)]
 
 
 def combination_tables(
@@ -122,7 +120,10 @@ def combination_tables(
     system = case.system
     if not any(one.extremes for one in results):
         return
-    results = _without_round_off(results)
+    shown = without_negligible([one.extremes for one in results])
+    results = [
+        CombinationResult(one.name, extremes) for one, extremes in zip(results, shown, strict=True)
+    ]
     columns = [Column("combination,\nload case", [one.name for one in results])]
     for kind, heading in _KINDS.items():
         values = [one.largest(kind) for one in results]
@@ -150,21 +151,6 @@ def combination_tables(
         yield _envelope(results, system)
 
 
-def _without_round_off(results: Sequence[CombinationResult]) -> list[CombinationResult]:
-    """Return results with 0 in place of round-off, relative to the largest result of a unit."""
-    least = least_of_units(one for result in results for one in result.extremes)
-    return [
-        replace(
-            result,
-            extremes=[
-                one._replace(largest=without_round_off([one.largest], least[one.unit])[0])
-                for one in result.extremes
-            ],
-        )
-        for result in results
-    ]
-
-
 def _marked(one: StaticExtreme, most: float, system: System) -> str:
     text = in_units(one.largest, one.unit, system)
     return text + (_GOVERNS if abs(one.largest) == most else " " * len(_GOVERNS))
@@ -190,6 +176,6 @@ def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
         Column("maximum", [in_units(one.largest, one.unit, system) for one, _ in most]),
         Column("governing", [name for _, name in governs]),
     ]
-    notes = ["Pads and contacts move with the extension; x is given for the governing combination."]
-    notes = notes if any(one.kind in at_stations for one, _ in governs) else []
+    note = "Pads and contacts move with the extension; x is given for the governing combination."
+    notes = [note] if any(one.kind in at_stations for one, _ in governs) else []
     return Table("Envelope of the combinations", columns, notes, "envelope")

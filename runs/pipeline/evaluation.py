@@ -27,7 +27,7 @@ from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
 from runs.pipeline.models import MotionPlan, complete_system
 from runs.pipeline.modes import ModeComparison, match_modes, modes
-from runs.pipeline.motion_results import MotionAndStatics, evaluate_motion
+from runs.pipeline.motion_results import evaluate_motion
 from runs.pipeline.panels import weakest_panels
 from runs.pipeline.proofs import prove
 from runs.pipeline.residual_vibration import residual_vibration
@@ -86,9 +86,8 @@ def with_motion(
 ) -> ModelDesignResults:
     """Return static results, completed by results of the motion and by fatigue damage."""
     rest_positions = np.array([*equilibria.values()]).reshape(-1, loaded.system.num_modes)
-    static, jumps = [*results.static, *results.static_extended], not model.smooth
-    motions = MotionAndStatics(loaded, trajectory, rest_positions, static, jumps)
-    motion, varying = evaluate_motion(motions)
+    static = [*results.static, *results.static_extended]
+    motion, varying = evaluate_motion(loaded, trajectory, rest_positions, static, not model.smooth)
     lives = [life(one, case.life) for one in varying] if HAS_RAINFLOW else []
     return replace(results, motion=motion, life=lives)
 
@@ -121,23 +120,24 @@ class ModelEvaluation:
             trajectory: motion of the model.
             shell: fields and stresses of a shell; None for a beam.
         """
-        loaded, case = self._model_with_play, self.case
-        system, equilibria = loaded.system, self._equilibria
-        extended = extended_positions(system, case.time.duration)
+        loaded, case, equilibria = self._model_with_play, self.case, self._equilibria
+        extended = extended_positions(loaded.system, case.time.duration)
         results = results_at_rest(loaded, equilibria, extended)
         rests = equilibria | extended
         results = with_motion(results, loaded, rests, trajectory, case, self.model)
-        if shell is not None and results.motion is not None:
-            walls = wall_stresses(loaded.boom, shell.stresses)
-            results = replace(results, motion=replace(results.motion, walls=walls))
-        if shell is not None and shell.buckling is not None:
-            results = replace(results, buckling=shell.buckling.segments)
+        if shell is not None:
+            assert results.motion is not None
+            motion = replace(results.motion, walls=wall_stresses(loaded.boom, shell.stresses))
+            buckled = [] if shell.buckling is None else shell.buckling.segments
+            results = replace(results, motion=motion, buckling=buckled)
         if case.buckling is not None and (rest := results.farthest_static) is not None:
             results = replace(results, panels=weakest_panels(loaded.boom.segments, rest))
-        vibration = residual_vibration(system, trajectory, case, self.model)
-        hoist_results = hoisting(case, self.boom, trajectory)
-        drives = crane_drives(case, self.boom, trajectory.data)
-        return replace(results, residual_vibration=vibration, hoisting=hoist_results, drives=drives)
+        return replace(
+            results,
+            residual_vibration=residual_vibration(loaded.system, trajectory, case, self.model),
+            hoisting=hoisting(case, self.boom, trajectory),
+            drives=crane_drives(case, self.boom, trajectory.data),
+        )
 
     def add_bonded(self, results: ModelDesignResults) -> ModelDesignResults:
         """Add the results of the same model without play, if it has play, to design results."""

@@ -6,8 +6,9 @@ The model has beam elements and the compliance of walls under pads, at the initi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -262,23 +263,15 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
         extremes: the extremes of this boom.
     """
     used = [one.utilisation.value if one.utilisation else None for one in extremes]
-    least = least_of_units(extremes)
-
-    def shown(values: Iterable[float]) -> list[str]:
-        pairs = zip(values, extremes, strict=True)
-        return [
-            in_units(without_round_off([value], least[one.unit])[0], one.unit, case.system)
-            for value, one in pairs
-        ]
-
+    (extremes,) = without_negligible([extremes])
     vary = any(one.time > 0.0 for one in extremes)
     columns = [
         Column("", [one.what for one in extremes]),
-        Column("t = 0", shown(one.initial for one in extremes)),
+        Column("t = 0", [in_units(one.initial, one.unit, case.system) for one in extremes]),
     ]
     if vary:
         columns += [
-            Column("maximum", shown(one.largest for one in extremes)),
+            Column("maximum", [in_units(one.largest, one.unit, case.system) for one in extremes]),
             Column("time of\nmaximum, s", [f"{one.time:.4g}" for one in extremes]),
         ]
     if any(used):
@@ -294,12 +287,17 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
     return Table(title, columns, [beam_note(boom), kinds, *more])
 
 
-def least_of_units(extremes: Iterable[StaticExtreme]) -> dict[str, float]:
-    """Return for each unit the value below which results of this unit are displayed as 0."""
+def without_negligible(groups: Sequence[Sequence[StaticExtreme]]) -> list[list[StaticExtreme]]:
+    """Return groups of results, with 0 for values far below the largest one of their unit."""
     least: dict[str, float] = {}
-    for one in extremes:
+    for one in chain.from_iterable(groups):
         least[one.unit] = max(_NEGLIGIBLE * abs(one.largest), least.get(one.unit, 0.0))
-    return least
+
+    def shown(one: StaticExtreme) -> StaticExtreme:
+        initial, largest = without_round_off([one.initial, one.largest], least[one.unit])
+        return one._replace(initial=initial, largest=largest)
+
+    return [[shown(one) for one in group] for group in groups]
 
 
 def beam_note(boom: Boom) -> str:
@@ -326,16 +324,12 @@ def overload_cautions(
         boom: the boom, for its length.
         advise: function that returns the advice on a large deflection.
     """
-    far = [
-        caution
-        for one in extremes
-        if one.kind == "tip" and one.time > 0.0
-        for caution in tip_cautions(
-            f"under the loads at t = {one.time:.4g} s", one.largest, boom, advise
-        )
-    ]
-    return far + [
-        f"caution: static utilisation under the loads at t = {one.time:.4g} s: {used}"
-        for one in extremes
-        if (used := one.utilisation) is not None and (used.value or 0.0) > 1.0
-    ]
+    cautions: list[str] = []
+    for one in extremes:
+        under = f"under the loads at t = {one.time:.4g} s"
+        # The tip comes first.
+        if one.kind == "tip" and one.time > 0.0:
+            cautions += tip_cautions(under, one.largest, boom, advise)
+        if one.utilisation is not None and (one.utilisation.value or 0.0) > 1.0:
+            cautions.append(f"caution: static utilisation {under}: {one.utilisation}")
+    return cautions

@@ -66,13 +66,9 @@ def release_note(case: Case) -> str:
 
 def _rows(case: Case, boom: Boom) -> Iterator[_Row]:
     if case.gravity is not None:
-        mass = sum(segment.mass for segment in boom.segments)
-        for direction, acceleration in (
-            ("z", -case.gravity.across),
-            (_AXIAL, case.gravity.along),
-        ):
+        for direction, acceleration in (("z", -case.gravity.across), (_AXIAL, case.gravity.along)):
             if acceleration:
-                yield _Row("gravity", _ALL, direction, _CONSTANT, acceleration * mass, "N")
+                yield _Row("gravity", _ALL, direction, _CONSTANT, acceleration * boom.mass, "N")
     for i, segment in enumerate(case.segments, start=1):
         for key, direction in (("load", "z"), ("lateral_load", "y")):
             if load := getattr(segment, key):

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from concurrent.futures import Executor
 from contextlib import contextmanager
 from dataclasses import replace
@@ -14,19 +14,13 @@ import xarray as xr
 
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
-from dynamics.integrator import FixedStep, Integrator
+from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
-from dynamics.predictability import SHARES, Vary, ensemble_horizons, measure_horizons
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
 from runs.case.schema import TimeTable
 from runs.pipeline.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
-from runs.pipeline.summary import (
-    EnsembleSummary,
-    Predictability,
-    StepsForPeaks,
-    Trial,
-)
+from runs.pipeline.summary import StepsForPeaks, Trial
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -35,8 +29,6 @@ if TYPE_CHECKING:
 ELEMENT_LENGTH = 0.5
 # Outputs that are stored for every member.
 PLACES = ("tip", "head")
-# Relative changes of the data; their growth determines horizons and growth rates.
-CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
 # Number of compared peaks. At later peaks the spread of the ensemble exceeds the differences.
 PEAKS = 3
 # Permitted difference of a peak from the ensemble mean, in addition to the spread. The time of a
@@ -83,21 +75,6 @@ def slow_cutoff(boom: Boom, time: TimeTable) -> float | None:
     return cutoff
 
 
-def summarise_ensemble(ensemble: xr.Dataset, peaks: SlowPeaks | None) -> EnsembleSummary:
-    """Return the summary of the ensemble of a model.
-
-    Args:
-        ensemble: ensemble of :func:`dynamics.predictability.integrate_ensemble`.
-        peaks: peaks of the slow motion of the tip; None without a cut-off.
-    """
-    shares = zip(SHARES, ensemble_horizons(ensemble), strict=True)
-    return EnsembleSummary(
-        horizons={f"{share:g}": time for share, time in shares},
-        energy_residual=float(ensemble["energy_residual"].max()),
-        slow_peaks=peaks,
-    )
-
-
 def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
     """Return tip and head deflections of all ensembles in single precision; None without ensembles.
 
@@ -113,44 +90,6 @@ def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
     together = xr.concat(kept, xr.Variable("model", list(ensembles)), combine_attrs="override")
     return together.drop_vars("station", errors="ignore").assign_attrs(
         vary=kept[0].attrs["vary"], relative=kept[0].attrs["relative"], seed=kept[0].attrs["seed"]
-    )
-
-
-def measure_predictability(
-    motion: Motion,
-    integrator: Integrator,
-    vary: Vary,
-    unchanged: Trajectory,
-    executor: Executor | None,
-    progress: Callable[[float], None],
-) -> Predictability:
-    """Return the horizons for small changes of the data and of the time step, with growth rates.
-
-    Args:
-        motion: motion of the model.
-        integrator: integrator of the motion.
-        vary: data to change: ``load`` or ``clearance``.
-        unchanged: trajectory for the unchanged data.
-        executor: executor of the runs; None for threads of this process.
-        progress: callback that receives the completed fraction.
-    """
-    horizons = measure_horizons(
-        motion,
-        CHANGES,
-        vary,
-        integrator=integrator,
-        executor=executor,
-        progress=progress,
-        unchanged=unchanged,
-    )
-    return Predictability(
-        relatives=horizons.relatives.tolist(),
-        shares=horizons.shares.tolist(),
-        times=horizons.times.tolist(),
-        of_step=horizons.of_step.tolist(),
-        rate=[growth.rate for growth in horizons.growth],
-        step_change=horizons.step_change,
-        limits=list(horizons.limits),
     )
 
 

@@ -189,20 +189,21 @@ def _agreement(design: DesignResults) -> Iterator[str]:
     if design.modes is None:
         return
     reference = design.modes.reference
-    reference_results = design.models[reference]
+    results = design.models[reference]
     for name, matches in design.modes.matches.items():
-        other, parts = design.models[name], []
-        if (off := static_deviation(reference_results, other)) is not None:
-            parts.append(f"{signed_percent(off)} in the static tip deflection")
-        if (first := matches[0]) is not None:
-            parts.append(f"{signed_percent(first.off)} in the first frequency")
-        if (
-            reference_results.motion is not None
-            and other.motion is not None
-            and reference_results.motion.peaks[0].largest
-        ):
-            ratio = other.motion.peaks[0].largest / reference_results.motion.peaks[0].largest
-            parts.append(f"{signed_percent(ratio - 1.0)} in the maximum tip deflection")
+        other, first, dynamic = design.models[name], matches[0], None
+        if results.motion and other.motion and results.motion.peaks[0].largest:
+            dynamic = other.motion.peaks[0].largest / results.motion.peaks[0].largest - 1.0
+        deviations = {
+            "static tip deflection": static_deviation(results, other),
+            "first frequency": first and first.off,
+            "maximum tip deflection": dynamic,
+        }
+        parts = [
+            f"{signed_percent(off)} in the {what}"
+            for what, off in deviations.items()
+            if off is not None
+        ]
         if parts:
             yield f"{name} differs from {reference} by {join_words(parts)}."
 
@@ -275,20 +276,11 @@ def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
         tip = max((rest.tip for rest in rests), key=abs, default=model.static_tip)
         yield from tip_cautions(f"in {name}", tip, boom, advise)
     designs = summary.design.models.items()
-    slowest = min(
-        ((mode.frequency, name) for name, one in designs for mode in one.modes), default=()
-    )
-    if slowest:
-        yield from period_cautions(f"in {slowest[1]}", slowest[0], case)
-    pendulum = pendulum_frequency(case)
-    bending = [
-        (mode.frequency, name)
-        for name, one in designs
-        for mode in one.modes
-        if mode.frequency > _APART * pendulum
-    ]
-    if bending:
-        frequency, name = min(bending)
+    frequencies = sorted((mode.frequency, name) for name, one in designs for mode in one.modes)
+    for frequency, name in frequencies[:1]:
+        yield from period_cautions(f"in {name}", frequency, case)
+    bending = [one for one in frequencies if one[0] > _APART * pendulum_frequency(case)]
+    for frequency, name in bending[:1]:
         yield from turning_cautions(f"in {name}", frequency, case)
 
 
@@ -335,13 +327,13 @@ def _numerical(summary: Summary, case: Case) -> Iterator[str]:
         if (error := model.reduction_errors.get("contact_compliance") or 0.0) > MAX_RELATIVE_ERROR:
             yield (
                 f"caution: the reduction of {name} to {model.modes} coordinates has an error of "
-                f"{TO_PERCENT * error:.2g} % of the local contact compliance; allow more modes, or "
+                f"{_percent(error)} of the local contact compliance; allow more modes, or "
                 "--modes auto"
             )
     for name, model in summary.models.items():
         if (error := model.mesh_error or 0.0) > MAX_RELATIVE_ERROR:
             yield (
-                f"caution: the mesh of {name} causes an error of {TO_PERCENT * error:.2g} % of the "
+                f"caution: the mesh of {name} causes an error of {_percent(error)} of the "
                 "local contact compliance; give a smaller "
                 f"{'contact_tolerance' if name in refined else 'mesh_size'}"
             )

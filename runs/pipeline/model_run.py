@@ -19,7 +19,12 @@ from beam_model.calibration import Calibration, Stiffness
 from dynamics.equilibrium import equilibrium
 from dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from dynamics.gap_system import GapSystem
-from dynamics.predictability import integrate_ensemble
+from dynamics.predictability import (
+    SHARES,
+    ensemble_horizons,
+    integrate_ensemble,
+    measure_horizons,
+)
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom, Segment
 from runs.case import toml
@@ -34,8 +39,10 @@ from runs.pipeline.models import MotionPlan, build
 from runs.pipeline.summary import (
     BeamStiffness,
     CalibrationCard,
+    EnsembleSummary,
     FirstPeak,
     ModelSummary,
+    Predictability,
     StationSpring,
 )
 from runs.pipeline.wall_buckling import buckle_shell, farthest_state
@@ -43,10 +50,10 @@ from runs.process.terminal import Progress
 from shell_model.stages import Stages
 
 if TYPE_CHECKING:
-    from concurrent.futures import Executor
-
     from mpi4py import MPI
 
+# Relative changes of the data; their growth determines horizons and growth rates.
+CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
 
 # Loaded wall of the outer segment, by direction and sign of the force of the inner segment.
 _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}
@@ -229,11 +236,23 @@ def _integrate(
             )
         tips, time = ensemble["tip"].values, ensemble["time"].values
         peaks = None if cutoff is None else SlowPeaks.of(tips, time, cutoff)
-        summary.ensemble = members.summarise_ensemble(ensemble, peaks)
+        shares = zip(SHARES, ensemble_horizons(ensemble), strict=True)
+        summary.ensemble = EnsembleSummary(
+            horizons={f"{share:g}": time for share, time in shares},
+            energy_residual=float(ensemble["energy_residual"].max()),
+            slow_peaks=peaks,
+        )
         with stages.stage("horizons") as report_progress:
-            summary.horizons = members.measure_predictability(
-                motion, plan.integrator, table.vary, trajectory, executor, report_progress
+            horizons = measure_horizons(
+                motion,
+                CHANGES,
+                table.vary,
+                integrator=plan.integrator,
+                executor=executor,
+                progress=report_progress,
+                unchanged=trajectory,
             )
+            summary.horizons = Predictability.of(horizons)
         if cutoff is not None and peaks is not None and motion.from_rest:
             with stages.stage("step counts"):
                 summary.steps_for_peaks = members.steps_for_peaks(motion, peaks, cutoff)

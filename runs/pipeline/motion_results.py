@@ -13,6 +13,7 @@ from dynamics.line import Quantity
 from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.axial import foot_thrust
+from geometry.boom import Boom
 from geometry.cylinder import forces
 from geometry.section import Direction
 from runs.pipeline.section_forces import LoadedModel, round_values
@@ -83,28 +84,30 @@ _PLANES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
-class MotionAndStatics:
-    """A motion with the static states for comparison."""
-
-    model: LoadedModel  #: the model
-    trajectory: Trajectory  #: the motion
-    positions: Array  #: equilibria (num_rests, num_modes)
-    rests: Sequence[StaticResult]  #: static states at the equilibria
-    jumps: bool  #: True if section forces jump at point forces; False for a series, which is smooth
-
-
-def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[StressHistory]]:
+def evaluate_motion(
+    model: LoadedModel,
+    trajectory: Trajectory,
+    positions: Array,
+    rests: Sequence[StaticResult],
+    jumps: bool,
+) -> tuple[MotionResult, list[StressHistory]]:
     """Return extreme values of a motion without wall stresses, and stress histories for fatigue.
 
     The stress history of a segment belongs to the point where the stress varies most.
+
+    Args:
+        model: the model.
+        trajectory: motion of the model.
+        positions: equilibria (num_rests, num_modes) for comparison.
+        rests: static states at the equilibria.
+        jumps: True if section forces jump at point forces; False for a series, which is smooth.
     """
-    model, envelopes, peaks = motions.model, [], list(_output_peaks(motions))
+    envelopes, peaks = [], list(_output_peaks(model.boom, trajectory, rests))
     fibres, varying = [], []
-    time, rest_times = motions.trajectory.time, np.array([rest.time for rest in motions.rests])
+    time, rest_times = trajectory.time, np.array([rest.time for rest in rests])
     for number, (segment, line) in enumerate(zip(model.boom.segments, model.lines, strict=True)):
-        curves = model.section_forces(number, motions.trajectory.states, time)
-        forces_at_rest = model.section_forces(number, motions.positions, rest_times)
+        curves = model.section_forces(number, trajectory.states, time)
+        forces_at_rest = model.section_forces(number, positions, rest_times)
         low, high = (
             {str(name): round_values(limit(one, axis=0)) for name, one in curves.items()}
             for limit in (np.min, np.max)
@@ -117,8 +120,8 @@ def evaluate_motion(motions: MotionAndStatics) -> tuple[MotionResult, list[Stres
                 at_rest = np.abs(forces_at_rest[plane.moment]).max(axis=1)
                 name = f"{plane.name}bending moment"
                 peaks.append(_peak(name, segment.name, "N m", time, largest_at, at_rest))
-        if "moment" in curves and motions.jumps:
-            peaks += _reactions(motions, number)
+        if "moment" in curves and jumps:
+            peaks += _reactions(model, number, trajectory, positions)
         if (fibre_set := Fibres.of(segment, line)) is not None:
             largest, most = largest_stresses(segment, fibre_set, curves, forces_at_rest, time)
             fibres.append(largest)
@@ -140,10 +143,11 @@ def _peak(
     return Peak(what, where, unit, float(abs(values[step])), float(time[step]), at_rest)
 
 
-def _output_peaks(motions: MotionAndStatics) -> Iterator[Peak]:
+def _output_peaks(
+    boom: Boom, trajectory: Trajectory, rests: Sequence[StaticResult]
+) -> Iterator[Peak]:
     """Yield the peaks of the outputs in the trajectory."""
-    data, rests, time = motions.trajectory.data, motions.rests, motions.trajectory.time
-    boom = motions.model.boom
+    data, time = trajectory.data, trajectory.time
     tips = [rest.tip for rest in rests]
     yield _peak("deflection", "tip", "m", time, data["tip"].values, tips)
     if boom.spatial:
@@ -161,10 +165,12 @@ def _output_peaks(motions: MotionAndStatics) -> Iterator[Peak]:
         yield _peak("rope force", "", "N", time, rope.values, [rope.attrs["weight"]])
 
 
-def _reactions(motions: MotionAndStatics, number: int) -> Iterator[Peak]:
+def _reactions(
+    model: LoadedModel, number: int, trajectory: Trajectory, positions: Array
+) -> Iterator[Peak]:
     """Yield the peaks of the support reactions of a segment, from jumps of its section forces."""
-    boom, line = motions.model.boom, motions.model.lines[number]
-    states, time = (motions.trajectory.states, motions.positions), motions.trajectory.time
+    boom, line, time = model.boom, model.lines[number], trajectory.time
+    states = trajectory.states, positions
 
     def jump(name: Quantity, x: float) -> list[Array]:
         """Return the jump of a section force at x, in motion and in the static states."""

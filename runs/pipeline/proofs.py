@@ -149,10 +149,14 @@ class Proof(NamedTuple):
         """True if the design effect does not exceed the limit design value."""
         return self.demand <= self.resistance
 
+    def numbers(self, system: System) -> list[str]:
+        """Return design effect and limit design value as text, in units of a system."""
+        both = (in_units(one, self.unit, system) for one in (self.demand, self.resistance))
+        return [one.removesuffix(" 1") for one in both]
+
     def text(self, system: System) -> str:
         """Return a sentence with place, numbers and combination, in units of a system."""
-        both = (in_units(one, self.unit, system) for one in (self.demand, self.resistance))
-        demand, resistance = (one.removesuffix(" 1") for one in both)
+        demand, resistance = self.numbers(system)
         relation = "≤" if self.holds else "exceeds"
         name, cause = KINDS[self.kind].name, "spectrum" if self.kind == "fatigue" else "combination"
         place = "" if self.place in name.split() else f", {self.place}"
@@ -403,19 +407,15 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
 def proof_table(result: Proofs, case: Case) -> Table:
     """Return the table of proofs, the governing one first."""
     proofs, system = result.proofs, case.system
-
-    def shown(values: Sequence[float]) -> list[str]:
-        pairs = zip(values, proofs, strict=True)
-        return [in_units(value, one.unit, system).removesuffix(" 1") for value, one in pairs]
-
+    numbers = [one.numbers(system) for one in proofs]
     # Narrow columns keep the table within 80 characters.
     at = ["" if one.x is None else f"\n{system.text(one.x, 'm')}" for one in proofs]
     used = [f"{100.0 * one.utilisation:.3g} % {'✓' if one.holds else '✗'}" for one in proofs]
     columns = [
         Column("proof of", [fill(KINDS[one.kind].name, 12) for one in proofs]),
         Column("place, x", [fill(one.place, 20) + x for one, x in zip(proofs, at, strict=True)]),
-        Column("design\neffect", shown([one.demand for one in proofs])),
-        Column("limit\nvalue", shown([one.resistance for one in proofs])),
+        Column("design\neffect", [demand for demand, _ in numbers]),
+        Column("limit\nvalue", [resistance for _, resistance in numbers]),
         Column("utilis-\nation", used),
         Column("combination,\nspectrum", [one.combination.replace(", ", ",\n") for one in proofs]),
     ]

@@ -19,7 +19,7 @@ from geometry.typography import TO_MILLI
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
-from runs.case.sanity import usual_ranges
+from runs.case.sanity import materials, usual_ranges
 from runs.case.schema import Case
 
 # Angle in degrees up to which a boom is horizontal.
@@ -129,10 +129,7 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
 
 def _materials(case: Case) -> Iterator[str]:
     """Yield a caution for each material whose density does not match its Young's modulus."""
-    tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
-    for where, table in {"material": case.material, **tables}.items():
-        if table is None:
-            continue
+    for where, table in materials(case):
         for name, (modulus, density) in MATERIALS.items():
             if not isclose(table.youngs_modulus, modulus, rel_tol=SAME_MODULUS):
                 continue
@@ -246,7 +243,7 @@ def _meshes(case: Case, boom: Boom) -> Iterator[str]:
 
 
 def _sizes(case: Case, boom: Boom) -> Iterator[str]:
-    weight = STANDARD_GRAVITY * sum(segment.mass for segment in boom.segments)
+    weight = STANDARD_GRAVITY * boom.mass
     added = [
         load
         for load in boom.loads
@@ -340,7 +337,7 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
                 first = tables.index(table) + 1
                 yield f"{name}[{number + 1}]: repeats {name}[{first}]; leave one of them out"
     payload, end = case.payload, boom.tip - NEAR_TIP * boom.length
-    weight = STANDARD_GRAVITY * sum(segment.mass for segment in boom.segments)
+    weight = STANDARD_GRAVITY * boom.mass
     weighing = (STANDARD_GRAVITY, *([] if case.gravity is None else [case.gravity.across]))
 
     def weighs(force: float, mass: float) -> bool:
@@ -393,7 +390,6 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
 
 def _axial_forces(case: Case, boom: Boom) -> Iterator[str]:
     """Yield cautions on axial forces with an unusual sign or size, and on repeated weights."""
-    weight = STANDARD_GRAVITY * sum(segment.mass for segment in boom.segments)
     payload = 0.0 if case.payload is None else case.payload.mass
     along = 0.0 if case.gravity is None else case.gravity.along
     for number, table in enumerate(case.axial, start=1):
@@ -402,7 +398,7 @@ def _axial_forces(case: Case, boom: Boom) -> Iterator[str]:
         where = f"axial[{number}].force: {table.force:g} N"
         if table.force < 0.0:
             yield f"{where} pulls the boom towards its tip; forces towards the base are positive"
-        elif table.force < MIN_LOAD * weight:
+        elif table.force < MIN_LOAD * STANDARD_GRAVITY * boom.mass:
             yield f"{where} is less than a thousandth of the boom's weight; check the units"
         elif isclose(table.force, payload * along, rel_tol=SAME_LOAD):
             yield (
@@ -423,55 +419,54 @@ def _missing_loads(case: Case, boom: Boom) -> Iterator[str]:
     payload, weights = case.payload, [-segment.load for segment in boom.segments]
     weights += [-load.magnitude for load in boom.loads if load.x is None and load.direction == "z"]
     if payload and case.gravity is None and payload.gravity is None and max(weights) <= 0.0:
-        mass = sum(segment.mass for segment in boom.segments) - payload.mass
         yield (
             f"gravity: missing, so that the payload of {payload.mass:g} kg weighs and the "
-            f"{mass:.4g} kg of the boom do not; give the table gravity, or the payload its own"
+            f"{boom.mass - payload.mass:.4g} kg of the boom do not; give the table gravity, or the "
+            "payload its own"
         )
 
 
-def period_cautions(where: str, frequency: float, case: Case) -> list[str]:
-    """Return a caution if the run is shorter than one period of the boom, or has very many periods.
+def period_cautions(where: str, frequency: float, case: Case) -> Iterator[str]:
+    """Yield a caution if the run is shorter than one period of the boom, or has very many periods.
 
     Args:
         where: model or source of the frequency in the text, for example ``in MODEL``.
         frequency: first frequency in Hz, with closed contacts.
         case: case with the duration of the run.
     """
-    periods = case.time.duration * frequency
+    duration = case.time.duration
+    periods, run = duration * frequency, f"caution: time.duration: the run of {duration:g} s"
     if periods > MANY_PERIODS:
-        return [
-            f"caution: time.duration: the run of {case.time.duration:g} s has {periods:.3g} "
-            f"periods {where}; if the duration is in ms, give {1e-3 * case.time.duration:g} s"
-        ]
-    if periods >= 1.0:
-        return []
-    return [
-        f"caution: time.duration: the run of {case.time.duration:g} s is shorter than one period "
-        f"{where}, {1.0 / frequency:.3g} s; usual are three periods at least"
-    ]
+        yield (
+            f"{run} has {periods:.3g} periods {where}; if the duration is in ms, give "
+            f"{1e-3 * duration:g} s"
+        )
+    elif periods < 1.0:
+        yield (
+            f"{run} is shorter than one period {where}, {1.0 / frequency:.3g} s; usual are three "
+            "periods at least"
+        )
 
 
-def buckling_cautions(name: str, critical_factor: float | None) -> list[str]:
-    """Return a caution if the axial forces of a model are close to buckling.
+def buckling_cautions(name: str, critical_factor: float | None) -> Iterator[str]:
+    """Yield a caution if the axial forces of a model are close to buckling.
 
     Args:
         name: name of the model.
         critical_factor: buckling factor of its axial forces; None without axial forces, or if it is
             not computed.
     """
-    if critical_factor is None or critical_factor * NEAR_BUCKLING >= 1.0:
-        return []
-    return [
-        f"caution: in {name} the axial forces are {100.0 / critical_factor:.3g} % of those under "
-        "which the boom buckles, more than a third: deflections grow out of proportion"
-    ]
+    if critical_factor is not None and critical_factor * NEAR_BUCKLING < 1.0:
+        yield (
+            f"caution: in {name} the axial forces are {100.0 / critical_factor:.3g} % of those "
+            "under which the boom buckles, more than a third: deflections grow out of proportion"
+        )
 
 
 def tip_cautions(
     where: str, tip: float | None, boom: Boom, advise: Callable[[], str] = lambda: CHECK_UNITS
-) -> list[str]:
-    """Return a caution if a static deflection is too large.
+) -> Iterator[str]:
+    """Yield a caution if a static deflection is too large.
 
     Args:
         where: model or source of the deflection in the text, for example ``in MODEL``.
@@ -479,10 +474,9 @@ def tip_cautions(
         boom: the boom, for its length.
         advise: function that returns the advice.
     """
-    if tip is None or not abs(tip) > LARGE_DEFLECTION * boom.length:
-        return []
-    return [
-        f"caution: {where} the tip rests at {tip:.3g} m, {100.0 * abs(tip) / boom.length:.2g} % of "
-        "the boom's length and more than 5 %: small-displacement theory is not valid; "
-        f"{advise()}"
-    ]
+    if tip is not None and abs(tip) > LARGE_DEFLECTION * boom.length:
+        yield (
+            f"caution: {where} the tip rests at {tip:.3g} m, {100.0 * abs(tip) / boom.length:.2g} "
+            "% of the boom's length and more than 5 %: small-displacement theory is not valid; "
+            f"{advise()}"
+        )

@@ -10,7 +10,6 @@ from math import log, pi
 import numpy as np
 
 from geometry.arrays import Array
-from geometry.typography import TO_MILLI
 from runs.case.schema import LimitsTable
 from runs.pipeline.design_results import ModelDesignResults
 from runs.pipeline.largest_loads import StaticExtreme, StaticKind
@@ -43,7 +42,7 @@ RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummar
 
 # Static, dynamic and accuracy quantities.
 QUANTITIES = (
-    Metric("tip_at_rest", "m", "static tip deflection (maximum load)", TO_MILLI, "mm"),
+    Metric("tip_at_rest", "m", "static tip deflection (maximum load)", "mm"),
     Metric("tip", "m", "tip deflection", "mm"),
     Metric("tip_lateral", "m", "lateral tip deflection", "mm"),
     Metric("tip_amplitude", "m", "tip amplitude", "mm"),

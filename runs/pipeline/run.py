@@ -65,7 +65,7 @@ class Run:
             NumericsError: a comparison of the models is not finite.
         """
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
-        design = self._evaluate_models(lambda one, results: one.add_bonded(results))
+        design = self._evaluate_models(bonded=True)
         summary.design = evaluate_run(boom, case, summary, design)
         self.results.conclude()
         check_finite(summary)
@@ -73,18 +73,12 @@ class Run:
     def evaluate_with_play(self) -> None:
         """Add pad forces and the design results with play to the summary."""
         results, summary = self.results, self.results.summary
-        summary.design = DesignResults(models=self._evaluate_models(lambda _, design: design))
+        summary.design = DesignResults(models=self._evaluate_models(bonded=False))
         summary.pads = list(pad_loads(results.case, results.boom, results.trajectories))
         check_finite(summary)
 
-    def _evaluate_models(
-        self, complete: Callable[[ModelEvaluation, ModelDesignResults], ModelDesignResults]
-    ) -> dict[str, ModelDesignResults]:
-        """Return the design results of each model, by name.
-
-        Args:
-            complete: function that adds further results to the design results of a model.
-        """
+    def _evaluate_models(self, bonded: bool) -> dict[str, ModelDesignResults]:
+        """Return the design results of each model by name, also without play if ``bonded``."""
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         design = {}
         for name, ran in self.model_runs.items():
@@ -93,17 +87,14 @@ class Run:
                 try:
                     evaluation = ModelEvaluation(boom, case, ran.model, ran.built)
                     results = evaluation.evaluate(ran.motion.trajectory, ran.shell)
-                    design[name] = complete(evaluation, results)
+                    design[name] = evaluation.add_bonded(results) if bonded else results
                     check_finite(design[name])
                 except NUMERICAL_ERRORS as error:
-                    summary.failures[name], design[name] = (
-                        failure_reason(error),
-                        ModelDesignResults(),
-                    )
-            model_summary.seconds = ran.stages.seconds
-            model_summary.wall_time = (model_summary.wall_time or 0.0) + model_summary.seconds[
-                "design results"
-            ]
+                    summary.failures[name] = failure_reason(error)
+                    design[name] = ModelDesignResults()
+            seconds = ran.stages.seconds
+            model_summary.seconds = seconds
+            model_summary.wall_time = (model_summary.wall_time or 0.0) + seconds["design results"]
         return design
 
 

@@ -11,12 +11,13 @@ import json
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, NamedTuple
+from typing import Annotated, NamedTuple, Self
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 from pydantic_core import to_jsonable_python
 
 from dynamics.failure import NumericsError
+from dynamics.predictability import Horizons
 from dynamics.stick_slip import StickSlip
 from runs.case.schema import EnsembleTable
 from runs.pipeline.comparison import Comparison
@@ -78,6 +79,19 @@ class Predictability(SummaryTable):
     rate: list[FiniteNumber]
     step_change: FiniteNumber
     limits: list[str]
+
+    @classmethod
+    def of(cls, horizons: Horizons) -> Self:
+        """Return the horizons as numbers of the summary."""
+        return cls(
+            relatives=horizons.relatives.tolist(),
+            shares=horizons.shares.tolist(),
+            times=horizons.times.tolist(),
+            of_step=horizons.of_step.tolist(),
+            rate=[growth.rate for growth in horizons.growth],
+            step_change=horizons.step_change,
+            limits=list(horizons.limits),
+        )
 
 
 class Trial(SummaryTable):
