@@ -194,9 +194,7 @@ def _models(case: Case, boom: Boom) -> Table:
 def axial_forces(boom: Boom, static: Statics | None) -> Table:
     """Return the table of each segment's extreme axial force, positive in tension.
 
-    Args:
-        boom: boom of the case.
-        static: static states, which give the cylinder forces; None without an equilibrium.
+    ``static`` gives the cylinder forces; it is None without an equilibrium.
     """
     if not boom.compressed and not boom.cylinders:
         return Table("", [])

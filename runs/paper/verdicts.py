@@ -118,9 +118,7 @@ def show(judged: Mapping[str, Addition], console: Console) -> int:
 def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> None:
     """Print a paragraph for each statement, with the verdict of the first run that decides it.
 
-    Args:
-        runs: verdicts by the name of their case.
-        console: console of the output.
+    ``runs`` has the verdicts by the name of their case.
     """
     names = [name for name, verdicts in runs.items() if verdicts]
     if not names:

@@ -81,9 +81,7 @@ class CombinationState(NamedTuple):
 def combination_states(case: Case, moving: bool = True) -> list[CombinationState]:
     """Return the states of all combinations, or of the case itself if it has none.
 
-    Args:
-        case: a checked case.
-        moving: True to compute the motion of combinations with ``motion``; False for statics only.
+    If ``moving``, combinations with ``motion`` are computed in motion, else all of them at rest.
     """
     states = []
     for combined in combined_cases(case):
@@ -112,10 +110,7 @@ def combination_tables(
 ) -> Iterator[Table]:
     """Yield the table of combinations and the table of their envelope, in the units of a case.
 
-    Args:
-        results: results of the combinations.
-        case: the case.
-        shell: name of the shell; empty for results of beam elements.
+    ``shell`` is the name of the shell; empty for results of beam elements.
     """
     system = case.system
     if not any(one.extremes for one in results):

@@ -41,11 +41,6 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
 
     With the table ``buckling``, buckling factors are computed in one state of each geometry: the
     state for which panel formulas give the lowest buckling factor.
-
-    Args:
-        case: a checked case.
-        model: a shell of the case.
-        context: ranks, progress reporter and cache.
     """
     combined = list(combined_cases(case))
     booms = [model.model_boom(build_boom(one.case)).boom.without_drives for one in combined]

@@ -131,9 +131,7 @@ class DesignResults:
 def play_effects(models: list[Model], design: Mapping[str, ModelDesignResults]) -> list[PlayEffect]:
     """Return the effect of play in each model with play.
 
-    Args:
-        models: models of the case that did not fail.
-        design: design results of the models.
+    ``models`` are those that did not fail.
     """
     return [
         PlayEffect(model.name, [*_static_differences(results), *_motion_differences(results)])

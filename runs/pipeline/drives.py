@@ -34,12 +34,7 @@ MAX_LAG = 0.01
 
 
 def drive_lines(boom: Boom, system: System) -> Iterator[str]:
-    """Yield a sentence for each drive: travel, time, speed and remaining overlap.
-
-    Args:
-        boom: boom whose joints may have drives.
-        system: units of the numbers.
-    """
+    """Yield a sentence for each drive: travel, time, speed and remaining overlap."""
     for joint in boom.joints:
         if joint.drive is None:
             continue
@@ -74,11 +69,7 @@ class StickSlipEstimate:
 def critical_speed(drive: ElasticDrive, friction: float) -> float:
     """Return the speed in m/s above which a slipping segment does not stick again.
 
-    Without damping it is infinite.
-
-    Args:
-        drive: data of the elastic drive.
-        friction: sliding friction R in N.
+    Without damping it is infinite. The sliding friction R is in N.
     """
     drop = (drive.sticking - 1.0) * friction
     if drop == 0.0 or drive.damping_ratio >= 1.0:
@@ -172,13 +163,7 @@ def stick_slip_cautions(estimates: Iterable[StickSlipEstimate], system: System) 
 
 
 def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
-    """Yield a caution for each segment with a large lag behind its drive.
-
-    Args:
-        boom: boom of the case.
-        data: trajectories of its models.
-        system: units of the numbers.
-    """
+    """Yield a caution for each segment with a large lag behind its drive."""
     for number, joint in enumerate(boom.joints, start=1):
         name = "drive_lag" if number == 1 else f"drive_lag-{number}"
         if name not in data:

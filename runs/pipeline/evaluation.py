@@ -60,10 +60,8 @@ def results_at_rest(
 ) -> ModelDesignResults:
     """Return modes and static states at equilibria.
 
-    Args:
-        loaded: the model.
-        equilibria: equilibria (num_modes,) by time in s.
-        extended: equilibria at the largest and smallest extension by time in s.
+    Equilibria are (num_modes,), by time in s; ``extended`` are those at the largest and smallest
+    extension.
     """
     static, static_extended = (
         [static_result(loaded, time, position) for time, position in positions.items()]
@@ -116,9 +114,7 @@ class ModelEvaluation:
     def evaluate(self, trajectory: Trajectory, shell: ShellOutput | None) -> ModelDesignResults:
         """Return the design results with the play of the model.
 
-        Args:
-            trajectory: motion of the model.
-            shell: fields and stresses of a shell; None for a beam.
+        ``shell`` is None for a beam.
         """
         loaded, case, equilibria = self._model_with_play, self.case, self._equilibria
         extended = extended_positions(loaded.system, case.time.duration)
@@ -198,11 +194,7 @@ def evaluate_run(
 ) -> DesignResults:
     """Return the design results of all models of a run.
 
-    Args:
-        boom: boom of the case.
-        case: the case of the run.
-        summary: summary of the run, without design results.
-        models: design results of the models that did not fail.
+    ``models`` are the design results of models that did not fail.
     """
     static = statics(case, boom)
     completed = [model for model in case.models if model.name in models]

@@ -91,9 +91,7 @@ class BeamStates(NamedTuple):
     def of(cls, case: Case, boom: Boom) -> BeamStates:
         """Return the static states at t = 0 and under extreme loads.
 
-        Args:
-            case: a checked case.
-            boom: the boom with the contact laws of the first model with play, or bonded.
+        The boom has the contact laws of the first model with play, or is bonded.
 
         Raises:
             NumericsError: there is no equilibrium at t = 0.
@@ -111,9 +109,7 @@ class BeamStates(NamedTuple):
     def at_rest(cls, model: LoadedModel, duration: float) -> BeamStates:
         """Return the static states of a model at t = 0 and under extreme loads.
 
-        Args:
-            model: the model.
-            duration: duration of the loads' histories in s.
+        ``duration`` in s is that of the histories of the loads.
 
         Raises:
             NumericsError: the boom has no equilibrium at t = 0.
@@ -127,9 +123,6 @@ class BeamStates(NamedTuple):
     @classmethod
     def in_motion(cls, case: Case) -> BeamStates:
         """Return the motion of the first beam-element model with play, or of a default beam.
-
-        Args:
-            case: case of a combination.
 
         Raises:
             NumericsError: the motion cannot be computed.
@@ -162,8 +155,7 @@ class BeamStates(NamedTuple):
     def extremes(self, system: System) -> list[StaticExtreme]:
         """Return the extremes of tip, stresses, pads, contacts and cylinders.
 
-        Args:
-            system: units of positions in names.
+        Names have positions in units of ``system``.
         """
         boom, rests = self.boom, self.rests
         extremes = [_static_extreme("tip", "", "tip", "m", rests, [rest.tip for rest in rests])]
@@ -255,13 +247,7 @@ def _static_extreme(
 
 
 def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> Table:
-    """Return the table of static extremes, in the units of the case.
-
-    Args:
-        case: a checked case.
-        boom: the boom of :meth:`BeamStates.of`.
-        extremes: the extremes of this boom.
-    """
+    """Return the table of static extremes, in the units of the case."""
     used = [one.utilisation.value if one.utilisation else None for one in extremes]
     (extremes,) = without_negligible([extremes])
     vary = any(one.time > 0.0 for one in extremes)
@@ -319,10 +305,7 @@ def overload_cautions(
 ) -> list[str]:
     """Return cautions on utilisations above 1, and on a large deflection after t = 0.
 
-    Args:
-        extremes: the static extremes.
-        boom: the boom, for its length.
-        advise: function that returns the advice on a large deflection.
+    ``advise`` returns the advice on a large deflection.
     """
     cautions: list[str] = []
     for one in extremes:

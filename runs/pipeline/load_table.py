@@ -36,12 +36,7 @@ class _Row(NamedTuple):
 
 
 def load_table(case: Case, boom: Boom) -> Table:
-    """Return the table of all loads of a case, in the units of the case.
-
-    Args:
-        case: a checked case.
-        boom: boom of the case.
-    """
+    """Return the table of all loads of a case, in the units of the case."""
     rows, system = list(_rows(case, boom)), case.system
     largest = [
         f"{number(system.of(row.largest, row.unit), 4)} {system.label(row.unit)}" for row in rows

@@ -78,8 +78,7 @@ def slow_cutoff(boom: Boom, time: TimeTable) -> float | None:
 def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
     """Return tip and head deflections of all ensembles in single precision; None without ensembles.
 
-    Args:
-        ensembles: ensembles by model name, with the same members and times.
+    All ensembles, which are given by model name, have the same members and times.
     """
     if not ensembles:
         return None

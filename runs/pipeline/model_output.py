@@ -79,15 +79,7 @@ class ShellOutput:
         trajectory: Trajectory,
         buckling: BuckledShell | None = None,
     ) -> ShellOutput:
-        """Return the output of a shell after its motion, on rank 0.
-
-        Args:
-            boom: boom of the shell.
-            name: name of the model.
-            reduced: the reduced shell.
-            trajectory: motion of the shell.
-            buckling: buckling of the walls.
-        """
+        """Return the output of a shell after its motion, on rank 0."""
         assert reduced.fields is not None
         names, states = [segment.name for segment in boom.segments], trajectory.states
         fields = reduced.fields.assign(
@@ -106,9 +98,7 @@ class ShellOutput:
     def write_files(self, folder: Path, prefix: str) -> None:
         """Write stresses, field series and meshes to a folder that already has the fields.
 
-        Args:
-            folder: folder of the run.
-            prefix: prefix of the file names.
+        ``prefix`` is that of the file names.
         """
         self.stresses.assign_attrs(Conventions=CONVENTIONS).to_netcdf(
             folder / f"{prefix}{STRESSES}", engine="scipy"

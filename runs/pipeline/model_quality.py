@@ -140,10 +140,7 @@ def quality_notes(
 ) -> Iterator[QualityNote]:
     """Yield notes on the accuracy of a run.
 
-    Args:
-        summary: summary of the run without design results.
-        design: design results of the run.
-        duration: duration of the motion in s.
+    The summary has no design results yet; ``duration`` is that of the motion in s.
     """
     models = summary.models
     for line in _agreement(design):
@@ -241,11 +238,7 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
 def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:
     """Return cautions on the validity of the results.
 
-    Args:
-        case: case of the run.
-        boom: boom of the case.
-        data: trajectories of all models.
-        summary: summary of the run, with all failures.
+    The summary has all failures, and ``data`` the trajectories of all models.
     """
     return [
         *proportion_cautions(case, boom),

@@ -129,13 +129,7 @@ def run_model(
     """Build, integrate and summarise a model; return None except on rank 0. Collective.
 
     A motion of an earlier run is read from the cache of motions. A new motion is cached at once.
-
-    Args:
-        boom: boom of the case.
-        model: a model of the case.
-        case: case of the run.
-        cutoff: cut-off of the slow motion in Hz; None if it cannot be determined.
-        context: the context of the run.
+    The cut-off of the slow motion is in Hz, and None if it cannot be determined.
 
     Raises:
         NumericsError: the model cannot be computed.
@@ -263,8 +257,7 @@ def _integrate(
 def static_tip(system: GapSystem) -> float:
     """Return the static tip deflection in m at t = 0; NaN without an equilibrium.
 
-    Args:
-        system: gap system with all loads.
+    The system has all loads.
     """
     try:
         return float(system.observers["tip"].row @ equilibrium(system, system.load_at(0.0)))
@@ -277,12 +270,8 @@ def summarise_motion(
 ) -> ModelSummary:
     """Return the summary of a model's motion.
 
-    Args:
-        model: a model of the case.
-        system: system of the model; its ``load`` includes all constant loads.
-        trajectory: motion of the model.
-        num_dofs: number of degrees of freedom before any reduction.
-        static_tip: static tip deflection in m.
+    The ``load`` of the system includes all constant loads. ``num_dofs`` is the number of degrees of
+    freedom before any reduction, ``static_tip`` the static tip deflection in m.
     """
     attributes = trajectory.data.attrs
     peaks = np.abs(trajectory.data["contact_force_peak"].values)
@@ -315,10 +304,7 @@ def summarise_motion(
 def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) -> CalibrationCard:
     """Return the stiffness of a calibrated beam and the springs of its stations.
 
-    Args:
-        boom: boom of the case.
-        system: system of the model, with the contacts of the calibration.
-        calibration: calibration of the model.
+    The system has the contacts of the calibration.
     """
     return CalibrationCard(
         segments=[

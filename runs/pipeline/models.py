@@ -36,11 +36,7 @@ MOST_STEPS = 1.0e10
 def build(case: Case, boom: Boom, model: Model, context: BuildContext | None = None) -> BuiltModel:
     """Build a model of a case. Collective for a meshed model.
 
-    Args:
-        case: the case, with the contact laws of the joints.
-        boom: boom of the case.
-        model: a model of the case.
-        context: ranks, progress reporter and cache, for a meshed model.
+    A meshed model needs a context.
 
     Raises:
         BoomError: the boom lacks what the model needs.

@@ -76,11 +76,7 @@ def modes(model: LoadedModel, rest: Array) -> list[Mode]:
     """Return the first modes, in ascending order of frequency.
 
     The dominant motion of a mode has the largest share of the kinetic energy, in which rotary
-    inertia and point masses are neglected.
-
-    Args:
-        model: the model.
-        rest: equilibrium (num_modes,).
+    inertia and point masses are neglected. The equilibrium is (num_modes,).
     """
     boom, system, lines = model
     omega, shapes = closed_contact_modes(system, rest)
@@ -134,11 +130,6 @@ def match_modes(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) ->
 
     No mode matches twice. The criterion is the modal assurance criterion (Allemang 2003) of the
     deflections and twists along the segments, weighted by inertia.
-
-    Args:
-        boom: boom of both models.
-        reference: modes of the reference.
-        other: modes of the other model.
     """
     here, there = (
         np.array([_weighted_shape(boom, mode) for mode in of]) for of in (reference, other)

@@ -26,10 +26,8 @@ GOVERNING_SHARE = 0.5
 def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     """Yield sentences on the share of the static tip deflection that walls under pads cause.
 
-    If the share is large, a list of remedies follows.
-
-    Args:
-        beam: static states of a boom with the contact laws of the first model with play.
+    If the share is large, a list of remedies follows. The states are those of a boom with the
+    contact laws of the first model with play.
 
     Raises:
         NumericsError: the boom has no equilibrium after a change that a remedy makes.
@@ -120,9 +118,7 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
 def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) -> Boom:
     """Return the boom with changed pads.
 
-    Args:
-        boom: boom with pads.
-        changes: function that takes a pad and half the overlap in m, and returns changed fields.
+    ``changes`` takes a pad and half the overlap in m, and returns changed fields.
     """
     joints = []
     for joint in boom.joints:

@@ -49,10 +49,7 @@ class PadLoad:
 def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
     """Yield the governing pad on each side of each station with play, in each model.
 
-    Args:
-        case: case of the run.
-        boom: boom of the case.
-        data: trajectories of all models.
+    ``data`` has the trajectories of all models.
     """
     if not any(table.pad or table.pads for table in case.joints):
         return
@@ -145,10 +142,7 @@ def loaded_pads(
 ) -> list[tuple[PadSize, float]]:
     """Return the pads of known size at a station, each with its force in N.
 
-    Args:
-        joint: the joint of the station.
-        direction: direction of the forces.
-        sides: forces on the two sides in N, in the order of ``SIGNS``, not negative.
+    ``sides`` are the forces on the two sides in N, in the order of ``SIGNS``, not negative.
     """
     loads = []
     for side, force in zip(SIGNS, sides, strict=True) if joint.padded else ():

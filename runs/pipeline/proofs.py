@@ -190,10 +190,6 @@ class Proofs(NamedTuple):
 def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
     """Return the governing proof of each part of the boom over all combinations.
 
-    Args:
-        case: a checked case.
-        states: static states of its combinations.
-
     Raises:
         NumericsError: a combination has no equilibrium.
     """

@@ -429,10 +429,8 @@ def _missing_loads(case: Case, boom: Boom) -> Iterator[str]:
 def period_cautions(where: str, frequency: float, case: Case) -> Iterator[str]:
     """Yield a caution if the run is shorter than one period of the boom, or has very many periods.
 
-    Args:
-        where: model or source of the frequency in the text, for example ``in MODEL``.
-        frequency: first frequency in Hz, with closed contacts.
-        case: case with the duration of the run.
+    ``where`` names the source of the frequency, for example ``in MODEL``. The frequency is the
+    first one in Hz, with closed contacts.
     """
     duration = case.time.duration
     periods, run = duration * frequency, f"caution: time.duration: the run of {duration:g} s"
@@ -451,10 +449,7 @@ def period_cautions(where: str, frequency: float, case: Case) -> Iterator[str]:
 def buckling_cautions(name: str, critical_factor: float | None) -> Iterator[str]:
     """Yield a caution if the axial forces of a model are close to buckling.
 
-    Args:
-        name: name of the model.
-        critical_factor: buckling factor of its axial forces; None without axial forces, or if it is
-            not computed.
+    The factor is None without axial forces, or if it is not computed.
     """
     if critical_factor is not None and critical_factor * NEAR_BUCKLING < 1.0:
         yield (
@@ -468,11 +463,8 @@ def tip_cautions(
 ) -> Iterator[str]:
     """Yield a caution if a static deflection is too large.
 
-    Args:
-        where: model or source of the deflection in the text, for example ``in MODEL``.
-        tip: tip deflection in m; NaN or None without an equilibrium.
-        boom: the boom, for its length.
-        advise: function that returns the advice.
+    ``where`` names the source of the deflection, for example ``in MODEL``. The deflection is in m,
+    and NaN or None without an equilibrium. ``advise`` returns the advice.
     """
     if tip is not None and abs(tip) > LARGE_DEFLECTION * boom.length:
         yield (

@@ -153,9 +153,7 @@ def static_limit_lines(
 ) -> Iterator[str]:
     """Yield a sentence on each limit of a case, with the static result where there is one.
 
-    Args:
-        table: limits of the case.
-        extremes: extreme static results; empty without an equilibrium.
+    ``extremes`` are empty without an equilibrium.
     """
     for limit in case_limits(table):
         kind, at_rest = _STATIC.get(limit.quantity.name), limit.quantity.name == "tip_at_rest"

@@ -80,11 +80,7 @@ def residual_vibration(
 ) -> ResidualVibration | None:
     """Return the residual vibration; None without telescoping or without equilibria.
 
-    Args:
-        system: system of the model; its ``load`` includes all constant loads.
-        trajectory: motion of the model.
-        case: case of the model.
-        model: the model.
+    The ``load`` of the system includes all constant loads.
     """
     travels = [one for one in system.travels if one.telescopes or any(one.shifts)]
     ends = [time for travel in travels for time in travel.history.kinks]
@@ -106,9 +102,7 @@ def residual_vibration(
 def farthest_from_rest(system: GapSystem, trajectory: Trajectory) -> tuple[float, float]:
     """Return the largest distance of the tip from its static position in m, and its time in s.
 
-    Args:
-        system: gap system whose ``load`` includes all constant loads.
-        trajectory: motion of the system.
+    The ``load`` of the system includes all constant loads.
 
     Raises:
         NumericsError: there is no equilibrium, or loads reverse too often.

@@ -282,9 +282,7 @@ class Results:
 def prepare(out: str, file: str) -> Path:
     """Return the path of the folder for a run, which may contain an earlier run.
 
-    Args:
-        out: folder as the user gave it.
-        file: the case file, for messages.
+    ``out`` is the folder as the user gave it, ``file`` the case file for messages.
 
     Raises:
         BadInput: the folder cannot be created or replaced, contains other files, or is the current
@@ -329,9 +327,8 @@ def read_netcdf(path: Path) -> xr.Dataset:
 def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
     """Return the trajectories of all models in one dataset with named dimensions.
 
-    Args:
-        boom: boom whose stations become the dimension ``station``.
-        trajectories: trajectories by model name, with the same times.
+    The stations of the boom become the dimension ``station``. All trajectories, which are given by
+    model name, have the same times.
     """
     stations = [x for x, _ in boom.stations]
     everything = [trajectory.data for trajectory in trajectories.values()]

@@ -102,12 +102,7 @@ def run_case(case: Case, file: str, context: RunContext) -> Run | None:
     """Run all models of a case; return None except on rank 0. Collective.
 
     :meth:`Run.evaluate` adds the design results. ``failures`` in the summary has the models that
-    cannot be computed, with the reasons.
-
-    Args:
-        case: a checked case.
-        file: name of the case in messages.
-        context: ranks, progress reporter, caches and helper process.
+    cannot be computed, with the reasons. ``file`` is the name of the case in messages.
 
     Raises:
         NumericsError: no model can be computed, or a shell fails that several ranks share.

@@ -110,11 +110,8 @@ def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
 def instants(system: GapSystem, duration: float) -> list[float]:
     """Return 0 and the times in s at which a load, hoist or axial force has its extreme values.
 
-    At t = 0 a released load still acts; another time is then without it.
-
-    Args:
-        system: gap system whose ``load`` includes all constant loads.
-        duration: duration of the motion in s.
+    At t = 0 a released load still acts; another time is then without it. The ``load`` of the system
+    includes all constant loads. ``duration`` is that of the motion in s.
     """
     winches = [travel for travel in system.travels if not travel.telescopes]
     times, values = _sample_histories([*system.excitations, *winches], system, duration)
@@ -126,9 +123,7 @@ def instants(system: GapSystem, duration: float) -> list[float]:
 def extended_instants(system: GapSystem, duration: float) -> list[float]:
     """Return times in s of extreme extensions, and of extreme loads while these extensions last.
 
-    Args:
-        system: gap system whose ``load`` includes all constant loads.
-        duration: duration of the motion in s.
+    The ``load`` of the system includes all constant loads. ``duration`` is that of the motion in s.
     """
     drives = [travel for travel in system.travels if travel.telescopes]
     times, ways = _sample_histories(drives, system, duration)
@@ -164,11 +159,8 @@ def _distinct_times(times: Array, values: Array, steps: Sequence[int]) -> list[f
 def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float, Array]:
     """Return the equilibria (num_modes,) under the loads at given times, by time in s.
 
-    Times without an equilibrium are left out. The result is empty if the first has none.
-
-    Args:
-        system: gap system of a model, whose ``load`` includes all constant loads.
-        times: times of :func:`instants`.
+    Times without an equilibrium are left out. The result is empty if the first has none. The
+    ``load`` of the system includes all constant loads.
     """
     equilibria: dict[float, Array] = {}
     for time in times:
@@ -184,9 +176,7 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
 def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:
     """Return the equilibria (num_modes,) at the largest and smallest extension, by time in s.
 
-    Args:
-        system: gap system of a model, whose ``load`` includes all constant loads.
-        duration: duration of the motion in s.
+    The ``load`` of the system includes all constant loads. ``duration`` is that of the motion in s.
     """
     earlier_times = instants(system, duration)
     equilibria: dict[float, Array] = {}
@@ -200,10 +190,8 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
 def static_result(model: LoadedModel, time: float, position: Array) -> StaticResult:
     """Return the state of a model at an equilibrium, or at an instant of its motion.
 
-    Args:
-        model: the model.
-        time: time in s of the loads and of the extension.
-        position: modal coordinates (num_modes,).
+    The time in s is that of the loads and of the extension; the position (num_modes,) has modal
+    coordinates.
     """
     boom, system, diagrams = model.boom, model.system.at_time(time), []
     for number, line in enumerate(model.lines):
@@ -268,10 +256,7 @@ def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> float:
 def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
     """Return a caution if bulging walls reduce lateral plays at rest.
 
-    Args:
-        where: model in the text, for example ``in MODEL``.
-        rest: static state of the model.
-        boom: the boom, for its plays.
+    ``where`` names the model, for example ``in MODEL``.
     """
     plays = {x: one.lateral_play or 0.0 for one in boom.joints for x in one.stations}
     bulges = [
@@ -288,10 +273,7 @@ def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
 def tilts(model: LoadedModel, position: Array, time: float = 0.0) -> Iterator[Tilt]:
     """Yield the rotations of joints with play and several stations, from the segments' axes.
 
-    Args:
-        model: the model.
-        position: equilibrium (num_modes,).
-        time: time in s of the extension.
+    The equilibrium is (num_modes,), and the extension the one at a time in s.
     """
     boom, axes = model.boom, []
     for line in model.lines:

@@ -238,9 +238,7 @@ def utilisation(segment: Segment, stress: float) -> float | None:
 def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
     """Return the largest wall stresses near stations and supports, for each segment of a shell.
 
-    Args:
-        boom: boom of the shell.
-        stresses: stresses of :func:`shell_model.stress.history.stress_near_places`.
+    The stresses are those of :func:`shell_model.stress.history.stress_near_places`.
     """
     largest_of_segments = []
     for segment in boom.segments:
@@ -293,12 +291,7 @@ def endurance(sizes: Array, category: float) -> Array:
 
 
 def life(stress_history: StressHistory, table: LifeTable) -> Life:
-    """Return the fatigue damage of a segment at the fibre with the largest stress variation.
-
-    Args:
-        stress_history: stress history of the fibre.
-        table: table ``life`` of the case.
-    """
+    """Return the fatigue damage of a segment at the fibre with the largest stress variation."""
     sizes, counts = count_stress_ranges(stress_history.stress)
     damage = None
     if table.detail_category is not None:

@@ -142,10 +142,8 @@ def turning_lines(case: Case) -> Iterator[str]:
 def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[str]:
     """Yield sentences on input shapers for the modes that slewing and luffing excite most.
 
-    Args:
-        case: a checked case.
-        system: gap system of a model, whose ``load`` includes all constant loads.
-        rest: equilibrium (num_modes,) under these loads; None if the motion starts elsewhere.
+    The ``load`` of the system includes all constant loads. The equilibrium (num_modes,) is None if
+    the motion starts elsewhere.
     """
     omega, shapes = closed_contact_modes(system, rest)
     frequencies, ratios = closed_contact_damping(system, rest)
@@ -170,12 +168,7 @@ def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[A
     """Return moment (num_times,) in N·m and power in W of slewing and of luffing, by key.
 
     The result is empty without slewing and luffing. The boom is taken as rigid. The force of a load
-    on a rope follows from the computed rope force and swing.
-
-    Args:
-        case: a checked case.
-        boom: boom of the case.
-        data: trajectory of a model.
+    on a rope follows from the computed rope force and swing. ``data`` is the trajectory of a model.
     """
     if case.slew is None and case.luff is None:
         return {}
@@ -206,7 +199,6 @@ def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[A
 def crane_drives(case: Case, boom: Boom, data: xr.Dataset) -> CraneDrives | None:
     """Return moments, powers and work of a crane's drives in a motion; None without such drives.
 
-    Arguments as in :func:`drive_moments`.
     """
     results: dict[str, float] = {}
     steps = np.diff(data["time"].values)
@@ -256,10 +248,8 @@ def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:
 def turning_cautions(where: str, frequency: float, case: Case) -> Iterator[str]:
     """Yield a caution if slewing or luffing is so fast that Coriolis forces on the boom matter.
 
-    Args:
-        where: source of the frequency, for example ``in MODEL``.
-        frequency: first frequency in Hz, with closed contacts.
-        case: a checked case.
+    ``where`` names the source of the frequency, for example ``in MODEL``. The frequency is the
+    first one in Hz, with closed contacts.
     """
     for key, _, law in _laws(case):
         part = np.deg2rad(fastest_turn(law)) / (2.0 * np.pi * frequency)

@@ -62,13 +62,8 @@ def buckle_shell(
 ) -> BuckledShell | None:
     """Return the buckling of a shell's walls in a static state, on rank 0. Collective.
 
-    Args:
-        boom: boom with the contacts of the model.
-        model: a shell of the case.
-        built: the built shell.
-        state: the static state, on rank 0.
-        count: number of modes of each segment.
-        comm: ranks that share the shell.
+    ``boom`` has the contacts of the model, ``state`` is given on rank 0, and ``count`` is the
+    number of modes of each segment.
 
     Raises:
         NumericsError: there is no static state, or the modes of a segment cannot be computed.
@@ -91,12 +86,8 @@ def buckle_shell(
 def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | None:
     """Return the static state with the largest tip deflection, None without an equilibrium.
 
-    In space, the tip deflection is the resultant of both directions.
-
-    Args:
-        boom: boom with the contacts of the model.
-        case: case with the duration of the loads.
-        built: a built shell, whose fields are on this rank.
+    In space, the tip deflection is the resultant of both directions. ``boom`` has the contacts of
+    the model, and the fields of the shell are on this rank.
     """
     from shell_model.buckling import StaticState
 
