@@ -158,10 +158,10 @@ class BeamStates(NamedTuple):
         Names have positions in units of ``system``.
         """
         boom, rests = self.boom, self.rests
-        extremes = [_static_extreme("tip", "", "tip", "m", rests, [rest.tip for rest in rests])]
+        extremes = [self._extreme("tip", "", "tip", "m", [rest.tip for rest in rests])]
         if boom.spatial:
             aside = [rest.tip_lateral or 0.0 for rest in rests]
-            extremes.append(_static_extreme("lateral tip", "", "lateral tip", "m", rests, aside))
+            extremes.append(self._extreme("lateral tip", "", "lateral tip", "m", aside))
         for segment, fibres, curves in fibre_forces(self.model, self.positions, self.time):
             forces_at_rest = {name: values[:1] for name, values in curves.items()}
             fibre, _ = largest_stresses(segment, fibres, curves, forces_at_rest, self.time)
@@ -176,7 +176,7 @@ class BeamStates(NamedTuple):
         for name in rests[0].cylinders:
             forces = [rest.cylinders[name] for rest in rests]
             part, what = name.partition("-")[2], name.replace("_", " ")
-            extremes.append(_static_extreme("cylinder force", part, what, "N", rests, forces))
+            extremes.append(self._extreme("cylinder force", part, what, "N", forces))
         return extremes
 
     def foot_extremes(self, system: System) -> Iterator[StaticExtreme]:
@@ -196,9 +196,21 @@ class BeamStates(NamedTuple):
             along = parts.pop() if "normal" in line.rows else np.zeros(len(self.rests))
             whole = np.linalg.norm([*parts, thrust + along], axis=0)
             what = f"foot reaction at {system.text(x, 'm', 5)}"
-            yield _static_extreme(
-                "foot reaction", segment.name, what, "N", self.rests, whole.tolist()
-            )
+            yield self._extreme("foot reaction", segment.name, what, "N", whole.tolist())
+
+    def _extreme(
+        self,
+        kind: StaticKind,
+        part: str,
+        what: str,
+        unit: str,
+        values: Sequence[float],
+        used: Sequence[Utilisation] = (),
+    ) -> StaticExtreme:
+        """Return the extreme of a result from its value in each state."""
+        step = int(np.abs(values).argmax())
+        most = values[0], values[step], self.rests[step].time
+        return StaticExtreme(kind, part, what, unit, *most, used[step] if used else None)
 
     def _at_stations(self, system: System) -> Iterator[StaticExtreme]:
         boom, rests = self.boom, self.rests
@@ -222,28 +234,14 @@ class BeamStates(NamedTuple):
             if station.pressure is None:
                 forces = [load.force for load in loads]
                 what = f"contact force{place}"
-                yield _static_extreme("contact", part, what, "N", rests, forces)
+                yield self._extreme("contact", part, what, "N", forces)
                 continue
             pressures = [load.pressure or 0.0 for load in loads]
             used = [
                 Utilisation("pad", inner, load.x, load.pressure or 0.0, load.utilisation)
                 for load in loads
             ]
-            yield _static_extreme("pad", part, f"pad{place}", "Pa", rests, pressures, used)
-
-
-def _static_extreme(
-    kind: StaticKind,
-    part: str,
-    what: str,
-    unit: str,
-    rests: Sequence[StaticResult],
-    values: Sequence[float],
-    used: Sequence[Utilisation] = (),
-) -> StaticExtreme:
-    step = int(np.abs(values).argmax())
-    most = values[0], values[step], rests[step].time
-    return StaticExtreme(kind, part, what, unit, *most, used[step] if used else None)
+            yield self._extreme("pad", part, f"pad{place}", "Pa", pressures, used)
 
 
 def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> Table:

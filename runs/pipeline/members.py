@@ -3,9 +3,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from concurrent.futures import Executor
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -40,19 +40,17 @@ PEAK_TOLERANCE = 0.01
 _FIRST_POWER, _MAX_STEP_SHARE = -4, 0.25
 
 
-@contextmanager
-def rank_executor(comm: MPI.Intracomm | None) -> Iterator[Executor | None]:
-    """Yield an executor to the first rank, which all other ranks work for. Collective.
+def rank_executor(comm: MPI.Intracomm | None) -> AbstractContextManager[Executor | None]:
+    """Return an executor for the first rank, which all other ranks work for. Collective.
 
     The first rank gets None if it is the only one. Other ranks get None after their work.
     """
     if comm is None or comm.size == 1:
-        yield None
-        return
+        return nullcontext()
     from mpi4py.futures import MPICommExecutor
 
-    with MPICommExecutor(comm, root=0) as ranks:
-        yield ranks
+    executor: AbstractContextManager[Executor | None] = MPICommExecutor(comm, root=0)
+    return executor
 
 
 def slow_cutoff(boom: Boom, time: TimeTable) -> float | None:

@@ -5,10 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from itertools import product
 from typing import Any
 
 from beam_model.statics import static_state
-from geometry.boom import Boom, Collar, Segment
+from geometry.boom import Boom, Collar
 from geometry.joint import PadSize
 from geometry.typography import join_words
 from runs.case.schema import Model
@@ -96,17 +97,14 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
         for pad in (*joint.pads, joint.pad)
     )
     if offset:
-        yield (
-            "pads beside the corners, offset left out",
-            _with_pads(boom, lambda *_: {"offset": 0.0}),
-        )
+        beside = _with_pads(boom, lambda *_: {"offset": 0.0})
+        yield "pads beside the corners, offset left out", beside
     narrower = _with_pads(boom, lambda pad, _: {"width": 0.5 * pad.width})
     yield "pads half as wide (width), at twice the pressure", narrower
     yield "pads twice as long (length)", _with_pads(boom, longer)
-    corner = {"bears": "corner", "offset": 0.0}
     without = " and offset left out" if offset else ""
-    bearing = f"pads that bear on the corners, bears = 'corner'{without}"
-    yield bearing, _with_pads(boom, lambda *_: corner)
+    corners = _with_pads(boom, lambda *_: {"bears": "corner", "offset": 0.0})
+    yield f"pads that bear on the corners, bears = 'corner'{without}", corners
     collars = (
         "collars around both segments at each pad, as thick as the walls and one box height long "
         "(the boom can then not telescope)"
@@ -138,16 +136,11 @@ def _with_collars(boom: Boom) -> Boom:
     """
     segments = list(boom.segments)
     for joint in (joint for joint in boom.joints if joint.padded):
-        for index in (joint.outer, joint.inner):
-            for x in joint.stations:
-                segments[index] = _with_collar(segments[index], x)
+        for index, x in product((joint.outer, joint.inner), joint.stations):
+            segment, section = segments[index], segments[index].section_at(x)
+            reach, thickness = 0.5 * section.size("z"), section.face("z", 1).thickness
+            start, end = max(segment.start, x - reach), min(segment.end, x + reach)
+            if not any(one.span[0] < end and one.span[1] > start for one in segment.collars):
+                collars = (*segment.collars, Collar((start, end), thickness))
+                segments[index] = replace(segment, collars=collars)
     return replace(boom, segments=tuple(segments))
-
-
-def _with_collar(segment: Segment, x: float) -> Segment:
-    section = segment.section_at(x)
-    reach, thickness = 0.5 * section.size("z"), section.face("z", 1).thickness
-    start, end = max(segment.start, x - reach), min(segment.end, x + reach)
-    if any(one.span[0] < end and one.span[1] > start for one in segment.collars):
-        return segment
-    return replace(segment, collars=(*segment.collars, Collar((start, end), thickness)))

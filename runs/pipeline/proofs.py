@@ -199,11 +199,9 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
             other = governing.setdefault((one.kind, one.part), one)
             if one.utilisation > other.utilisation:
                 governing[one.kind, one.part] = one
-    for detail, damage in detail_damages(case):
-        name = detail.name
-        governing["fatigue", name] = Proof(
-            "fatigue", name, name, detail.x, damage.sum, 1.0, "1", damage.spectrum
-        )
+    for (name, _, x, _), damage in detail_damages(case):
+        fatigue = Proof("fatigue", name, name, x, damage.sum, 1.0, "1", damage.spectrum)
+        governing["fatigue", name] = fatigue
     proofs = sorted(governing.values(), key=lambda one: -one.utilisation)
     return Proofs(proofs, [*_missing_data_notes(case, states)])
 
@@ -264,11 +262,18 @@ def reduced_stress(
     with np.errstate(divide="ignore"):
         # Without stress the factor is infinite, and the slenderness zero.
         slenderness = np.sqrt(np.where(equivalent > 0.0, strength / equivalent, 0.0) / critical)
-    if curve:
-        along = across = np.interp(slenderness, *np.transpose(curve))
-    else:
-        along, across = winter(slenderness, stress_ratio(wall.edges)), shear_reduction(slenderness)
+    along, across = _reductions(slenderness, stress_ratio(wall.edges), curve)
     return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * wall.shear / across))
+
+
+def _reductions(
+    slenderness: float | Array, ratio: float | Array, curve: Sequence[tuple[float, float]]
+) -> tuple[Array, Array]:
+    """Return the reduction factors ρ and χ, both by the curve if it is not empty."""
+    if curve:
+        both = np.asarray(np.interp(slenderness, *np.transpose(curve)))
+        return both, both
+    return winter(slenderness, ratio), shear_reduction(slenderness)
 
 
 def winter(slenderness: float | Array, ratio: float | Array = 1.0) -> Array:
@@ -315,10 +320,7 @@ def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
             for wall in walls
         )
         slenderness = float(np.sqrt(strength / (stress * one.factors[0])))
-        if curve:
-            reduction = float(np.interp(slenderness, *np.transpose(curve)))
-        else:
-            reduction = float(min(winter(slenderness), shear_reduction(slenderness)))
+        reduction = float(min(_reductions(slenderness, 1.0, curve)))
         place = f"{one.segment}, {_wall_text(one.walls[0])}"
         resistance = reduction * strength / factors.stability
         yield Proof("buckling", one.segment, place, one.x[0], stress, resistance, "Pa")

@@ -197,9 +197,7 @@ def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[A
 
 
 def crane_drives(case: Case, boom: Boom, data: xr.Dataset) -> CraneDrives | None:
-    """Return moments, powers and work of a crane's drives in a motion; None without such drives.
-
-    """
+    """Return moments, powers and work of a crane's drives in a motion; None without such drives."""
     results: dict[str, float] = {}
     steps = np.diff(data["time"].values)
     load = hanging_load(case, boom)
