@@ -119,11 +119,6 @@ class Check:
         return f"<h3>{escape(self.title)}</h3>{tables}<ul>{lines}</ul>"
 
 
-def print_check(checked: CheckedCase, console: Console) -> None:
-    """Print the tables and sentences of :func:`check_case`."""
-    check_case(checked).show(console)
-
-
 def check_case(checked: CheckedCase) -> Check:
     """Return the tables and sentences that ``check`` prints."""
     case, boom, preview = checked.case, checked.boom, Preview(checked)

@@ -360,12 +360,12 @@ def frequencies(
 def check(case: CaseFile, picture: Picture = None) -> int:
     """Check a case file, and print its loads, static state, stresses and first frequency."""
     from runs.case.reading import load_checked
-    from runs.check import print_check
+    from runs.check import check_case
 
     checked = load_checked(case)
     if picture is not None:
         import_module("runs.report.boom_drawing").save_drawing(checked.case, case, picture)
-    print_check(checked, Terminal())
+    check_case(checked).show(Terminal())
     return 0
 
 

@@ -8,9 +8,9 @@ the geometric stiffness is corrected, from the deflections of the axes of the se
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import count
 
 import numpy as np
 
@@ -73,7 +73,8 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
 
     of_booms = [_by_kind(boom) for boom in booms]
     kinds = {kind: load for loads in of_booms for kind, load in loads.items()}
-    unit = [replace(load, magnitude=1.0, history=Step()) for load in kinds.values()]
+    zero = {kind: replace(load, magnitude=0.0, history=Step()) for kind, load in kinds.items()}
+    unit = [replace(load, magnitude=1.0) for load in zero.values()]
 
     def largest_compression(boom: Boom) -> float:
         ends = [force for one in boom.segments for piece in one.compression.ends for force in piece]
@@ -93,13 +94,7 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
     return [
         whole,
         *(
-            replace(
-                boom,
-                loads=tuple(
-                    loads.get(kind, replace(load, magnitude=0.0, history=Step()))
-                    for kind, load in kinds.items()
-                ),
-            )
+            replace(boom, loads=tuple((zero | loads).values()))
             for boom, loads in zip(booms, of_booms, strict=True)
         ),
     ]
@@ -108,15 +103,15 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
 def _by_kind(boom: Boom) -> dict[str, Load]:
     """Return the loads of a boom at rest; a key is a place, a direction and a running number."""
     loads_by_key: dict[str, Load] = {}
+    numbers: Counter[str] = Counter()
     for load in boom.loads:
         if isinstance(load.history, InitialImpulse):
             continue
         if isinstance(load.history, ReleasedLoad):
             load = replace(load, history=_RELEASE)
         kind = repr(replace(load, magnitude=1.0, history=None))
-        loads_by_key[next(key for k in count() if (key := f"{kind}#{k}") not in loads_by_key)] = (
-            load
-        )
+        loads_by_key[f"{kind}#{numbers[kind]}"] = load
+        numbers[kind] += 1
     return loads_by_key
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from dynamics.arrays import Array
-from dynamics.predictability import SHARES, ensemble_horizons
+from dynamics.predictability import ensemble_horizons
 from dynamics.trajectory import PointwiseDifferences
 from runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 
@@ -38,10 +38,8 @@ class PeakDifferences:
     def of(cls, one: SlowPeaks, other: SlowPeaks) -> PeakDifferences:
         """Return the differences of peaks with the same number, as far as both models have them."""
         common = slice(min(one.time.size, other.time.size))
-        time, height = (
-            other.time[common] - one.time[common],
-            other.height[common] - one.height[common],
-        )
+        time = other.time[common] - one.time[common]
+        height = other.height[common] - one.height[common]
         time_spread = one.time_spread[common] + other.time_spread[common]
         height_spread = one.height_spread[common] + other.height_spread[common]
         explained = (np.abs(time) <= time_spread) & (np.abs(height) <= height_spread)
@@ -102,14 +100,13 @@ class Comparison:
     distributions: Distributions
 
 
-def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "tip") -> Comparison:
-    """Compare the ensembles of two models.
+def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float) -> Comparison:
+    """Compare the tips of the ensembles of two models.
 
     Args:
         one: ensemble of :func:`dynamics.predictability.integrate_ensemble`.
         other: ensemble of the other model at the same times.
         cutoff: cut-off of the slow motion in Hz.
-        observer: name of the compared output.
 
     Raises:
         ValueError: the times differ.
@@ -117,10 +114,8 @@ def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float, observer: str = "
     time = one["time"].values
     if not np.array_equal(time, other["time"].values):
         raise ValueError("the ensembles must have the same times")
-    members = one[observer].values, other[observer].values
-    horizons = np.array(
-        [ensemble_horizons(ensemble, SHARES, observer) for ensemble in (one, other)]
-    )
+    members = one["tip"].values, other["tip"].values
+    horizons = np.array([ensemble_horizons(ensemble) for ensemble in (one, other)])
     until = float(np.nan_to_num(horizons[:, 0], nan=time[-1]).min())
     # A horizon is NaN if the model is predictable to the end; then the maximum is NaN, too.
     since = float(horizons[:, -1].max())

@@ -126,11 +126,9 @@ def nominal_wall_stresses(
     for segment, diagram in zip(segments, rest.diagrams, strict=True):
         if segment.section is None or "moment" not in diagram.curves:
             continue
-        places = (
-            [slice(None)]
-            if segment.head_section is None
-            else [slice(number, number + 1) for number in range(len(diagram.x))]
-        )
+        places = [slice(None)]
+        if segment.head_section is not None:
+            places = [slice(number, number + 1) for number in range(len(diagram.x))]
         for part in places:
             x = np.array(diagram.x[part])
             yield from _walls(segment, segment.section_at(float(x[0])), diagram, part, x)
@@ -146,16 +144,14 @@ def _walls(
         for name in names
     )
     mean = np.array(diagram.normal[part]) / section.area
-    slopes = (
-        lateral / section.lateral_second_moment_of_area,
-        (moment / section.second_moment_of_area),
-    )
+    along_y = lateral / section.lateral_second_moment_of_area
+    along_z = moment / section.second_moment_of_area
     forces = [(shear, dict(section.shear_plates("z"))), (aside, dict(section.shear_plates("y")))]
     corners = np.transpose(outer_corners(section))
     for k, plate in enumerate(section.plates):
         outer = corners[[k, (k + 1) % len(section.plates)]]
         edges, fibres = (
-            np.array([mean + slopes[0] * y + slopes[1] * z for y, z in ends])
+            np.array([mean + along_y * y + along_z * z for y, z in ends])
             for ends in ((plate.start, plate.end), outer)
         )
         along = sum(np.abs(force * shares.get(k, 0.0)) for force, shares in forces)

@@ -211,12 +211,9 @@ class Results:
         summary = self.summary.models[model]
         design = self.summary.design.models.get(model, ModelDesignResults())
         declaring = [*(getattr(design, name) for name in records(ModelDesignResults)), summary]
-        moved = design.motion
-        peaks = () if moved is None else moved.peaks
-        deflection = next((peak for peak in peaks if peak.what == "deflection"), None)
-        contacts = (peak.largest for peak in peaks if peak.what == "contact force")
-        fibres = () if moved is None else (abs(fibre.stress) for fibre in moved.fibres)
-        walls = () if moved is None else (wall.patch for wall in moved.walls)
+        motion = design.motion or MotionResult([], [], [], [])
+        deflection = next((peak for peak in motion.peaks if peak.what == "deflection"), None)
+        contacts = (peak.largest for peak in motion.peaks if peak.what == "contact force")
         pads = (pad.pressure for pad in self.summary.pads if pad.model == model)
         frequency = design.modes[0].frequency if design.modes else None
         damages = (one.life_damage for one in design.life if one.life_damage is not None)
@@ -227,14 +224,13 @@ class Results:
             "tip_amplitude": float(0.5 * np.ptp(tip)),
             "dynamic_factor": None if deflection is None else deflection.factor,
             "contact_force": max(contacts, default=None),
-            "stress": max(fibres, default=None),
-            "wall_stress": max(walls, default=None),
+            "stress": max((abs(fibre.stress) for fibre in motion.fibres), default=None),
+            "wall_stress": max((wall.patch for wall in motion.walls), default=None),
             "pad_pressure": max(pads, default=None),
             "damage": max(damages, default=None),
             "first_frequency": frequency,
             "decay_time": decay_time(self.case.damping.modal, frequency),
-            # The mass of a segment includes point masses, collars and diaphragms.
-            "mass": sum(segment.mass for segment in self.boom.segments),
+            "mass": self.boom.mass,
             "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
             "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
             "settling_time": settling_time(time, tip),

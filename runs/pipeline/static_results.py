@@ -142,8 +142,8 @@ def _sample_histories(
     changes: Sequence[Excitation | Travel], system: GapSystem, duration: float
 ) -> tuple[Array, Array]:
     """Return times in s that resolve all histories, and the values (num_changes, num_times)."""
-    loads, ways = ([change.history for change in of] for of in (system.excitations, system.travels))
-    times = resolving_times([*loads, *ways], duration)
+    histories = [change.history for change in (*system.excitations, *system.travels)]
+    times = resolving_times(histories, duration)
     values = np.array([change.history(times) for change in changes])
     return times, values.reshape(-1, times.size)
 
@@ -162,15 +162,8 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
     Times without an equilibrium are left out. The result is empty if the first has none. The
     ``load`` of the system includes all constant loads.
     """
-    equilibria: dict[float, Array] = {}
-    for time in times:
-        try:
-            with np.errstate(all="ignore"):
-                equilibria[time] = equilibrium_at(system, time)
-        except NUMERICAL_ERRORS:
-            if not equilibria:
-                return {}
-    return equilibria
+    first = _equilibria(system, times[:1])
+    return first | _equilibria(system, times[1:]) if first else {}
 
 
 def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:
@@ -178,12 +171,16 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
 
     The ``load`` of the system includes all constant loads. ``duration`` is that of the motion in s.
     """
-    earlier_times = instants(system, duration)
+    earlier = instants(system, duration)
+    times = [time for time in extended_instants(system, duration) if time not in earlier]
+    return _equilibria(system, times)
+
+
+def _equilibria(system: GapSystem, times: Sequence[float]) -> dict[float, Array]:
     equilibria: dict[float, Array] = {}
-    for time in extended_instants(system, duration):
+    for time in times:
         with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
-            if time not in earlier_times:
-                equilibria[time] = equilibrium_at(system, time)
+            equilibria[time] = equilibrium_at(system, time)
     return equilibria
 
 

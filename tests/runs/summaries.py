@@ -15,7 +15,7 @@ from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
 from runs.case.reading import CheckedCase
 from runs.case.schema import Case
-from runs.check import print_check
+from runs.check import check_case
 from runs.pipeline.design_results import DesignResults
 from runs.pipeline.model_run import RunContext
 from runs.pipeline.models import MotionPlan, build
@@ -82,7 +82,7 @@ def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
 
 def printed_check(case: Case, width: int = 200) -> str:
     """Return the text that ``check`` prints of a case, to a console of a width."""
-    return printed(print_check, CheckedCase(case), width=width)
+    return printed(check_case(CheckedCase(case)).show, width=width)
 
 
 def finished(case: Case, context: RunContext | None = None) -> Run:

@@ -15,7 +15,7 @@ from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
 from runs.case.messages import BadInput
 from runs.case.reading import CheckedCase
-from runs.check import print_check
+from runs.check import check_case
 from runs.pipeline.estimates import (
     Cost,
     Preview,
@@ -160,7 +160,7 @@ def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
             edited += "\n[damping]\nmass = 0.1\n"
         Path("case.toml").write_text(edited, encoding="utf-8")
         begin = process_time()
-        told.append(printed(print_check, case_file.load_checked("case.toml"), width=200))
+        told.append(printed(check_case(case_file.load_checked("case.toml")).show, width=200))
     assert process_time() - begin < 20.0
     numbers = [[float(x) for x in re.findall(r"([\d.]+) (?:%|Hz)", text)] for text in told]
     assert len(numbers[0]) > 10
