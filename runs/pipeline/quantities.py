@@ -102,14 +102,9 @@ class Limit:
     permitted: float  #: permitted value in SI units
     least: bool = False  #: True for a smallest permitted value
 
-    @property
-    def sign(self) -> str:
-        """The relation, ≥ or ≤."""
-        return "≥" if self.least else "≤"
-
     def __str__(self) -> str:
         """Return quantity, relation and permitted value: ``tip deflection ≤ 900 mm``."""
-        return f"{self.quantity.title} {self.sign} {self.format(self.permitted)}"
+        return f"{self.quantity.title} {'≥' if self.least else '≤'} {self.format(self.permitted)}"
 
     def format(self, value: float | None) -> str:
         """Return a value in SI units as text in the displayed unit; empty without a value."""

@@ -260,20 +260,16 @@ def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
     return largest_of_segments
 
 
-class Ranges(NamedTuple):
-    """Stress ranges (num_ranges,) in Pa, and the number of cycles of each: 0.5 or 1."""
+def count_stress_ranges(stress: Sequence[float] | Array) -> tuple[Array, Array]:
+    """Return the stress ranges (num_ranges,) of a stress history in Pa, by rainflow counting.
 
-    sizes: Array
-    counts: Array
-
-
-def count_stress_ranges(stress: Sequence[float] | Array) -> Ranges:
-    """Return the stress ranges of a stress history in Pa, by rainflow counting."""
+    The second array has the number of cycles of each range: 0.5 or 1.
+    """
     import rainflow
 
     cycles = [(size, count) for size, count in rainflow.count_cycles(stress) if size > 0.0]
     sizes, counts = np.array(cycles, dtype=float).reshape(-1, 2).T
-    return Ranges(sizes, counts)
+    return sizes, counts
 
 
 def endurance(sizes: Array, category: float) -> Array:
