@@ -193,7 +193,7 @@ def _agreement(design: DesignResults) -> Iterator[str]:
             dynamic = other.motion.peaks[0].largest / results.motion.peaks[0].largest - 1.0
         deviations = {
             "static tip deflection": static_deviation(results, other),
-            "first frequency": first and first.off,
+            "first frequency": None if first is None else first.off,
             "maximum tip deflection": dynamic,
         }
         parts = [
