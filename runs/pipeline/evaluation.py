@@ -5,8 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
@@ -23,8 +22,8 @@ from runs.case.kinds.model import BuiltModel
 from runs.case.schema import Case, Model
 from runs.pipeline.combinations import combination_states
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
-from runs.pipeline.model_output import ShellOutput
 from runs.pipeline.model_quality import quality_notes, reference_of
+from runs.pipeline.model_run import ModelRun
 from runs.pipeline.models import MotionPlan, complete_system
 from runs.pipeline.modes import ModeComparison, match_modes, modes
 from runs.pipeline.motion_results import evaluate_motion
@@ -90,81 +89,65 @@ def with_motion(
     return replace(results, motion=motion, life=lives)
 
 
-@dataclass(frozen=True)
-class ModelEvaluation:
-    """Evaluation of one model after its run, on the first rank."""
+def evaluate_model(boom: Boom, case: Case, ran: ModelRun, bonded: bool) -> ModelDesignResults:
+    """Return the design results of a model after its run, also without play if ``bonded``."""
+    model, trajectory, shell = ran.model, ran.motion.trajectory, ran.shell
+    loaded, duration = loaded_model(boom, model, ran.built), case.time.duration
+    times = instants(loaded.system, duration)
+    equilibria = positions(loaded.system, times)
+    extended = extended_positions(loaded.system, duration)
+    results = results_at_rest(loaded, equilibria, extended)
+    results = with_motion(results, loaded, equilibria | extended, trajectory, case, model)
+    if shell is not None:
+        assert results.motion is not None
+        motion = replace(results.motion, walls=wall_stresses(loaded.boom, shell.stresses))
+        buckled = [] if shell.buckling is None else shell.buckling.segments
+        results = replace(results, motion=motion, buckling=buckled)
+    if case.buckling is not None and (rest := results.farthest_static) is not None:
+        results = replace(results, panels=weakest_panels(loaded.boom.segments, rest))
+    results = replace(
+        results,
+        residual_vibration=residual_vibration(loaded.system, trajectory, case, model),
+        hoisting=hoisting(case, boom, trajectory),
+        drives=crane_drives(case, boom, trajectory.data),
+    )
+    if not bonded or model.bonded or not boom.joints:
+        return results
+    try:
+        without_play = _bonded_model(boom, case, model, loaded, equilibria)
+        return _add_bonded(results, boom, case, model, without_play, times)
+    except NUMERICAL_ERRORS:
+        # Rigid segments without play, for example, have no degree of freedom.
+        return results
 
-    boom: Boom  #: boom of the case
-    case: Case  #: the case of the model
-    model: Model  #: a model of the case
-    built: BuiltModel  #: the model before time integration
 
-    @cached_property
-    def _model_with_play(self) -> LoadedModel:
-        return loaded_model(self.boom, self.model, self.built)
-
-    @cached_property
-    def _times(self) -> list[float]:
-        return instants(self._model_with_play.system, self.case.time.duration)
-
-    @cached_property
-    def _equilibria(self) -> dict[float, Array]:
-        return positions(self._model_with_play.system, self._times)
-
-    def evaluate(self, trajectory: Trajectory, shell: ShellOutput | None) -> ModelDesignResults:
-        """Return the design results with the play of the model.
-
-        ``shell`` is None for a beam.
-        """
-        loaded, case, equilibria = self._model_with_play, self.case, self._equilibria
-        extended = extended_positions(loaded.system, case.time.duration)
-        results = results_at_rest(loaded, equilibria, extended)
-        rests = equilibria | extended
-        results = with_motion(results, loaded, rests, trajectory, case, self.model)
-        if shell is not None:
-            assert results.motion is not None
-            motion = replace(results.motion, walls=wall_stresses(loaded.boom, shell.stresses))
-            buckled = [] if shell.buckling is None else shell.buckling.segments
-            results = replace(results, motion=motion, buckling=buckled)
-        if case.buckling is not None and (rest := results.farthest_static) is not None:
-            results = replace(results, panels=weakest_panels(loaded.boom.segments, rest))
-        return replace(
-            results,
-            residual_vibration=residual_vibration(loaded.system, trajectory, case, self.model),
-            hoisting=hoisting(case, self.boom, trajectory),
-            drives=crane_drives(case, self.boom, trajectory.data),
-        )
-
-    def add_bonded(self, results: ModelDesignResults) -> ModelDesignResults:
-        """Add the results of the same model without play, if it has play, to design results."""
-        boom, case, model = self.boom, self.case, self.model
-        if model.bonded or not boom.joints:
-            return results
-        try:
-            bonded = _bonded_model(boom, case, model, self._model_with_play, self._equilibria)
-            equilibria = positions(bonded.system, self._times)
-            other = results_at_rest(bonded, equilibria)
-        except NUMERICAL_ERRORS:
-            # Rigid segments without play, for example, have no degree of freedom.
-            return results
-        results = replace(
-            results,
-            static_bonded=[
-                state for state in other.static if _at_initial_extension(boom, state.time)
-            ],
-            # Shapes are left out, since play hardly changes them.
-            modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
-        )
-        if boom.telescopes:
-            # A boom without play cannot telescope.
-            return results
-        try:
-            motion = MotionPlan.of(bonded.system, case, model).trajectory()
-            other = with_motion(other, bonded, equilibria, motion, case, model)
-        except NUMERICAL_ERRORS:
-            # The static results remain valid.
-            return results
-        return replace(results, motion_bonded=other.motion, life_bonded=other.life)
+def _add_bonded(
+    results: ModelDesignResults,
+    boom: Boom,
+    case: Case,
+    model: Model,
+    bonded: LoadedModel,
+    times: Sequence[float],
+) -> ModelDesignResults:
+    """Return design results, completed by static results at ``times`` and a motion without play."""
+    equilibria = positions(bonded.system, times)
+    other = results_at_rest(bonded, equilibria)
+    results = replace(
+        results,
+        static_bonded=[state for state in other.static if _at_initial_extension(boom, state.time)],
+        # Shapes are left out, since play hardly changes them.
+        modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
+    )
+    if boom.telescopes:
+        # A boom without play cannot telescope.
+        return results
+    try:
+        motion = MotionPlan.of(bonded.system, case, model).trajectory()
+        other = with_motion(other, bonded, equilibria, motion, case, model)
+    except NUMERICAL_ERRORS:
+        # The static results remain valid.
+        return results
+    return replace(results, motion_bonded=other.motion, life_bonded=other.life)
 
 
 def _bonded_model(

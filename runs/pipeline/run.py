@@ -18,7 +18,7 @@ from runs.case.schema import Case, Model
 from runs.folder.versions import versions
 from runs.pipeline import members
 from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.evaluation import ModelEvaluation, evaluate_run
+from runs.pipeline.evaluation import evaluate_model, evaluate_run
 from runs.pipeline.model_output import BeamOutput, ShellOutput
 from runs.pipeline.model_quality import compare_models
 from runs.pipeline.model_run import (
@@ -85,9 +85,7 @@ class Run:
             model_summary = summary.models[name]
             with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
-                    evaluation = ModelEvaluation(boom, case, ran.model, ran.built)
-                    results = evaluation.evaluate(ran.motion.trajectory, ran.shell)
-                    design[name] = evaluation.add_bonded(results) if bonded else results
+                    design[name] = evaluate_model(boom, case, ran, bonded)
                     check_finite(design[name])
                 except NUMERICAL_ERRORS as error:
                     summary.failures[name] = failure_reason(error)
@@ -159,11 +157,10 @@ def _results(
     ensembles = members.gather_ensembles(
         {name: one.ensemble for name, one in motions.items() if one.ensemble is not None}
     )
-    if ensembles is not None:
+    if case.ensemble is not None and ensembles is not None:
         for name, values in ensembles.data_vars.items():
             values.attrs.update(data[name].attrs)
         ensembles.attrs |= {"Conventions": CONVENTIONS, "case_hash": summary.case_hash}
-    if case.ensemble is not None and ensembles is not None:
         summary.ensemble = Ensembles(**case.ensemble.model_dump(), slow_below=cutoff)
     summary.comparisons = compare_models(case, data, ensembles, cutoff)
     return Results(case, data, summary, ensembles)

@@ -93,7 +93,7 @@ def test_model_without_design_results_keeps_its_motion(
     def singular(*_: object) -> ModelDesignResults:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr("runs.pipeline.run.ModelEvaluation.evaluate", singular)
+    monkeypatch.setattr("runs.pipeline.run.evaluate_model", singular)
     again = replace(run, results=replace(run.results, summary=run.results.summary.model_copy()))
     again.results.summary.failures = {}
     again.evaluate()
