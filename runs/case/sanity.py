@@ -111,17 +111,16 @@ def _category_range(where: str, category: float, least: float) -> UsualRange:
     return UsualRange(f"{where}.detail_category", what, category, "1", least, 160.0, 10.0)
 
 
-def materials(case: Case) -> Iterator[tuple[str, Material]]:
-    """Yield each material of a case, after its key."""
+def materials(case: Case) -> dict[str, Material]:
+    """Return the materials of a case, by their keys."""
     tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
-    for where, table in {"material": case.material, **tables}.items():
-        if table is not None:
-            yield where, table
+    tables = {"material": case.material, **tables}
+    return {where: table for where, table in tables.items() if table is not None}
 
 
 def _material_ranges(case: Case) -> Iterator[UsualRange]:
     """Yield the material data. The ranges cover solids from plastics to tungsten."""
-    for where, table in materials(case):
+    for where, table in materials(case).items():
         for key, what, unit, limits in (
             ("youngs_modulus", "Young's modulus", "Pa", (1.0e9, 1.0e12, 3.0)),
             ("density", "the density", "kg/m^3", (500.0, 2.5e4, 1000.0)),

@@ -129,7 +129,7 @@ def _ineffective_inputs(case: Case) -> Iterator[str]:
 
 def _materials(case: Case) -> Iterator[str]:
     """Yield a caution for each material whose density does not match its Young's modulus."""
-    for where, table in materials(case):
+    for where, table in materials(case).items():
         for name, (modulus, density) in MATERIALS.items():
             if not isclose(table.youngs_modulus, modulus, rel_tol=SAME_MODULUS):
                 continue
