@@ -3,9 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from math import isclose
-from typing import Any
 
 import numpy as np
 
@@ -327,11 +326,7 @@ def _constant_loads(boom: Boom) -> Iterator[tuple[float, float]]:
 def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
     """Yield cautions on loads that repeat a load or weight, and on masses given as forces."""
     loads_of_case = boom.loads[: len(case.loads)]
-    repeatable: tuple[tuple[str, Sequence[Any]], ...] = (
-        ("load", loads_of_case),
-        ("axial", case.axial),
-    )
-    for name, tables in repeatable:
+    for name, tables in (("load", loads_of_case), ("axial", case.axial)):
         for number, table in enumerate(tables):
             if table in tables[:number]:
                 first = tables.index(table) + 1

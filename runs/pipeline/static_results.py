@@ -142,7 +142,7 @@ def _sample_histories(
     changes: Sequence[Excitation | Travel], system: GapSystem, duration: float
 ) -> tuple[Array, Array]:
     """Return times in s that resolve all histories, and the values (num_changes, num_times)."""
-    histories = [change.history for change in (*system.excitations, *system.travels)]
+    histories = [x.history for x in system.excitations] + [x.history for x in system.travels]
     times = resolving_times(histories, duration)
     values = np.array([change.history(times) for change in changes])
     return times, values.reshape(-1, times.size)
