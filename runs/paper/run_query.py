@@ -180,10 +180,7 @@ def options(model: Model, *ignored: str) -> dict[str, Any]:
 def final_differences(first: Array, second: Array, last: Mask) -> Array:
     """Return the largest differences (num_members,) at the last times, divided by the larger range.
 
-    Args:
-        first: curves (num_members, num_times) of one model.
-        second: curves (num_members, num_times) of the other model.
-        last: mask (num_times,) of the last times.
+    Curves are (num_members, num_times), and ``last`` is the mask (num_times,) of the last times.
     """
     scale = np.maximum(np.ptp(first, axis=1), np.ptp(second, axis=1))
     return np.asarray(np.abs(first - second)[:, last].max(axis=1) / scale)

@@ -9,6 +9,7 @@ reduce the stiffness.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -85,15 +86,12 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
     """
     states = []
     for combined in combined_cases(case):
-        boom = boom_with_play(combined.case, build_boom(combined.case))
-        try:
-            with np.errstate(all="ignore"):
-                if moving and combined.combination.motion:
-                    beam = BeamStates.in_motion(combined.case).at_extremes()
-                else:
-                    beam = BeamStates.of(combined.case, boom)
-        except NUMERICAL_ERRORS:
-            beam = None
+        boom, beam = boom_with_play(combined.case, build_boom(combined.case)), None
+        with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
+            if moving and combined.combination.motion:
+                beam = BeamStates.in_motion(combined.case).at_extremes()
+            else:
+                beam = BeamStates.of(combined.case, boom)
         states.append(CombinationState(combined, beam))
     return states
 

@@ -70,10 +70,7 @@ class Distributions:
     def of(cls, one: Array, other: Array, time: Array, since: float) -> Distributions:
         """Return the statistics of two ensembles after the time ``since`` in s.
 
-        Args:
-            one, other: values (num_members, num_times).
-            time: (num_times,) in s.
-            since: later of both horizons; NaN if a model stays predictable.
+        Values are (num_members, num_times). ``since`` is NaN if a model stays predictable.
         """
         # Imported here, since most runs have no ensemble and the import takes half a second.
         from scipy.stats import ks_2samp
@@ -103,10 +100,8 @@ class Comparison:
 def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float) -> Comparison:
     """Compare the tips of the ensembles of two models.
 
-    Args:
-        one: ensemble of :func:`dynamics.predictability.integrate_ensemble`.
-        other: ensemble of the other model at the same times.
-        cutoff: cut-off of the slow motion in Hz.
+    Ensembles are those of :func:`dynamics.predictability.integrate_ensemble`; the cut-off of the
+    slow motion is in Hz.
 
     Raises:
         ValueError: the times differ.

@@ -67,10 +67,7 @@ def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
 def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]:
     """Return times in s and heights (num_peaks,) of the peaks of the slow motion.
 
-    Args:
-        signal: (num_times,).
-        time: evenly spaced times (num_times,) in s.
-        cutoff: cut-off in Hz.
+    Times (num_times,) in s are evenly spaced; the cut-off is in Hz.
     """
     from scipy.signal import find_peaks
 
@@ -82,9 +79,7 @@ def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]
 def mean_period(time: Array, tip: Array) -> float:
     """Return the mean time between the main peaks of the tip in s; NaN for fewer than two peaks.
 
-    Args:
-        time: (num_times,) in s.
-        tip: tip deflection (num_times,) in m.
+    Times (num_times,) are in s, tip deflections in m.
     """
     if tip.size < 3:
         return float("nan")
@@ -113,12 +108,8 @@ class SlowPeaks:
         """Return the common peaks of an ensemble, up to the first peak that a member lacks.
 
         Peaks of two members count as the same peak if they are less than half a period of the
-        cut-off apart. Two peaks of one filtered motion are farther apart.
-
-        Args:
-            members: motions (num_members, num_times).
-            time: (num_times,) in s.
-            cutoff: cut-off in Hz.
+        cut-off apart. Two peaks of one filtered motion are farther apart. Motions are (num_members,
+        num_times), times in s, and the cut-off in Hz.
         """
         peaks = [slow_peaks(member, time, cutoff) for member in members]
         times, heights = [], []

@@ -94,11 +94,8 @@ def compare_models(
 ) -> Comparisons | None:
     """Return the differences between models; None without two comparable models.
 
-    Args:
-        case: case of the run.
-        trajectories: ``tip`` (model, time) in m.
-        ensembles: ``tip`` (model, member, time) in m; None without ensembles.
-        cutoff: cut-off of the slow motion in Hz.
+    ``tip`` is (model, time) in the trajectories and (model, member, time) in the ensembles, in m.
+    The cut-off of the slow motion is in Hz.
     """
     ran = trajectories["model"].values
     reference = reference_of(model for model in case.models if model.name in ran)

@@ -93,14 +93,9 @@ def evaluate_motion(
 ) -> tuple[MotionResult, list[StressHistory]]:
     """Return extreme values of a motion without wall stresses, and stress histories for fatigue.
 
-    The stress history of a segment belongs to the point where the stress varies most.
-
-    Args:
-        model: the model.
-        trajectory: motion of the model.
-        positions: equilibria (num_rests, num_modes) for comparison.
-        rests: static states at the equilibria.
-        jumps: True if section forces jump at point forces; False for a series, which is smooth.
+    The stress history of a segment belongs to the point where the stress varies most. Static states
+    belong to the equilibria (num_rests, num_modes). ``jumps`` is True if section forces jump at
+    point forces, False for a series, which is smooth.
     """
     envelopes, peaks = [], list(_output_peaks(model.boom, trajectory, rests))
     fibres, varying = [], []

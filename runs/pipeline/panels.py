@@ -71,8 +71,7 @@ def normal_coefficient(ratio: float | Array) -> Array:
 def stress_ratio(edges: Array) -> Array:
     """Return the stress ratio ψ of two edges (2, ...), at least −3; 1 without compression.
 
-    Args:
-        edges: axial stresses in Pa, positive in tension.
+    Axial stresses are in Pa, positive in tension.
     """
     largest = -edges.min(axis=0)
     compressed = largest > 0.0

@@ -65,9 +65,7 @@ QUANTITIES = (
 def decay_time(ratio: float, frequency: float | None) -> float | None:
     """Return the time in s in which a vibration decays to 10 %; None without damping.
 
-    Args:
-        ratio: damping ratio.
-        frequency: frequency in Hz; None if unknown.
+    The frequency is in Hz, and None if unknown.
     """
     return (
         log(1.0 / DECAYED_SHARE) / (2.0 * pi * ratio * frequency) if ratio and frequency else None
@@ -79,11 +77,8 @@ def settling_time(time: Array, tip: Array) -> float | None:
 
     The centre of the band is the mean over the last fifth of the run. The initial amplitude is the
     largest distance from the centre. The result is None if the tip leaves the band during the last
-    fifth, which should be longer than the slowest oscillation.
-
-    Args:
-        time: ascending times (num_times,) in s.
-        tip: (num_times,) in m.
+    fifth, which should be longer than the slowest oscillation. Times (num_times,) in s ascend; tip
+    deflections are in m.
     """
     last = time >= time[-1] - FINAL * (time[-1] - time[0])
     off = np.abs(tip - tip[last].mean())

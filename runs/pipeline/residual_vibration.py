@@ -7,6 +7,7 @@ and under the current loads.
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Annotated
@@ -164,11 +165,10 @@ def _speed(travel: Travel) -> float:
 
 def _vibration_at_constant_extension(system: GapSystem, case: Case, model: Model) -> float | None:
     """Return the largest distance of the tip from its static position in m, without telescoping."""
-    try:
+    with suppress(*NUMERICAL_ERRORS):
         plan = MotionPlan.of(system, case, model)
         changes = system.excitations or system.released_load.any() or plan.motion.velocity.any()
         if case.start.state == "equilibrium" and not changes:
             return 0.0
         return farthest_from_rest(system, plan.trajectory())[0]
-    except NUMERICAL_ERRORS:
-        return None
+    return None

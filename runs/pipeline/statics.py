@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -47,15 +48,13 @@ class Statics(NamedTuple):
 def statics(case: Case, boom: Boom) -> Statics | None:
     """Return the static states; None without an equilibrium."""
     with_play = not all(model.bonded for model in case.models)
-    try:
-        with np.errstate(all="ignore"):
-            elements = Elements(boom)
-            bonded = static_state(boom.bonded, elements)
-            if not with_play:
-                return Statics(bonded, bonded)
-            return Statics(static_state(boom_with_play(case, boom), elements), bonded)
-    except NUMERICAL_ERRORS:
-        return None
+    with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
+        elements = Elements(boom)
+        bonded = static_state(boom.bonded, elements)
+        if not with_play:
+            return Statics(bonded, bonded)
+        return Statics(static_state(boom_with_play(case, boom), elements), bonded)
+    return None
 
 
 def boom_with_play(case: Case, boom: Boom) -> Boom:

@@ -197,12 +197,7 @@ def largest_stresses(
 ) -> tuple[FibreStress, StressHistory]:
     """Return the largest stress of a segment, and the stress history with the largest variation.
 
-    Args:
-        segment: the segment.
-        fibres: outer fibres of the segment.
-        curves: section forces (num_times, num_places) in motion.
-        forces_at_rest: section forces (num_rests, num_places) in the static states.
-        time: (num_times,) in s.
+    Section forces are (num_times, num_places) in motion and (num_rests, num_places) at rest.
     """
     largest, where = 0.0, (0, 0, 0)
     histories, at_rest = [], []
@@ -275,9 +270,7 @@ def count_stress_ranges(stress: Sequence[float] | Array) -> tuple[Array, Array]:
 def endurance(sizes: Array, category: float) -> Array:
     """Return the cycles to failure (num_ranges,), which are infinite below the cut-off limit.
 
-    Args:
-        sizes: stress ranges in Pa.
-        category: detail category in Pa.
+    Stress ranges and detail category are in Pa.
     """
     limit = category * (CATEGORY_CYCLES / LIMIT) ** (1.0 / STEEP)
     cut_off = limit * (LIMIT / CUT_OFF) ** (1.0 / FLAT)
