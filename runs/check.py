@@ -62,7 +62,6 @@ from runs.pipeline.statics import (
 )
 from runs.pipeline.turning import shaper_lines, turning_lines
 from runs.report.boom_tables import (
-    column_in_units,
     joint_table,
     mass_table,
     segment_table,
@@ -334,20 +333,17 @@ def _reactions(state: StaticState, system: System) -> Table:
 
 def _cylinders(state: StaticState, system: System) -> Table:
     """Return the table of lengths, lever arms and static forces of cylinders, a pair as one."""
-    cylinders, segments = state.boom.cylinders, state.boom.segments
-    arms: list[Cell] = []
-    for cylinder in cylinders:
-        foot = segments[cylinder.segment].foot
-        arms.append("" if foot is None else system.of(cylinder.arm(foot), "m"))
-    columns = [
-        Column("cylinder of", [segments[one.segment].name for one in cylinders]),
-        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in cylinders]),
-        column_in_units(system, "length", "m", [one.length for one in cylinders], ".5g"),
-        Column(f"lever arm\n{system.label('m')}", arms, ".5g"),
-        Column("force", [cylinder_force(state, 1 + i) for i in range(len(cylinders))], ".4g", "kN"),
-    ]
-    note = "Cylinder forces are positive in compression."
-    return Table("Cylinders at rest, t = 0", columns, [note] if cylinders else [])
+    segments, metre = state.boom.segments, system.label("m")
+    rows: list[tuple[Cell, ...]] = []
+    for k, one in enumerate(state.boom.cylinders, start=1):
+        segment, force = segments[one.segment], cylinder_force(state, k)
+        arm = "" if segment.foot is None else system.of(one.arm(segment.foot), "m")
+        place, length = f"{system.of(one.x, 'm'):g}", system.of(one.length, "m")
+        rows.append((segment.name, place, length, arm, force))
+    lengths = (f"length\n{metre}", ".5g"), (f"lever arm\n{metre}", ".5g")
+    columns = "cylinder of", f"x\n{metre}", *lengths, ("force", ".4g", "kN")
+    notes = ["Cylinder forces are positive in compression."] if rows else []
+    return Table.of_rows("", "Cylinders at rest, t = 0", columns, rows, notes)
 
 
 def _static_lines(

@@ -155,20 +155,16 @@ def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
     for result in results:
         for one in result.extremes:
             of_name.setdefault(one.name, []).append((one, result.name))
-    least = [min(several, key=lambda pair: pair[0].largest) for several in of_name.values()]
-    most = [max(several, key=lambda pair: pair[0].largest) for several in of_name.values()]
-    governs = [
-        max(pair, key=lambda one: abs(one[0].largest)) for pair in zip(least, most, strict=True)
-    ]
-    # The positions of stations depend on the extension.
-    at_stations = "pad", "contact"
-    names = [one.what if one.kind in at_stations else one.name for one, _ in governs]
-    columns = [
-        Column("result", names),
-        Column("minimum", [in_units(one.largest, one.unit, system) for one, _ in least]),
-        Column("maximum", [in_units(one.largest, one.unit, system) for one, _ in most]),
-        Column("governing", [name for _, name in governs]),
-    ]
+    rows, moving = [], False
+    for several in of_name.values():
+        least = min(several, key=lambda pair: pair[0].largest)
+        most = max(several, key=lambda pair: pair[0].largest)
+        one, governing = max((least, most), key=lambda pair: abs(pair[0].largest))
+        # The positions of stations depend on the extension.
+        at_station = one.kind in ("pad", "contact")
+        moving |= at_station
+        ends = (in_units(end.largest, end.unit, system) for end, _ in (least, most))
+        rows.append((one.what if at_station else one.name, *ends, governing))
     note = "Pads and contacts move with the extension; x is given for the governing combination."
-    notes = [note] if any(one.kind in at_stations for one, _ in governs) else []
-    return Table("Envelope of the combinations", columns, notes, "envelope")
+    headings, notes = ("result", "minimum", "maximum", "governing"), [note] if moving else []
+    return Table.of_rows("envelope", "Envelope of the combinations", headings, rows, notes)

@@ -16,7 +16,7 @@ from runs.case.motion_tables import resolving_times
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.report.formatting import number
-from runs.report.tables import Column, Table
+from runs.report.tables import Table
 
 _CONSTANT, _ALL = "constant", "all masses"
 # Direction of axial forces, which are positive in compression.
@@ -37,19 +37,12 @@ class _Row(NamedTuple):
 
 def load_table(case: Case, boom: Boom) -> Table:
     """Return the table of all loads of a case, in the units of the case."""
-    rows, system = list(_rows(case, boom)), case.system
-    largest = [
-        f"{number(system.of(row.largest, row.unit), 4)} {system.label(row.unit)}" for row in rows
-    ]
-    columns = [
-        Column("load", [row.key for row in rows]),
-        Column("on", [row.place for row in rows]),
-        Column("direction", [row.direction for row in rows]),
-        Column("history", [row.history for row in rows]),
-        Column("maximum", largest),
-        Column("maximum\nat s", ["" if row.time is None else f"{row.time:.4g}" for row in rows]),
-    ]
-    return Table("Loads", columns)
+    system, rows = case.system, []
+    for *names, largest, unit, time in _rows(case, boom):
+        maximum = f"{number(system.of(largest, unit), 4)} {system.label(unit)}"
+        rows.append((*names, maximum, "" if time is None else f"{time:.4g}"))
+    headings = "load", "on", "direction", "history", "maximum", "maximum\nat s"
+    return Table.of_rows("", "Loads", headings, rows)
 
 
 def release_note(case: Case) -> str:

@@ -22,7 +22,7 @@ from runs.case.units import System
 from runs.pipeline.static_results import Diagram, StaticResult
 from runs.pipeline.strength import outer_corners
 from runs.report.formatting import number
-from runs.report.tables import Column, Table
+from runs.report.tables import Table
 
 # Coefficient k of a long plate in shear (Southwell and Skan 1924).
 SHEAR = 5.34
@@ -160,18 +160,14 @@ def _walls(
 
 def panel_table(panels: Sequence[PanelBuckling], system: System) -> Table:
     """Return the table of the wall of each segment that buckles first by panel formulas."""
-    columns = [
-        Column("segment", [one.segment for one in panels]),
-        Column("wall", [one.wall for one in panels]),
-        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):.4g}" for one in panels]),
-        Column("buckling factor", [one.factor for one in panels], ".3g"),
-    ]
+    columns = "segment", "wall", f"x\n{system.label('m')}", ("buckling factor", ".3g")
+    rows = [(one.segment, one.wall, f"{system.of(one.x, 'm'):.4g}", one.factor) for one in panels]
     note = (
         "Static state under the maximum loads. Walls are long panels on simple supports, with "
         "k = 4 in compression, 23.9 in bending, 5.34 in shear, and their interaction; pad forces "
         "are neglected."
     )
-    return Table("Buckling of walls, estimate", columns, [note])
+    return Table.of_rows("", "Buckling of walls, estimate", columns, rows, [note])
 
 
 def panel_cautions(panels: Sequence[PanelBuckling], system: System) -> list[str]:
