@@ -160,10 +160,6 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
         ("[[axial]]\nfalls = 2\n",
          "axial[1].mass: missing, and there is no payload; it is the mass in kg that the rope "
          "carries"),
-        ('[[axial]]\nforce = 1e3\nsegment = "jib"\n',
-         "axial[1].segment: 'jib' is no segment; give 'mast' or 'fly'"),
-        ("[[axial]]\nforce = 1e3\nx = 3.0\n",
-         "axial[1].x: 3 m lies outside 'fly'; it must be between 6 and 14 m"),
     ],
 )  # fmt: skip
 def test_bad_axial_forces_are_refused(tmp_path: Path, text: str, line: str) -> None:

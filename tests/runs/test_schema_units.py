@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any, get_args, get_origin
 
 import pytest
-from pydantic.fields import FieldInfo
 
 from geometry.fields import declared_units, describe, fields_of
 from protractile.cases import change
 from runs.case import reading, toml
 from runs.case.build import build_boom
 from runs.case.contact import ContactTable, JointTable
+from runs.case.messages import _tables as tables_of
 from runs.case.reading import convert_to_si
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
@@ -229,29 +229,16 @@ def test_numbers_out_of_range_and_other_systems_are_refused() -> None:
         in_mm("inch-lbf-s")
 
 
-def _tables(table: type = Case) -> Iterator[type]:
-    yield table
-    for field in fields_of(table).values():
-        for part in _parts(field.annotation):
-            if hasattr(part, "__pydantic_fields__"):
-                yield from _tables(part)
-
-
 def _parts(annotation: Any) -> Iterator[Any]:
     yield annotation
     for part in get_args(annotation) if get_origin(annotation) else ():
         yield from _parts(part)
 
 
-def _fields() -> Iterator[tuple[str, FieldInfo]]:
-    for table in dict.fromkeys(_tables()):
-        for key, field in fields_of(table).items():
-            yield f"{table.__name__}.{key}", field
-
-
 def test_every_number_declares_its_unit() -> None:
     """Reference: the descriptions, which name the unit of each number for people."""
-    fields = dict(_fields())
+    tables = {Case, *(table for _, table in tables_of(Case))}
+    fields = {f"{one.__name__}.{key}": f for one in tables for key, f in fields_of(one).items()}
     assert len(fields) > 100
     for name, field in fields.items():
         if float not in _parts(field.annotation):
