@@ -18,27 +18,8 @@ from runs.folder.files import write_atomically
 from runs.folder.versions import program
 from runs.pipeline.results import CASE, ENSEMBLES, TRAJECTORIES, Results
 from runs.pipeline.summary import Snapshots
-from runs.report import theme
-from runs.report.boom_drawing import boom
+from runs.report import boom_drawing, force_figures, motion_figures, rest_figures, theme
 from runs.report.figure_context import Figure, FigureContext
-from runs.report.force_figures import (
-    contact_peaks,
-    drives,
-    first_contacts,
-    friction,
-    hoisting,
-    stress_history,
-)
-from runs.report.motion_figures import (
-    close_up,
-    energies,
-    heads,
-    horizons,
-    residuals,
-    slow_peaks,
-    tip,
-)
-from runs.report.rest_figures import at_rest, envelopes, mode_shapes
 
 FOLDER = "figures"
 FIGURE_DIGEST = ".drawn-of"
@@ -47,23 +28,23 @@ FIGURE_DIGEST = ".drawn-of"
 Draw = Callable[[FigureContext], list[Figure]]
 
 FIGURES: Sequence[Draw] = (
-    boom,
-    tip,
-    close_up,
-    heads,
-    slow_peaks,
-    horizons,
-    first_contacts,
-    contact_peaks,
-    friction,
-    drives,
-    hoisting,
-    stress_history,
-    at_rest,
-    envelopes,
-    mode_shapes,
-    energies,
-    residuals,
+    boom_drawing.boom,
+    motion_figures.tip,
+    motion_figures.close_up,
+    motion_figures.heads,
+    motion_figures.slow_peaks,
+    motion_figures.horizons,
+    force_figures.first_contacts,
+    force_figures.contact_peaks,
+    force_figures.friction,
+    force_figures.drives,
+    force_figures.hoisting,
+    force_figures.stress_history,
+    rest_figures.at_rest,
+    rest_figures.envelopes,
+    rest_figures.mode_shapes,
+    motion_figures.energies,
+    motion_figures.residuals,
 )
 
 
