@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise
+from itertools import pairwise, repeat
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -150,27 +150,23 @@ class Scene:
             output: deflections and section forces of the beam.
             motion: trajectories of the model.
         """
-        tubes = [
-            _tube(boom, segment, one)
-            for segment, one in zip(boom.segments, output.segments, strict=True)
-        ]
-        first = np.cumsum([0, *(len(tube.points) for tube in tubes)])
-        numbered = [tube.triangles + k for tube, k in zip(tubes, first, strict=False)]
+        tubes = map(_tube, repeat(boom), boom.segments, output.segments)
+        points, triangles, displacements, stresses = zip(*tubes, strict=True)
+        first = np.cumsum([0, *map(len, points)])
+        numbered = [own + k for own, k in zip(triangles, first, strict=False)]
         # Each frame serves as a mode.
         frames = np.eye(output.time.size)
         scene = cls(
             boom=boom,
             symbols=list(boom_symbols(case, boom)),
-            points=np.concatenate([tube.points for tube in tubes]),
+            points=np.concatenate(points),
             triangles=np.concatenate(numbered).astype(np.int32),
-            segment=np.repeat(
-                np.arange(len(tubes)), [len(tube.triangles) for tube in tubes]
-            ).astype(np.int32),
-            modes=np.concatenate([tube.displacement for tube in tubes], axis=1),
+            segment=np.repeat(np.arange(len(points)), [*map(len, triangles)]).astype(np.int32),
+            modes=np.concatenate(displacements, axis=1),
             state=xr.DataArray(frames, {"time": output.time}, ("time", "mode")),
             motion=motion,
         )
-        return scene, np.concatenate([tube.stress for tube in tubes], axis=1)
+        return scene, np.concatenate(stresses, axis=1)
 
     @property
     def direction(self) -> Direction:
@@ -350,20 +346,12 @@ class Scene:
         return factors
 
 
-class _Tube(NamedTuple):
-    """Tube that represents a beam segment: points (num_points, 3) and triangles.
+def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> tuple[Array, ...]:
+    """Return the tube of a beam segment: rings of corners, two triangles per plate and interval.
 
-    Displacements are (num_frames, num_points, 3), stresses (num_frames, num_points) in Pa.
+    The results are points (num_points, 3), triangles (num_triangles, 3), displacements (num_frames,
+    num_points, 3) and stresses (num_frames, num_points) in Pa.
     """
-
-    points: Array
-    triangles: Array
-    displacement: Array
-    stress: Array
-
-
-def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
-    """Return the tube of a segment: rings of corners, with two triangles per plate and interval."""
     x, curves = output.x, output.curves
     corners = np.array([_corners(boom, segment, place) for place in x.tolist()])
     none = np.zeros_like(curves["deflection"])
@@ -380,11 +368,11 @@ def _tube(boom: Boom, segment: Segment, output: SegmentMotion) -> _Tube:
     if "lateral_moment" in curves:
         stress += _bending(curves["lateral_moment"], there, "lateral.second_moment_of_area") * y
     shape = (len(w), -1)
-    return _Tube(
-        points=np.stack([np.repeat(x, y.shape[1]), y.ravel(), z.ravel()], axis=1),
-        triangles=np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]),
-        displacement=np.stack([part.reshape(shape) for part in displacement], axis=-1),
-        stress=np.abs(stress).reshape(shape),
+    return (
+        np.stack([np.repeat(x, y.shape[1]), y.ravel(), z.ravel()], axis=1),
+        np.concatenate([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]),
+        np.stack([part.reshape(shape) for part in displacement], axis=-1),
+        np.abs(stress).reshape(shape),
     )
 
 
