@@ -166,12 +166,10 @@ def select_model(case: Case, file: str, name: str | None = None) -> Shell:
         BadInput: the case has no such shell.
     """
     shells = {model.name: model for model in select_kind(Shell, case.models)}
-    if name is None and shells:
-        return [*shells.values()][-1]
-    if name is None or name not in shells:
-        what = f"must be {choices([*shells])}" if shells else "must be a shell, and there is none"
-        raise BadInput(file, "--model", what)
-    return shells[name]
+    if shells and name in (None, *shells):
+        return shells[name or [*shells][-1]]
+    what = f"must be {choices([*shells])}" if shells else "must be a shell, and there is none"
+    raise BadInput(file, "--model", what)
 
 
 def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache | None) -> None:

@@ -90,8 +90,22 @@ def script(
         "OUTPUT_STEP": case.time.output_step,
         "SEGMENTS": [_segment(stiff, n, part, model) for n, part in enumerate(parts)],
         "CONTACTS": list(_contacts(model_boom, parts, calibration)),
-        "CYLINDERS": list(_cylinders(boom, parts)),
-        "FRICTIONS": list(_frictions(boom, parts)),
+        "CYLINDERS": [
+            {
+                "node": [one.segment, parts[one.segment].node(one.x)],
+                "lug": [one.x, -one.depth],
+                "ground": list(one.ground),
+                "stiffness": one.stiffness,
+                "length": one.length,
+            }
+            for one in boom.cylinders
+        ],
+        # Both nodes and the friction force in N of each pad with friction.
+        "FRICTIONS": [
+            [*_ends(pad, parts), pad.joint.friction * pad.normal_force]
+            for pad in pads(boom)
+            if pad.joint.friction > 0.0 and pad.normal_force is not None
+        ],
         "LOADS": list(_loads(case, boom, parts)),
     }
     lines = "\n".join(f"{name} = {value!r}" for name, value in data.items())
@@ -227,27 +241,6 @@ def _points(law: ContactLaw, compliance: float) -> list[list[float]]:
     contact_forces = np.concatenate([[-OPEN, 0.0], forces])
     order = 1 if side > 0.0 else -1
     return [(side * along)[::order].tolist(), (side * contact_forces)[::order].tolist()]
-
-
-def _cylinders(boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]:
-    """Yield node, lug, ground end, stiffness and length of each cylinder, in SI units."""
-    for one in boom.cylinders:
-        yield {
-            "node": [one.segment, parts[one.segment].node(one.x)],
-            "lug": [one.x, -one.depth],
-            "ground": list(one.ground),
-            "stiffness": one.stiffness,
-            "length": one.length,
-        }
-
-
-def _frictions(boom: Boom, parts: Sequence[Part]) -> Iterator[list[object]]:
-    """Yield two nodes and the friction force in N, for each pad with friction."""
-    for pad in pads(boom):
-        if pad.joint.friction > 0.0:
-            assert pad.normal_force is not None
-            ends = _ends(pad, parts)
-            yield [*ends, pad.joint.friction * pad.normal_force]
 
 
 def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, object]]:

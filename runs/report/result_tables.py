@@ -324,16 +324,10 @@ def record_tables(results: Results) -> Iterator[Table]:
     """Yield a table for each kind of record, with a row for each model."""
     design = results.summary.design.models
     for name, kind in records(ModelDesignResults).items():
-        results_of_models = {
-            m: getattr(model_results, name)
-            for m, model_results in design.items()
-            if getattr(model_results, name)
-        }
-        if results_of_models:
-            columns = metric_columns(kind, list(results_of_models.values()))
-            yield Table(
-                kind.title, [Column("model", list(results_of_models)), *columns], kind.notes, name
-            )
+        found = {model: one for model in design if (one := getattr(design[model], name))}
+        if found:
+            columns = Column("model", [*found]), *metric_columns(kind, [*found.values()])
+            yield Table(kind.title, columns, kind.notes, name)
 
 
 def pad_table(results: Results) -> Table:

@@ -33,8 +33,12 @@ TURNS, SWING = 6, 0.18
 # Position of a symbol: an edge of the segment, or z in m.
 Edge = Literal["top", "bottom"] | float
 
-_KILO = {"N": "kN", "N/m": "kN/m", "N m": "kN m"}
-_MORE = {"N/m": (("GN/m", 1e9), ("MN/m", 1e6), ("kN/m", 1e3))}
+# Larger units of large numbers, and the numbers above which they are used.
+_LARGER = {
+    "N": (("kN", 1e3),),
+    "N m": (("kN m", 1e3),),
+    "N/m": (("GN/m", 1e9), ("MN/m", 1e6), ("kN/m", 1e3)),
+}
 
 
 def _strokes(*lines: Sequence[tuple[float, float]]) -> Path:
@@ -46,10 +50,6 @@ def _ground(z: float) -> list[Sequence[tuple[float, float]]]:
     """Return the lines of a hatched ground."""
     hatches = [((x, z), (x - 0.15, z - 0.15)) for x in np.linspace(-0.3, 0.45, 6).tolist()]
     return [((-0.45, z), (0.45, z)), *hatches]
-
-
-def _circle(z: float, radius: float) -> Path:
-    return Path.unit_circle().transformed(Affine2D().scale(radius).translate(0.0, z))
 
 
 def _rotated(path: Path, degrees: float) -> Path:
@@ -68,15 +68,18 @@ ELASTIC = _strokes(
 )
 REST_ABOVE = Path([[-0.4, 0.25], [0.4, 0.25], [0.4, 0.6], [-0.4, 0.6], [-0.4, 0.25]])
 REST_BELOW = _rotated(REST_ABOVE, 180.0)
-PAYLOAD = Path.make_compound_path(_strokes([(0.0, 0.0), (0.0, -0.45)]), _circle(-0.72, 0.27))
+PAYLOAD = Path.make_compound_path(
+    _strokes([(0.0, 0.0), (0.0, -0.45)]), Path.circle((0.0, -0.72), 0.27)
+)
 FORCE_DOWN = _strokes([(0.0, 1.0), (0.0, 0.0)], [(-0.2, 0.35), (0.0, 0.0), (0.2, 0.35)])
 FORCE_UP = _rotated(FORCE_DOWN, 180.0)
 FORCE_BACK = _rotated(FORCE_DOWN, -90.0)
 FORCE_ON = _rotated(FORCE_DOWN, 90.0)
 AWAY = Path.make_compound_path(
-    _circle(0.0, 0.4), _strokes([(-0.28, -0.28), (0.28, 0.28)], [(-0.28, 0.28), (0.28, -0.28)])
+    Path.circle((0.0, 0.0), 0.4),
+    _strokes([(-0.28, -0.28), (0.28, 0.28)], [(-0.28, 0.28), (0.28, -0.28)]),
 )
-TOWARDS = Path.make_compound_path(_circle(0.0, 0.4), _circle(0.0, 0.1))
+TOWARDS = Path.make_compound_path(*(Path.circle((0.0, 0.0), radius) for radius in (0.4, 0.1)))
 _ARC = [
     (0.5 * float(np.cos(t)), 0.5 * float(np.sin(t))) for t in np.linspace(-0.3, 1.3, 17) * np.pi
 ]
@@ -132,12 +135,9 @@ def edges(
 
 def abbreviate(value: float, unit: str) -> str:
     """Return a number with its unit as text, with prefix k or M for large numbers."""
-    for larger, factor in _MORE.get(unit, ()):
-        if abs(value) >= factor:
-            return f"{number(value / factor, 4)} {larger}"
-    if abs(value) >= 1e3 and unit in _KILO:
-        return f"{number(value / 1e3, 4)} {_KILO[unit]}"
-    return f"{number(value, 4)} {unit}"
+    units = (*_LARGER.get(unit, ()), (unit, 1.0))
+    name, factor = next((one for one in units if abs(value) >= one[1]), units[-1])
+    return f"{number(value / factor, 4)} {name}"
 
 
 def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:

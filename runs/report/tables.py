@@ -112,16 +112,13 @@ class Column:
             return fixed(cell, digits, self.factor)
         return number(self.factor * cell, digits)
 
-    def _plain(self, cell: Cell) -> Plain:
+    def _plain(self, cell: Cell) -> Any:
+        """Return a cell in the displayed unit; without conversion an integer stays an integer."""
         if isinstance(cell, list):
-            return [self._number(one) for one in cell]
-        return cell if isinstance(cell, str) or cell is None else self._number(cell)
-
-    def _number(self, value: float) -> float | None:
-        """Return a number in the displayed unit; without conversion an integer stays an integer."""
-        if isinstance(value, int) and self.factor == 1.0:
-            return value
-        return float(self.factor * value) if math.isfinite(value) else None
+            return [self._plain(one) for one in cell]
+        if cell is None or isinstance(cell, str) or (isinstance(cell, int) and self.factor == 1.0):
+            return cell
+        return float(self.factor * cell) if math.isfinite(cell) else None
 
 
 @dataclass(frozen=True, slots=True)

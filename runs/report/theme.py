@@ -89,11 +89,9 @@ def segment_color(number: int) -> str:
     return PALETTE[-1 - number % len(PALETTE)]
 
 
-def tint(color: str, strength: float) -> tuple[float, float, float]:
+def tint(color: str, strength: float) -> tuple[float, ...]:
     """Return a colour mixed with white; strength 1 is the pure colour."""
-    red, green, blue = to_rgb(color)
-    paper = 1.0 - strength
-    return strength * red + paper, strength * green + paper, strength * blue + paper
+    return tuple(strength * part + (1.0 - strength) for part in to_rgb(color))
 
 
 @dataclass(frozen=True, slots=True)
