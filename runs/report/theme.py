@@ -89,9 +89,10 @@ def segment_color(number: int) -> str:
     return PALETTE[-1 - number % len(PALETTE)]
 
 
-def tint(color: str, strength: float) -> tuple[float, ...]:
+def tint(color: str, strength: float) -> tuple[float, float, float]:
     """Return a colour mixed with white; strength 1 is the pure colour."""
-    return tuple(strength * part + (1.0 - strength) for part in to_rgb(color))
+    red, green, blue = (strength * part + (1.0 - strength) for part in to_rgb(color))
+    return red, green, blue
 
 
 @dataclass(frozen=True, slots=True)
