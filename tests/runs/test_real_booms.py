@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Static states of the shipped crane, arm and lift, compared with calculations by hand."""
 
-from dataclasses import dataclass, field, replace
-from itertools import pairwise
+from dataclasses import replace
 from math import isclose
 
 import numpy as np
@@ -10,6 +9,7 @@ import pytest
 
 from beam_model.boom_modes import BoomModes
 from beam_model.statics import Elements, StaticState, static_state
+from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Segment
 from runs import CASES
 from runs.case.build import build_boom
@@ -20,30 +20,19 @@ from tests.runs.case_texts import shipped
 GRAVITY = 9.80665
 
 
-@dataclass
-class Pushed:
-    """A segment with forces up in N at x and in N/m, and moments in N·m towards a slope."""
+# Pieces of a segment, at whose middles its weight and its bending count.
+PIECES = 2000
 
-    segment: Segment
-    along: float
-    forces: list[tuple[float, float]] = field(default_factory=list)
-    moments: list[tuple[float, float]] = field(default_factory=list)
 
-    def turn(self, x: float) -> float:
-        middle = 0.5 * (self.segment.start + self.segment.end)
-        pushed = sum(f * (at - x) for at, f in self.forces) + sum(m for _, m in self.moments)
-        return pushed + self.along * self.segment.length * (middle - x)
+def middles(segment: Segment) -> Array:
+    return segment.start + segment.length * (np.arange(PIECES) + 0.5) / PIECES
 
-    @property
-    def total(self) -> float:
-        return self.along * self.segment.length + sum(f for _, f in self.forces)
 
-    def beyond(self, x: float) -> tuple[float, float]:
-        """Return the moment and shear force of the part beyond x on the cross-section at x."""
-        rest = self.segment.end - x
-        far = [(at, f) for at, f in self.forces if at > x]
-        moment = sum(f * (at - x) for at, f in far) + sum(m for at, m in self.moments if at > x)
-        return moment + 0.5 * self.along * rest**2, self.along * rest + sum(f for _, f in far)
+def beyond(pushed: Array, x: Array) -> tuple[Array, Array]:
+    """Return moment and shear force at x of forces (num_forces, 3): place, force up, moment."""
+    at, force, moment = pushed.T
+    far = at > x[:, None]
+    return (far * (force * (at - x[:, None]) + moment)).sum(axis=1), (far * force).sum(axis=1)
 
 
 def midpoints(joint: Joint) -> tuple[float, float]:
@@ -52,30 +41,33 @@ def midpoints(joint: Joint) -> tuple[float, float]:
     return first + half, last - half
 
 
-def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[float]]:
-    """Apply the lever rule from the tip to the base, and return segments and cylinder forces.
+def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Array], list[float]]:
+    """Apply the lever rule from the tip to the base; return forces on segments and of cylinders.
 
     Args:
         boom: level boom; each segment has two supports or stations, or a clamp.
         weight: weight in m/s², downwards.
         tip: upward force at the tip in N.
     """
-    pushed = [Pushed(segment, -weight * segment.mass_per_length) for segment in boom.segments]
-    for one in pushed:
-        one.forces += [(mass.x, -weight * mass.mass) for mass in one.segment.all_masses]
-    pushed[-1].forces.append((boom.tip, tip))
+    pushed = []
+    for one in boom.segments:
+        piece = -weight * one.mass_per_length * one.length / PIECES
+        points = [(mass.x, -weight * mass.mass, 0.0) for mass in one.all_masses]
+        pushed.append(np.array([*((x, piece, 0.0) for x in middles(one)), *points]))
+    pushed[-1] = np.vstack([pushed[-1], (boom.tip, tip, 0.0)])
     for joint in reversed(boom.joints):
         inner, (first, last) = pushed[joint.inner], midpoints(joint)
-        head = -inner.turn(first) / (last - first)
-        tail = -inner.total - head
-        inner.forces += [(first, tail), (last, head)]
-        pushed[joint.outer].forces += [(first, -tail), (last, -head)]
+        head = -(inner[:, 1] @ (inner[:, 0] - first)) / (last - first)
+        tail = -inner[:, 1].sum() - head
+        pressed = np.array([(first, tail, 0.0), (last, head, 0.0)])
+        pushed[joint.inner] = np.vstack([inner, pressed])
+        pushed[joint.outer] = np.vstack([pushed[joint.outer], pressed * (1.0, -1.0, 1.0)])
     presses = []
     for jack in boom.cylinders:
         base, (along, up) = pushed[jack.segment], jack.direction
-        press = -base.turn(0.0) / (up * jack.x + along * jack.depth)
-        base.forces.append((jack.x, up * press))
-        base.moments.append((jack.x, along * jack.depth * press))
+        press = -(base[:, 1] @ base[:, 0]) / (up * jack.x + along * jack.depth)
+        lug = jack.x, up * press, along * jack.depth * press
+        pushed[jack.segment] = np.vstack([base, lug])
         presses.append(press)
     return pushed, presses
 
@@ -83,27 +75,26 @@ def by_hand(boom: Boom, weight: float, tip: float) -> tuple[list[Pushed], list[f
 def tip_by_hand(boom: Boom, stiffness: list[float]) -> float:
     """Return the tip deflection in m under the weights by the unit-load method."""
     (real, presses), (unit, ones) = by_hand(boom, GRAVITY, 0.0), by_hand(boom, 0.0, 1.0)
-    points, weights = np.polynomial.legendre.leggauss(3)
     found = 0.0
-    for own, virtual in zip(real, unit, strict=True):
-        segment = own.segment
+    for segment, own, virtual in zip(boom.segments, real, unit, strict=True):
         shear = segment.material.shear_modulus * segment.section.shear_area
-        places = {segment.start, segment.end, *(x for x, _ in (*own.forces, *own.moments))}
-        for a, b in pairwise(sorted(places)):
-            for point, part in zip(points, weights, strict=True):
-                x = 0.5 * (a + b + point * (b - a))
-                (moment, force), (of_one, with_one) = own.beyond(x), virtual.beyond(x)
-                bent = moment * of_one / segment.bending_stiffness + force * with_one / shear
-                found += 0.5 * (b - a) * part * bent
+        x = middles(segment)
+        (moment, force), (of_one, with_one) = beyond(own, x), beyond(virtual, x)
+        bent = moment @ of_one / segment.bending_stiffness + force @ with_one / shear
+        found += bent * segment.length / PIECES
     for joint, k in zip(boom.joints, stiffness, strict=True):
-        inner, virtual = dict(real[joint.inner].forces), dict(unit[joint.inner].forces)
         for x in midpoints(joint):
+            force, with_one = (force_at(one[joint.inner], x) for one in (real, unit))
             # The inner segment gives way against what pushes it, by the clearance and by F/k.
-            way = np.sign(inner[x]) * 0.5 * joint.play + inner[x] / k
-            found += virtual[x] * way
+            found += with_one * (np.sign(force) * 0.5 * joint.play + force / k)
     for jack, press, one in zip(boom.cylinders, presses, ones, strict=True):
         found += press * one / jack.stiffness
     return found
+
+
+def force_at(pushed: Array, x: float) -> float:
+    """Return the last force at x in N, that of a pad."""
+    return float(pushed[np.isclose(pushed[:, 0], x)][-1, 1])
 
 
 def level(name: str) -> Case:
@@ -183,8 +174,7 @@ def test_booms_have_the_deflections_of_statics_by_hand(name: str) -> None:
     pushed, _ = by_hand(boom, GRAVITY, 0.0)
     for reaction in rest.reactions:
         if reaction.segment > 0:
-            forces = pushed[reaction.segment].forces
-            (expected,) = (force for x, force in forces if isclose(x, reaction.x))
+            expected = force_at(pushed[reaction.segment], reaction.x)
             assert reaction.force == pytest.approx(expected, rel=1e-3)
     pads = [x for joint in boom.joints for x in midpoints(joint)]
     ground = sum(
