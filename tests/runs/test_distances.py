@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Distances of models from the reference of a sweep, as numbers, tables and charts."""
 
-import csv
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.figure import Figure as Sheet
 
@@ -96,11 +96,8 @@ def test_sweep_reports_distances_comparison_time_and_step_error(against: Plan) -
     assert np.isnan(bonded["pad_force_off"]).all()
     assert float(bonded["first_peak_off"].min()) > 0.5
     assert np.isnan(data["tip_off"].sel(model="kantorovich-5")).all()
-    with open("out/sweep.csv", newline="", encoding="utf-8") as file:
-        rows = {(row["joint.play"], row["model"]): row for row in csv.DictReader(file)}
-    assert float(rows["0.014", "kantorovich-4"]["tip_off"]) == pytest.approx(
-        float(there["tip_off"])
-    )
+    rows = pd.read_csv("out/sweep.csv", index_col=["joint.play", "model"])
+    assert rows.loc[(0.014, "kantorovich-4"), "tip_off"] == pytest.approx(float(there["tip_off"]))
     drawn = {path.name for path in Path("out/figures").glob("*.png")}
     assert drawn == {"sweep-distances.png", "sweep-lines.png"}
     assert run(against)[0].differences.keys() == {"kantorovich-4", "beam-fe-bonded"}

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Folder of a run: its files, its report, its summary, and unique names of columns."""
 
-import csv
 import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from pydantic import ValidationError
@@ -44,8 +44,7 @@ def folder(run: Run, tmp_path: Path, few_figures: None) -> Path:
 
 
 def header(folder: Path) -> list[str]:
-    with (folder / "trajectories.csv").open(newline="", encoding="utf-8") as file:
-        return next(csv.reader(file))
+    return [*pd.read_csv(folder / "trajectories.csv", nrows=0).columns]
 
 
 def test_columns_of_stations_are_distinct(run: Run, folder: Path, tmp_path: Path) -> None:
