@@ -34,11 +34,6 @@ def check_not_working_folder(folder: Path, file: str, key: str) -> None:
 
     After a replacement, the user's terminal would remain in the deleted folder.
 
-    Args:
-        folder: the folder to replace.
-        file: path in the message.
-        key: key in the message.
-
     Raises:
         BadInput: the folder, or a folder within it, is the working folder.
     """

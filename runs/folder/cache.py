@@ -194,13 +194,8 @@ def load_or_compute(
     """Return a reduced shell from the cache, or compute it. All ranks must call it.
 
     If several processes need the same shell, one computes it and the others wait. A cache that
-    cannot be read or written causes a notice.
-
-    Args:
-        cache: cache of the user; None to compute the shell.
-        content: all inputs of the shell.
-        comm: ranks that share the work; the first one reads and writes.
-        compute: function that computes the shell; all ranks call it.
+    cannot be read or written causes a notice. ``content`` has all inputs of the shell; the first
+    rank reads and writes.
     """
     if cache is None:
         return compute()
@@ -226,11 +221,7 @@ def _head(key: str, file: BufferedIOBase) -> bytes:
 
 
 def write_record(thing: Any, file: IO[bytes]) -> None:
-    """Write a record.
-
-    Args:
-        thing: a dataclass, a dataset, an array, a number, a text, or a combination of these.
-        file: the destination.
+    """Write a dataclass, dataset, array, number, text or combination of these as a record.
 
     Raises:
         TypeError: the object contains another type.

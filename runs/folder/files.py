@@ -60,11 +60,7 @@ def write_atomically(path: Path, text: str) -> None:
 
 @contextmanager
 def atomic_folder(folder: Path) -> Iterator[Path]:
-    """Yield an empty folder to write to, and replace ``folder`` by it at the end.
-
-    Args:
-        folder: final path; an existing folder is removed with its content.
-    """
+    """Yield an empty folder to write to, and replace ``folder`` with all its content at the end."""
     with scratch_folder(folder) as part:
         yield part
         with folder_lock(folder):
@@ -176,13 +172,7 @@ def _exchange_path(path: Path) -> Path:
 
 
 def _move_to_final_path(part: Path, folder: Path, file_names: Iterable[str]) -> None:
-    """Write the manifest of a new folder, and move it to its final path.
-
-    Args:
-        part: the new folder.
-        folder: the final path, at which an old folder may exist.
-        file_names: names of the files in the manifest.
-    """
+    """Write the manifest of a new folder, and move it to its final path in place of an old one."""
     sorted_names = sorted(file_names)
     with ThreadPoolExecutor() as threads:
         digests = threads.map(_digest, [part / name for name in sorted_names])

@@ -100,14 +100,11 @@ def leave(status: int) -> NoReturn:
 
 
 def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
-    """End all ranks, and print one line on stderr.
+    """End all ranks with an exit status, and print one line on stderr.
 
-    Args:
-        line: the error.
-        code: exit status.
-        comm: communicator; None before MPI starts. Every rank then ends by itself, but only rank 0
-            with the message and the status: an earlier error of another rank would make the
-            launcher cut the message off.
+    Without a communicator, before MPI starts, every rank ends by itself, but only rank 0 with the
+    message and the status: an earlier error of another rank would make the launcher cut the message
+    off.
     """
     if comm is None or comm.size == 1:
         if launched_rank():
@@ -124,11 +121,7 @@ def fail(line: str, code: int, comm: MPI.Comm | None) -> NoReturn:
 
 
 def _wait_until_read(stream: int) -> None:
-    """Wait until a pipe is empty, since Open MPI 5 would mix the line with its own message.
-
-    Args:
-        stream: file descriptor; for others than pipes the function returns at once.
-    """
+    """Wait until a pipe is empty, since Open MPI 5 would mix the line with its own message."""
     if not stat.S_ISFIFO(os.fstat(stream).st_mode):
         return
     unread = array("i", [1])

@@ -136,11 +136,7 @@ def _discard_output() -> None:
 
 @contextmanager
 def display(models: Sequence[str] = ()) -> Iterator[Progress]:
-    """Yield a function that displays the progress of each stage on stderr.
-
-    Args:
-        models: names of the models to run, in order.
-    """
+    """Yield a function that displays the progress of each stage of these models on stderr."""
     console = Console(stderr=True)
     if not console.is_terminal:
         yield Lines(models)
@@ -159,13 +155,7 @@ def display(models: Sequence[str] = ()) -> Iterator[Progress]:
 
 
 class Lines:
-    """Progress reporter that prints lines with model, stage and time.
-
-    Args:
-        models: names of the models to run, in order.
-        say: function that prints a line.
-        clock: function that returns the time in s.
-    """
+    """Progress reporter that prints lines with model, stage and time."""
 
     def __init__(
         self,

@@ -53,11 +53,9 @@ def _worker_environment() -> Iterator[None]:
 
 @contextmanager
 def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[Executor]:
-    """Yield an executor of several processes, which end with this process.
+    """Yield an executor of several processes, by default one per core, which end with this process.
 
-    Args:
-        count: number of processes; None for one per core.
-        prepare: function that each process calls first.
+    Each process calls ``prepare`` first.
     """
     # Python's resource tracker starts with the pool; the variables switch its warnings off.
     with _worker_environment():
@@ -76,10 +74,7 @@ def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[
 def helper(prepare: Callable[[], object] = int) -> Iterator[Executor | None]:
     """Yield an executor of one process on another core; None if there is only one core.
 
-    The process starts with the first work and ends with this process.
-
-    Args:
-        prepare: function that the process calls first.
+    The process starts with the first work, calls ``prepare``, and ends with this process.
     """
     if len(os.sched_getaffinity(0)) == 1:
         yield None
