@@ -112,15 +112,7 @@ def comparison_end(
     comm: MPI.Intracomm | None,
     cache: Cache | None,
 ) -> float:
-    """Return the time in s up to which the tips of models are compared.
-
-    Args:
-        case: a checked case.
-        model: reference model of the case.
-        results: results of the reference model.
-        comm: ranks that share shells; None without shells.
-        cache: cache of reduced shells.
-    """
+    """Return the time in s up to which tips are compared, from the results of the reference."""
     time = np.asarray(results.trajectories["time"].values, dtype=float)
     end = float(time[-1])
     if model.bonded or case.regular:

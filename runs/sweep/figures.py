@@ -12,7 +12,7 @@ import re
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from itertools import product
 from pathlib import Path
-from typing import Any, Final, Literal, TypeVar
+from typing import Any, Literal
 
 import matplotlib
 import numpy as np
@@ -36,10 +36,10 @@ CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
 PERMITTED = "permitted"
 # Maximum number of readable cells of a map along each axis.
 MOST_CELLS = 10
-# Display units for large and small values: limit, conversion factor, unit.
-_LARGE = {"N": (1.0e3, TO_KILO, "kN"), "N m": (1.0e3, TO_KILO, "kN m"),
-          "Pa": (1.0e5, TO_MEGA, "MPa"), "N/m": (1.0e6, 1.0e-6, "kN/mm")}  # fmt: skip
-_SMALL = {"m": (1.0, TO_MILLI, "mm")}
+# Other display units of values within limits: the limits, conversion factor, unit.
+_DISPLAYED = {"N": (1.0e3, np.inf, TO_KILO, "kN"), "N m": (1.0e3, np.inf, TO_KILO, "kN m"),
+              "Pa": (1.0e5, np.inf, TO_MEGA, "MPa"), "N/m": (1.0e6, np.inf, 1.0e-6, "kN/mm"),
+              "m": (np.nextafter(0.0, 1.0), 1.0, TO_MILLI, "mm")}  # fmt: skip
 # Relative change below which a quantity counts as constant.
 SAME = 1.0e-6
 # Ratio of the largest to the smallest value above which an axis is logarithmic.
@@ -53,26 +53,19 @@ LEAST_FOR_CONTOURS = 4
 _SHADES = ("#fff3c4", "#f6b26b", "#b8577a", "#3b1f5c")
 # Largest and smallest difference in percent in charts; others are clipped.
 _MOST, _LEAST = 100.0, 0.01
-# Alignment of text at the first and the last value of an axis.
-_SIDES: Final = ("left", "right")
-_ENDS: Final = ("bottom", "top")
 # Width in inches of each additional column of maps.
 _COLUMN = 3.6
 
 # Names of keys in charts, if they do not follow from the key.
 _WORDS = {"gravity.acceleration": "gravity", "damping.modal": "modal damping"}
 
-_Word = TypeVar("_Word", bound=str)
 _SUPERSCRIPT = str.maketrans({"^": "", "2": "²", "3": "³", "4": "⁴", "n": "ⁿ"})
 
 
 def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
     """Draw the charts of a sweep: curves over the first key, or maps over two keys.
 
-    Args:
-        data: dataset of :func:`runs.sweep.output.gather`.
-        bonded: names of the models without play.
-        folder: existing folder for the PNG files.
+    ``bonded`` are the names of the models without play.
     """
     data = in_display_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
@@ -129,24 +122,18 @@ def in_display_units(data: xr.Dataset) -> xr.Dataset:
     """Return the data with the values of keys in displayed units, such as mm or kN."""
     coordinates = {}
     for name, along in data.coords.items():
-        unit = along.attrs.get("units", "")
-        largest = float(np.abs(along.values).max()) if unit in {*_LARGE, *_SMALL} else 0.0
-        for units, fits in ((_LARGE, largest.__ge__), (_SMALL, largest.__lt__)):
-            bound, factor, display_unit = units.get(unit, (0.0, 0.0, ""))
-            if display_unit and largest and fits(bound):
-                # Values are rounded to readable numbers.
-                values = np.array([float(f"{factor * value:.12g}") for value in along.values])
-                coordinates[name] = (along.dims, values, {**along.attrs, "units": display_unit})
+        if (displayed := _DISPLAYED.get(along.attrs.get("units"))) is None:
+            continue
+        least, limit, factor, unit = displayed
+        if least <= np.abs(along.values).max() < limit:
+            # Values are rounded to readable numbers.
+            values = np.array([float(f"{factor * value:.12g}") for value in along.values])
+            coordinates[name] = (along.dims, values, {**along.attrs, "units": unit})
     return data.assign_coords(coordinates)
 
 
 def draw_frequencies(data: xr.Dataset, path: Path) -> None:
-    """Draw frequencies over one varied key, a panel for each mode.
-
-    Args:
-        data: dataset of :func:`runs.sweep.frequencies.gather`.
-        path: path of the PNG file.
-    """
+    """Draw frequencies over one varied key, a panel for each mode."""
     data = in_display_units(data)
     (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
     colors = {name: one.color for name, one in _strokes(data, ()).items()}
@@ -174,10 +161,7 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
 def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
     """Draw the differences of models from a reference: lines over one key, maps over several.
 
-    Args:
-        data: dataset of :func:`runs.sweep.output.gather`, without the reference.
-        reference: name of the reference.
-        folder: existing folder for the PNG files.
+    ``data`` is without the reference.
     """
     data = in_display_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
@@ -336,14 +320,12 @@ def _write_ends(axes: Axes, until: xr.DataArray, longest: float) -> None:
     y, x = (until[dim].values for dim in until.dims)
     for row, column in np.argwhere(until.values < longest):
         text = f"{until.values[row, column]:.1f} s"
-        ha, va = _inwards(column, x.size, _SIDES), _inwards(row, y.size, _ENDS)
-        halo: dict[str, Any] = {"fontsize": 7.0, "path_effects": theme.OUTLINED}
-        axes.text(x[column], y[row], text, ha=ha, va=va, **halo)
-
-
-def _inwards(place: int, count: int, outer: tuple[_Word, _Word]) -> _Word | Literal["center"]:
-    """Return the alignment by which the text at the edge of a panel stays within the panel."""
-    return outer[0] if place == 0 else outer[1] if place == count - 1 else "center"
+        # The text at the edge of a panel stays within the panel.
+        style: dict[str, Any] = {
+            "ha": {0: "left", x.size - 1: "right"}.get(column, "center"),
+            "va": {0: "bottom", y.size - 1: "top"}.get(row, "center"),
+        }
+        axes.text(x[column], y[row], text, fontsize=7.0, path_effects=theme.OUTLINED, **style)
 
 
 def _spans_decades(values: Array) -> bool:
@@ -353,10 +335,8 @@ def _spans_decades(values: Array) -> bool:
 def _edges(values: Array) -> Array:
     """Return the bounds (num_values + 1,) of map cells around ascending values."""
     positions: Array = np.log(values) if _spans_decades(values) else values
-    between = 0.5 * (positions[:-1] + positions[1:])
-    bounds: Array = np.concatenate(
-        [[2.0 * positions[0] - between[0]], between, [2.0 * positions[-1] - between[-1]]]
-    )
+    outer = np.pad(positions, 1, mode="reflect", reflect_type="odd")
+    bounds: Array = 0.5 * (outer[:-1] + outer[1:])
     return np.asarray(np.exp(bounds)) if _spans_decades(values) else bounds
 
 
@@ -386,11 +366,9 @@ def _scale_axis(axes: Axes, which: Literal["x", "y"], values: xr.DataArray) -> N
 
 
 def _finish(sheet: Sheet, title: str, path: Path) -> None:
-    """Add a title to a figure, and write the figure to a file."""
     sheet.suptitle(title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
     sheet.savefig(path)
 
 
 def _name(quantity: Metric) -> str:
-    """Return the file name of the map of a quantity."""
     return f"sweep-{quantity.name.replace('_', '-')}.png"

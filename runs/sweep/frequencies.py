@@ -45,13 +45,7 @@ def first_frequencies(
 ) -> Array:
     """Return frequencies (2, MODES) in Hz with joints in contact and with bonded joints.
 
-    Missing values are NaN. All ranks must call the function.
-
-    Args:
-        case: a checked case.
-        model: model of the case; a bonded model has no frequencies with joints in contact.
-        comm: ranks that share a shell.
-        cache: cache of reduced shells.
+    Missing values are NaN, as of a bonded model with joints in contact. All ranks must call it.
     """
     boom = build_boom(case)
     with_play = model.model_boom(boom)
@@ -76,14 +70,7 @@ def measure(
     cache: Cache | None,
     progress: Progress = ignore_progress,
 ) -> Array:
-    """Return the first frequencies (num_cases, num_models, 2, MODES) in Hz, on all ranks.
-
-    Args:
-        cases: checked cases with the same models.
-        comm: ranks that share a shell.
-        cache: cache of reduced shells.
-        progress: callback that receives model, stage and completed fraction.
-    """
+    """Return the first frequencies (num_cases, num_models, 2, MODES) in Hz, on all ranks."""
     frequencies = []
     for case in cases:
         frequencies.append([first_frequencies(case, model, comm, cache) for model in case.models])

@@ -80,7 +80,13 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         shutil.rmtree(figures, ignore_errors=True)
         figures.mkdir()
         data.to_netcdf(netcdf, engine="scipy")
-        _write_csv(data, outcomes, table)
+        *keys, model = data["failed"].dims
+        rows = data.drop_vars("failed").to_dataframe([*keys, model]).reset_index()
+        # As text, values are not rounded.
+        rows[keys] = rows[keys].astype(str)
+        names = data[model].values
+        rows["failure"] = [one.failures.get(name, "") for one in outcomes for name in names]
+        rows.to_csv(table, index=False, float_format="%.9g", lineterminator="\r\n")
         draw(data, plan.bonded, figures)
         if plan.reference is not None:
             draw_distances(data.drop_sel(model=plan.reference), plan.reference, figures)
@@ -155,14 +161,3 @@ def _where_largest(values: xr.DataArray, keys: Sequence[str]) -> str:
         return NONE
     place = np.unravel_index(np.nanargmax(values.values), values.shape)
     return "\n".join(f"{values[key].values[i]:g}" for key, i in zip(keys, place, strict=True))
-
-
-def _write_csv(data: xr.Dataset, outcomes: Sequence[Outcome], path: Path) -> None:
-    """Write a CSV file with a line for each model at each point."""
-    *keys, model = data["failed"].dims
-    table = data.drop_vars("failed").to_dataframe([*keys, model]).reset_index()
-    # As text, values are not rounded.
-    table[keys] = table[keys].astype(str)
-    names = data[model].values
-    table["failure"] = [one.failures.get(name, "") for one in outcomes for name in names]
-    table.to_csv(path, index=False, float_format="%.9g", lineterminator="\r\n")

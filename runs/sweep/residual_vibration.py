@@ -41,11 +41,7 @@ class VibrationCurve(NamedTuple):
 
 
 def vibration_curves(data: xr.Dataset) -> dict[str, VibrationCurve]:
-    """Return the curves by model; empty if the sweep does not vary the telescoping speed alone.
-
-    Args:
-        data: dataset of :func:`runs.sweep.output.gather`.
-    """
+    """Return the curves by model; empty if the sweep does not vary the telescoping speed alone."""
     curves = {}
     for name in data["model"].values:
         one = data.sel(model=name)
@@ -101,13 +97,7 @@ def describe(name: str, curve: VibrationCurve) -> Iterator[str]:
 
 
 def draw_vibration(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
-    """Draw the residual vibration over the mean speed of the drive, if the sweep varies it.
-
-    Args:
-        data: dataset of a sweep over one key.
-        strokes: strokes of the models.
-        path: path of the PNG file.
-    """
+    """Draw the residual vibration over the mean speed of the drive, if the sweep varies it."""
     curves = vibration_curves(data)
     if not curves:
         return
