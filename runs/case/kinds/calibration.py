@@ -50,10 +50,6 @@ class CalibratedTable(BeamTable):
     of the segments and the springs of the stations; no calibration unless given"""
 
     @property
-    def needs_plates(self) -> bool:
-        return self.calibrated_by is not None
-
-    @property
     def needs_shell(self) -> bool:
         return self.calibrated_by is not None
 

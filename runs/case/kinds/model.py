@@ -71,15 +71,13 @@ class ModelBoom:
     """The boom of a case with the contact laws of one model, and its beam segments."""
 
     boom: Boom  #: boom of the case, with the model's contact laws in its joints
-    _beams: list[BeamSegments] = field(default_factory=list, init=False, repr=False, compare=False)
+    _beams: dict[BeamTable, BeamSegments] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def beams(self, model: BeamTable) -> BeamSegments:
         """Return the beam segments of a model; equal models share one object."""
-        for beams in self._beams:
-            if beams.model == model:
-                return beams
-        self._beams.append(BeamSegments(self.boom, model))
-        return self._beams[-1]
+        return self._beams.setdefault(model, BeamSegments(self.boom, model))
 
 
 @dataclass(frozen=True, slots=True)
@@ -165,7 +163,7 @@ class ModelTable(CaseTable):
     @property
     def needs_plates(self) -> bool:
         """True if the model needs the sections of the segments."""
-        return self.meshed
+        return self.needs_shell
 
     @property
     def plates_remedy(self) -> str:
