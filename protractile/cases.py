@@ -4,15 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 import xarray as xr
-from pydantic import ValidationError
 
 from runs.case import reading
-from runs.case.messages import BadInput
+from runs.case.messages import BadInput, refusing
 from runs.case.reading import CheckedCase
 from runs.case.schema import Case
 from runs.client import judge
@@ -22,16 +22,14 @@ from runs.pipeline.model_run import RunContext, ignore_progress
 from runs.pipeline.results import Results, prepare
 from runs.pipeline.run import run_case as run_models
 from runs.process import workers
+from runs.process.ranks import single_rank
 from runs.sweep import points
 from runs.sweep.variation import InvalidVariation, find
 
 if TYPE_CHECKING:
     import pandas as pd
-    from mpi4py import MPI
 
     from runs.check import Check
-    from runs.sweep.points import Plan
-    from runs.sweep.run import Outcome
 
 # Name of a case without a file in messages.
 _CASE = "case"
@@ -96,10 +94,8 @@ def change(case: Case, **values: Any) -> Case:
                 place.put(tables, value)
         except InvalidVariation as reason:
             raise BadInput(_CASE, key, str(reason)) from None
-    try:
+    with refusing(_CASE):
         changed = Case.model_validate(tables)
-    except ValidationError as error:
-        raise BadInput.from_validation(_CASE, error) from None
     reading.check(changed, _CASE)
     return changed
 
@@ -131,7 +127,7 @@ def run_case(
     """
     chosen = reading.select(case, _CASE, models)
     path = None if folder is None else prepare(str(folder), _CASE)
-    run = run_models(chosen, _CASE, RunContext(_single_rank(chosen), cache=Cache.of_user()))
+    run = run_models(chosen, _CASE, RunContext(single_rank(chosen), cache=Cache.of_user()))
     assert run is not None
     run.evaluate()
     if path is not None:
@@ -204,21 +200,17 @@ def sweep(
     """
     from runs.sweep import output, search
     from runs.sweep.run import prepare as prepare_sweep
-    from runs.sweep.run import run_points
 
-    def plan_of(texts: Sequence[str]) -> Plan:
-        return points.plan(_CASE, texts, models, None, against, case)
-
+    plan_of = partial(
+        points.plan, _CASE, models=models, mesh_size=None, reference=against, whole=case
+    )
     plan = plan_of(_options(vary))
     bound = None if until is None else search.parse_bound(until, plan)
     with TemporaryDirectory() as temporary, workers.workers(None) as pool:
         path = Path(folder or temporary)
         prepare_sweep(path, _CASE)
-
-        def run_plan(plan: Plan) -> list[Outcome]:
-            return run_points(plan, path, pool, ignore_progress, Cache.of_user())
-
-        plan, outcomes = search.run_until(plan, bound, plan_of, run_plan)
+        tools = path, pool, ignore_progress, Cache.of_user()
+        plan, outcomes = search.run_until(plan, bound, plan_of, *tools)
         return output.write(plan, outcomes, path) if folder else output.gather(plan, outcomes)
 
 
@@ -249,7 +241,7 @@ def frequencies(
 
     plan = points.plan(_CASE, _options(vary or {}), models, None, whole=case)
     cases = [point.case for point in plan.points]
-    results = frequencies.measure(cases, _single_rank(cases[0]), Cache.of_user())
+    results = frequencies.measure(cases, single_rank(cases[0]), Cache.of_user())
     return frequencies.gather(plan, results)
 
 
@@ -258,12 +250,3 @@ def _options(vary: Mapping[str, Sequence[float]]) -> list[str]:
     return [
         f"{key}={','.join(repr(float(value)) for value in values)}" for key, values in vary.items()
     ]
-
-
-def _single_rank(case: Case) -> MPI.Intracomm | None:
-    """Return the communicator of this process, which a shell needs; None for beams."""
-    if not any(model.needs_shell for model in case.models):
-        return None
-    from mpi4py import MPI
-
-    return MPI.COMM_SELF

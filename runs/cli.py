@@ -15,17 +15,13 @@ from contextlib import suppress
 from functools import partial
 from importlib import import_module
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 # Each command imports its own libraries, since all libraries together take seconds to load.
 from runs.process import ending, ranks, terminal
 from runs.process.terminal import Terminal, printable
-
-if TYPE_CHECKING:
-    from runs.sweep.points import Plan
-    from runs.sweep.run import Outcome
 
 app = typer.Typer(
     add_completion=False,
@@ -272,9 +268,9 @@ def sweep(
         what = f"does not go with {' and '.join(other_options)}" if other_options else "missing"
         raise BadInput(case, "--vary", f"{what}; give one of --vary, --sensitivity and --samples")
 
-    def plan_of(texts: Sequence[str]) -> Plan:
-        return points.plan(case, texts, _names(models), mesh_size, against)
-
+    plan_of = partial(
+        points.plan, case, models=_names(models), mesh_size=mesh_size, reference=against
+    )
     if sensitivity:
         plan, rejected_keys = changes.plan_changes(case, _names(models), mesh_size)
     elif samples is not None:
@@ -295,11 +291,8 @@ def sweep(
                 return 0
             with terminal.display() as report_progress:
                 cache = None if no_cache else Cache.of_user()
-
-                def run_plan(plan: Plan) -> list[Outcome]:
-                    return sweep_runs.run_points(plan, folder, pool, report_progress, cache)
-
-                plan, outcomes = search.run_until(plan, bound, plan_of, run_plan)
+                tools = folder, pool, report_progress, cache
+                plan, outcomes = search.run_until(plan, bound, plan_of, *tools)
         if sensitivity:
             table = changes.changes(plan, outcomes)
             changes.write(table, folder)
@@ -483,5 +476,4 @@ def main(arguments: Sequence[str] | None = None) -> None:
 
 
 def _names(models: str | None) -> list[str] | None:
-    """Return the names in a comma-separated list."""
     return None if models is None else [name.strip() for name in models.split(",")]

@@ -3,17 +3,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
 from dynamics.contact import PowerContact
-from dynamics.excitation import (
-    History,
-    InitialImpulse,
-    ReleasedLoad,
-    Step,
-)
+from dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
 from geometry.axial import Thrust, with_compression
 from geometry.boom import Boom, BoomError, Direction, Segment, Stop, resolve_segments
 from geometry.fields import Distance, at
@@ -27,8 +22,8 @@ from runs.case.sections import SegmentTable
 STANDARD_GRAVITY = 9.80665
 
 
-def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
-    """Return all loads across the boom: weights, applied and released loads, and impulses.
+def loads(case: Case, segments: Sequence[Segment]) -> Iterator[Load]:
+    """Yield all loads across the boom: weights, applied and released loads, and impulses.
 
     Released loads and impulses determine the state at t = 0.
 
@@ -36,77 +31,56 @@ def loads(case: Case, segments: Sequence[Segment]) -> tuple[Load, ...]:
         BoomError: a segment is unknown, a history is invalid, or both the payload and the table
             ``gravity`` give an acceleration of gravity.
     """
-    if case.gravity is not None and case.payload is not None and case.payload.gravity is not None:
+    payload, gravity = case.payload, case.gravity
+    if gravity is not None and payload is not None and payload.gravity is not None:
         raise BoomError(
             "payload.gravity",
             "the table gravity is given, by which the payload weighs too; leave one of them out",
         )
-    all_loads = [
-        _load(f"load[{number}]", table) for number, table in enumerate(case.loads, start=1)
-    ]
-    last = len(segments) - 1
-    if case.payload is not None and case.gravity is None:
-        weight = -case.payload.mass * _payload_gravity(case.payload)
+    for number, table in enumerate(case.loads, start=1):
+        yield _load(f"load[{number}]", table)
+    if payload is not None and gravity is None:
+        weight = -payload.mass * _payload_gravity(payload)
         if weight < 0.0:
-            all_loads.append(Load(last, "z", weight, segments[last].end, Step()))
-    if case.gravity is not None:
-        all_loads += _inertia_loads(-case.gravity.across, "z", Step(), segments)
+            yield Load(len(segments) - 1, "z", weight, segments[-1].end, Step())
+    if gravity is not None:
+        yield from _inertia_loads(-gravity.across, "z", Step(), segments)
     for number, base in enumerate(case.base, start=1):
         history = build_history(f"base[{number}]", base)
-        all_loads += _inertia_loads(-base.acceleration, base.direction, history, segments)
+        yield from _inertia_loads(-base.acceleration, base.direction, history, segments)
     for name, velocity in case.start.velocity.items():
-        all_loads += _initial_momentum(
-            segment_index("start.velocity", name, segments), velocity, segments
-        )
-    return tuple(all_loads)
+        index = segment_index("start.velocity", name, segments)
+        yield from _initial_momentum(index, velocity, segments[index])
 
 
-def _initial_momentum(
-    index: int, velocity: VelocityTable, segments: Sequence[Segment]
-) -> list[Load]:
-    """Return the impulses that give a segment its rigid-body velocity at t = 0."""
-    segment = segments[index]
+def _initial_momentum(index: int, velocity: VelocityTable, segment: Segment) -> Iterator[Load]:
+    """Yield the impulses that give a segment its rigid-body velocity at t = 0."""
     x0 = segment.start if velocity.x is None else at(velocity.x, segment.start, segment.end)
     planes: tuple[tuple[Direction, float, float], ...] = (
         ("z", velocity.z, velocity.turn),
         ("y", velocity.y, velocity.lateral_turn),
     )
-    impulses: list[Load] = []
+    impulse = InitialImpulse()
     for direction, speed, turn in planes:
         if speed or turn:
             momentum = (speed - turn * x0) * segment.mass_per_length
-            impulses.append(Load(index, direction, momentum, None, InitialImpulse(), inertial=True))
-            impulses += [
-                Load(index, direction, (speed + turn * (p.x - x0)) * p.mass, p.x, InitialImpulse())
-                for p in segment.masses
-            ]
+            yield Load(index, direction, momentum, None, impulse, inertial=True)
+            for point in segment.masses:
+                momentum = (speed + turn * (point.x - x0)) * point.mass
+                yield Load(index, direction, momentum, point.x, impulse)
         if turn:
-            impulses.append(AngularAcceleration(index, direction, turn, None, InitialImpulse()))
-    return impulses
+            yield AngularAcceleration(index, direction, turn, None, impulse)
 
 
 def _inertia_loads(
     acceleration: float, direction: Direction, history: History, segments: Sequence[Segment]
-) -> list[Load]:
-    """Return loads on all masses, each the mass times an acceleration in m/s²."""
-    return [
-        load
-        for index, segment in enumerate(segments)
-        for load in (
-            Load(
-                index,
-                direction,
-                acceleration * segment.mass_per_length,
-                None,
-                history,
-                inertial=True,
-            ),
-            *(
-                Load(index, direction, acceleration * point.mass, point.x, history)
-                for point in segment.masses
-            ),
-        )
-    ]
+) -> Iterator[Load]:
+    """Yield loads on all masses, each the mass times an acceleration in m/s²."""
+    for index, segment in enumerate(segments):
+        force = acceleration * segment.mass_per_length
+        yield Load(index, direction, force, None, history, inertial=True)
+        for point in segment.masses:
+            yield Load(index, direction, acceleration * point.mass, point.x, history)
 
 
 def with_weight(
@@ -134,30 +108,25 @@ def with_weight(
     return replace(boom, segments=segments, loads=(*boom.loads, *weights))
 
 
-def thrusts(case: Case, segments: Sequence[Segment]) -> tuple[Thrust, ...]:
-    """Return the axial forces on the boom except weights.
+def thrusts(case: Case, segments: Sequence[Segment]) -> Iterator[Thrust]:
+    """Yield the axial forces on the boom except weights.
 
     Raises:
         BoomError: a segment is unknown, a point is outside its segment, a rope has no payload, or a
             force is given twice or not at all.
     """
-    results = []
-    for where, table in ((f"axial[{i}]", one) for i, one in enumerate(case.axial, start=1)):
+    for number, table in enumerate(case.axial, start=1):
+        where = f"axial[{number}]"
         name: Any = segments[-1].name if table.segment is None else table.segment
         place: Any = Distance(head=0.0) if table.x is None else table.x
         thrust = Thrust(name, place, axial_force(where, table, case))
-        results.append(resolve_segments(thrust, where, segments))
-        segments[results[-1].segment].check_place(f"{where}.x", results[-1].x)
-    return tuple(results)
+        thrust = resolve_segments(thrust, where, segments)
+        segments[thrust.segment].check_place(f"{where}.x", thrust.x)
+        yield thrust
 
 
 def axial_force(where: str, table: AxialTable, case: Case) -> float:
-    """Return the compressive force in N of a table ``axial`` of a case.
-
-    Args:
-        where: key of the table, for messages.
-        table: data of the force.
-        case: case of the table.
+    """Return the compressive force in N of a table ``axial`` of a case, at the key ``where``.
 
     Raises:
         BoomError: a rope has no payload, or a force is given twice or not at all.
@@ -212,8 +181,8 @@ def _load(where: str, table: LoadTable) -> Load:
     return PartialLoad(*arguments, span=(start, end))
 
 
-def stops(case: Case) -> tuple[Stop, ...]:
-    """Return the stops on the ground.
+def stops(case: Case) -> Iterator[Stop]:
+    """Yield the stops on the ground.
 
     Raises:
         BoomError: no segment can touch a stop.
@@ -223,24 +192,19 @@ def stops(case: Case) -> tuple[Stop, ...]:
             raise BoomError(
                 f"stop[{number}].stiffness", "must be positive on one side at least, got 0 on both"
             )
-    return tuple(
-        Stop(
-            contact=PowerContact(
-                table.stiffness, table.exponent, stiffness_below=table.stiffness_below
-            ),
-            **field_values(table, BareStop),
+        contact = PowerContact(
+            table.stiffness, table.exponent, stiffness_below=table.stiffness_below
         )
-        for table in case.stops
-    )
+        yield Stop(contact=contact, **field_values(table, BareStop))
 
 
 def series_notes(case: Case) -> list[str]:
     """Return a note on each tabulated history that is shorter or longer than the run."""
     duration = case.time.duration
-    tables = [(f"load[{i}]", load.table) for i, load in enumerate(case.loads, start=1)]
-    tables += [(f"base[{i}]", base.table) for i, base in enumerate(case.base, start=1)]
+    tables = {f"load[{i}]": load.table for i, load in enumerate(case.loads, start=1)}
+    tables |= {f"base[{i}]": base.table for i, base in enumerate(case.base, start=1)}
     notes = []
-    for key, table in tables:
+    for key, table in tables.items():
         if table is None:
             continue
         (first, first_value), (last, last_value) = table[0], table[-1]

@@ -3,22 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from typing import Any
 
 from dynamics.energy import DRIVEN_ENERGIES
 from dynamics.excitation import InitialImpulse, ReleasedLoad
 from dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES
 from dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
 from geometry.axial import Thrust, with_compression
-from geometry.boom import (
-    Boom,
-    BoomError,
-    Joint,
-    Lateral,
-    Material,
-    PointMass,
-    Segment,
-)
+from geometry.boom import Boom, BoomError, Joint, Lateral, Material, PointMass, Segment
 from geometry.boom_checks import check_order
 from geometry.fields import describe, resolve_distances
 from geometry.joint import BareJoint
@@ -57,7 +50,6 @@ def build_boom(case: Case) -> Boom:
         BoomError: the boom is invalid.
     """
     check_names("segment", [segment.name for segment in case.segments])
-    _check_planar(case)
     _check_joint_segments(case)
     _check_observations(case)
     ends = _spans(case.segments, case.joints)
@@ -72,17 +64,15 @@ def build_boom(case: Case) -> Boom:
     rope = Thrust(len(segments) - 1, segments[-1].end, hanging * along)
     thrusts = (*actions.thrusts(case, segments), rope)
     segments = with_compression(segments, joints, thrusts, along)
-    check_turning(case, _is_spatial(case))
-    check_hoist(case, _is_spatial(case))
+    check_turning(case)
+    check_hoist(case)
+    _check_planar(case)
     frame = frame_motion(case, segments)
     boom = Boom(
         segments,
         joints,
-        (
-            *actions.loads(case, segments),
-            *turning_loads(frame, segments, joints),
-        ),
-        actions.stops(case),
+        (*actions.loads(case, segments), *turning_loads(frame, segments, joints)),
+        tuple(actions.stops(case)),
         case.observe,
         case.cylinders,
         (
@@ -103,28 +93,24 @@ def check_ensemble_data(case: Case, boom: Boom) -> None:
     """
     if case.ensemble is None or all(model.bonded for model in case.models):
         return
-    vary = case.ensemble.vary
-    initial = ReleasedLoad | InitialImpulse
-    amounts = [load.magnitude for load in boom.loads if not isinstance(load.history, initial)]
-    for segment in boom.segments:
-        amounts += [segment.load, segment.lateral.load if segment.lateral else 0.0]
-    if vary == "load" and not any(amounts):
+    if case.ensemble.vary == "load":
+        initial = ReleasedLoad | InitialImpulse
+        amounts = [load.magnitude for load in boom.loads if not isinstance(load.history, initial)]
+        for segment in boom.segments:
+            amounts += [segment.load, segment.lateral.load if segment.lateral else 0.0]
+        missing, other = "no load acts from t = 0 on", "clearance"
+    else:
+        amounts = [joint.play for joint in boom.joints] + [stop.play for stop in boom.stops]
+        missing, other = "there is no play", "load"
+    if not any(amounts):
         raise BoomError(
             "ensemble.vary",
-            "no load acts from t = 0 on, of which members change a part; give vary = 'clearance', "
-            "or leave the ensemble out",
-        )
-    plays = [joint.play for joint in boom.joints] + [stop.play for stop in boom.stops]
-    if vary == "clearance" and not any(plays):
-        raise BoomError(
-            "ensemble.vary",
-            "there is no play, of which members change a part; give vary = 'load', or leave the "
+            f"{missing}, of which members change a part; give vary = {other!r}, or leave the "
             "ensemble out",
         )
 
 
 def _check_observations(case: Case) -> None:
-    """Check that the names of observations are unique."""
     check_names("observe", [table.name for table in case.observe])
     drive_names = {
         name + suffix
@@ -183,13 +169,8 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
             f"joint[{index + 1}].friction", "the joint is bonded, and nothing slides; leave it out"
         )
     _check_plays(f"joint[{index + 1}]", table)
-    drive = None
-    if table.drive is not None:
-        drive = table.drive.drive(
-            f"joint[{index + 1}]", table.stations, table.locked_at, (table.inner, tail)
-        )
     forces = table.normal_forces
-    if table.drive is not None and table.friction > 0.0 and not _is_spatial(case):
+    if table.drive is not None and table.friction > 0.0 and not case.spatial:
         # Friction follows from the contact forces of each station, without given normal forces.
         forces = forces or (0.0,) * len(table.stations)
     changed = {"outer": outer, "inner": inner, "normal_forces": forces}
@@ -197,7 +178,7 @@ def _joint(case: Case, index: int, ends: Sequence[tuple[float, float]]) -> Joint
         **field_values(table, BareJoint) | changed,
         contact=table.law("z"),
         lateral_contact=None if table.lateral_play is None else table.law("y"),
-        drive=drive,
+        drive=table.moving_drive(f"joint[{index + 1}]", tail),
     )
     return resolve_distances(joint, tail, head)
 
@@ -238,7 +219,7 @@ def _segment(case: Case, index: int, section: Section | None, ends: tuple[float,
         viscous_damping=table.viscous_damping,
         masses=table.masses + payload,
         lateral=_lateral(table, material, section and middle_section(section, head))
-        if _is_spatial(case)
+        if case.spatial
         else None,
         collars=table.collars,
         diaphragms=table.diaphragms,
@@ -259,25 +240,25 @@ def material_of(case: Case, index: int) -> Material:
 
 def _check_planar(case: Case) -> None:
     """Check that a planar boom has no lateral actions."""
-    if _is_spatial(case):
-        return
-    remedy = "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
-    for number, segment in enumerate(case.segments, start=1):
-        if segment.lateral_load != 0.0:
-            raise BoomError(f"segment[{number}].lateral_load", remedy)
-    for number, base in enumerate(case.base, start=1):
-        if base.direction == "y":
-            raise BoomError(f"base[{number}].direction", remedy)
-    if case.limits is not None and case.limits.tip_lateral is not None:
-        raise BoomError("limits.tip_lateral", remedy)
-    for name, velocity in case.start.velocity.items():
-        for key in ("y", "lateral_turn"):
-            if getattr(velocity, key) != 0.0:
-                raise BoomError(f"start.velocity.{name}.{key}", remedy)
-
-
-def _is_spatial(case: Case) -> bool:
-    return any(joint.lateral_play is not None for joint in case.joints)
+    winds = () if case.hoist is None else case.hoist.wind
+    lateral_actions = {
+        "slew": case.slew,
+        "limits.tip_lateral": case.limits and case.limits.tip_lateral,
+        **{
+            f"segment[{i}].lateral_load": one.lateral_load for i, one in enumerate(case.segments, 1)
+        },
+        **{f"base[{i}].direction": one.direction == "y" for i, one in enumerate(case.base, 1)},
+        **{f"hoist.wind[{i}].direction": one.direction == "y" for i, one in enumerate(winds, 1)},
+        **{
+            f"start.velocity.{name}.{key}": getattr(velocity, key)
+            for name, velocity in case.start.velocity.items()
+            for key in ("y", "lateral_turn")
+        },
+    }
+    for where, action in lateral_actions.items():
+        if action and not case.spatial:
+            what = "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
+            raise BoomError(where, what)
 
 
 def _lateral(table: SegmentTable, material: Material, section: Section | None) -> Lateral | None:
@@ -383,7 +364,7 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
     sections = [_section_of_table(table, i) for i, table in enumerate(case.segments)]
     for i, table in enumerate(case.segments):
         if sections[i] is None and table.height_to_width is not None:
-            sections[i] = _infer_section(case, i, table.height_to_width)
+            sections[i] = _infer_section(case, i, infer_outer_section, table.height_to_width)
     # One pass per joint reaches every inner segment, whatever the order of the joints.
     for _ in joints:
         for joint in joints:
@@ -396,17 +377,17 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
                         f"missing, and none is inferred within {outer_table.name!r}, which tapers; "
                         "give it",
                     )
-                sections[joint.inner] = _infer_section(case, joint.inner, (outer, 0.5 * joint.play))
+                hint = outer, 0.5 * joint.play
+                sections[joint.inner] = _infer_section(
+                    case, joint.inner, infer_inner_section, *hint
+                )
     return sections
 
 
-def _infer_section(case: Case, index: int, hint: float | tuple[Section, float]) -> Section | None:
-    """Return a section with the mass and second moment of a segment; None if none exists.
-
-    Args:
-        case: the case.
-        index: index of the segment.
-        hint: height-to-width ratio, or the outer section and the clearance to it in m.
+def _infer_section(
+    case: Case, index: int, infer: Callable[..., Section], *hint: Any
+) -> Section | None:
+    """Return the section of a segment by a function of area and second moment; None if none exists.
 
     Raises:
         BoomError: no section exists, and a model needs it.
@@ -414,9 +395,7 @@ def _infer_section(case: Case, index: int, hint: float | tuple[Section, float]) 
     mass, second_moment = _beam_properties(case, index)
     area = mass / material_of(case, index).density
     try:
-        if isinstance(hint, tuple):
-            return infer_inner_section(area, second_moment, *hint)
-        return infer_outer_section(area, second_moment, hint)
+        return infer(area, second_moment, *hint)
     except SectionError as error:
         if any(model.needs_plates for model in case.models):
             raise BoomError(f"segment[{index + 1}].section", str(error)) from None
@@ -426,11 +405,7 @@ def _infer_section(case: Case, index: int, hint: float | tuple[Section, float]) 
 def _spans(
     segments: Sequence[SegmentTable], joints: Sequence[JointTable]
 ) -> list[tuple[float, float]]:
-    """Return the x in m of the start and the end of each segment.
-
-    Args:
-        segments: segments; the first one starts at x = 0 if it has a length only.
-        joints: joints of these segments.
+    """Return the x in m of both ends of each segment; without span the first one starts at x = 0.
 
     Raises:
         BoomError: a segment has no position, or two different ones.

@@ -119,13 +119,9 @@ def read_pairs(
 
 
 class _FileError(Exception):
-    """Error in the content of a file. The message does not quote the content.
+    """Error in the content of a file. The default remedy is a file with the right columns.
 
-    A wrong path may name a file whose content must stay private.
-
-    Args:
-        what: description of the error.
-        remedy: the remedy; by default a file with the right columns.
+    The message does not quote the content: a wrong path may name a private file.
     """
 
     def __init__(self, what: str, remedy: str = "") -> None:
@@ -237,7 +233,6 @@ def _choose_columns(
 
 
 def _split_heading(cell: str) -> tuple[str, str | None]:
-    """Return the name and the unit of a heading."""
     match = _HEADING.fullmatch(cell)
     if match is None:
         return cell, None

@@ -10,13 +10,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from math import cos, radians, sin
-from typing import Any, NamedTuple, get_args
+from typing import Any, NamedTuple, TypeVar, get_args
 
 from geometry.boom import BoomError
 from geometry.cylinder import Cylinder
 from geometry.typography import choices
 from runs.case.actions import STANDARD_GRAVITY, axial_force
 from runs.case.build import build_boom, check_names
+from runs.case.limits import CaseTable
 from runs.case.load_tables import (
     AxialTable,
     CombinationTable,
@@ -27,6 +28,8 @@ from runs.case.load_tables import (
     PayloadTable,
 )
 from runs.case.schema import Case
+
+Table = TypeVar("Table", bound=CaseTable)
 
 # Factors by group of loads, and factors 1 for a load case without combination.
 Factors = Mapping[Group, float]
@@ -51,23 +54,20 @@ def combined_cases(case: Case) -> Iterator[CombinedCase]:
         factors = UNIT
         if combination is not default:
             factors = {group: combination.factors.of(group) or 0.0 for group in UNIT}
-        names = [combination.name] if case.combinations else []
-        if not case.load_cases:
-            yield CombinedCase(combination.name, combine(case, None, factors), combination)
-        for one in case.load_cases:
+        for one in case.load_cases or (_PLAIN,):
             if combination.load_cases is None or one.name in combination.load_cases:
-                name = ", ".join([*names, one.name])
-                yield CombinedCase(name, combine(case, one, factors), combination)
+                names = [combination.name] * bool(case.combinations)
+                names += [one.name] * (one is not _PLAIN or not names)
+                yield CombinedCase(", ".join(names), combine(case, one, factors), combination)
 
 
-def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) -> Case:
+def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
     """Return the case with the keys of a load case, and with its loads times ``factors``.
 
     Raises:
         BoomError: an angle needs gravity, an extension has no joint, or the load of a hoist is not
             given as payload.
     """
-    table = table or _PLAIN
     gravity, payload = case.gravity, case.payload
     if table.angle is not None:
         if gravity is None:
@@ -96,14 +96,8 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
     if case.hoist is not None and table.payload is None:
         raise BoomError("payload", "missing; give the mass in kg that hangs on the rope of [hoist]")
     dead = factors["dead"]
-    segments = tuple(
-        one.model_copy(update={"load": dead * one.load, "lateral_load": dead * one.lateral_load})
-        for one in combined.segments
-    )
-    loads = [
-        one.model_copy(update={"magnitude": factors[one.group] * one.magnitude})
-        for one in combined.loads
-    ]
+    segments = [_times(one, dead, "load", "lateral_load") for one in combined.segments]
+    loads = [_times(one, factors[one.group], one.amount) for one in combined.loads]
     axial = [
         AxialTable(
             segment=one.segment,
@@ -112,16 +106,13 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
         )
         for number, one in enumerate(combined.axial, start=1)
     ]
-    base = [
-        one.model_copy(update={"acceleration": factors[one.group] * one.acceleration})
-        for one in combined.base
-    ]
+    base = [_times(one, factors[one.group], one.amount) for one in combined.base]
     # Factor by which the model already multiplies the weight of the mass at the tip.
     weight_factor = 0.0
     acceleration = STANDARD_GRAVITY
     if gravity is not None:
         weight_factor, acceleration = dead, gravity.acceleration
-        gravity = gravity.model_copy(update={"acceleration": dead * acceleration})
+        gravity = _times(gravity, dead, "acceleration")
     elif payload is not None:
         acceleration = STANDARD_GRAVITY if payload.gravity is None else payload.gravity
         payload = payload.model_copy(update={"gravity": 0.0})
@@ -137,7 +128,7 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
         axial.append(AxialTable(force=extra * sin(angle)))
     return combined.model_copy(
         update={
-            "segments": segments,
+            "segments": tuple(segments),
             "loads": tuple(loads),
             "axial": tuple(axial),
             "base": tuple(base),
@@ -145,6 +136,10 @@ def combine(case: Case, table: LoadCaseTable | None, factors: Factors = UNIT) ->
             "payload": payload,
         }
     )
+
+
+def _times(table: Table, factor: float, *keys: str) -> Table:
+    return table.model_copy(update={key: factor * getattr(table, key) for key in keys})
 
 
 def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:

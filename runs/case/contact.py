@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
-from pydantic_core import PydanticCustomError
 
 from geometry.boom import Direction
-from geometry.fields import PART, In, NotNegative, Number, Positive
-from geometry.joint import BareJoint
+from geometry.fields import PART, BoomError, Distance, In, NotNegative, Number, Positive
+from geometry.joint import BareJoint, Carrier, Drive
 from geometry.section import Side
-from runs.case.limits import CaseTable, Exponent, Text, error_at, superfluous_error
+from runs.case.limits import CaseTable, Exponent, Text, error_at, superfluous_error, unsuitable
 from runs.case.motion_tables import DriveTable
 
 if TYPE_CHECKING:
@@ -28,6 +27,9 @@ PADS_OF_SIDE = 2
 
 # Maximum number of points of a law. The time loop evaluates all of them at every contact.
 MOST_POINTS = 1000
+
+# A shorter travel in m counts as none.
+_MIN_TRAVEL = 1.0e-9
 
 PAD_WITHOUT_STIFFNESS = (
     "has no thickness; give the thickness in m, from which the joint's stiffness follows, or the "
@@ -53,27 +55,18 @@ def _check_points(points: tuple[tuple[float, float], ...]) -> tuple[tuple[float,
     try:
         table_law(points)
     except ValueError as error:
-        raise PydanticCustomError("unsuitable", "{what}", {"what": str(error)}) from None
+        raise unsuitable(str(error)) from None
     return points
 
 
 def _check_law(table: ContactTable, power_keys: Sequence[str]) -> None:
-    """Check that a power law has a stiffness, and a table or an elastic pad has none.
-
-    Args:
-        table: the table of a contact or a joint.
-        power_keys: keys that only power laws may have.
-
-    Raises:
-        ValidationError: a key is missing or superfluous.
-    """
+    """Check that a power law has a stiffness, and a table or an elastic pad no ``power_keys``."""
     tables = [key for key in ("force_table", "force_file") if getattr(table, key)]
     pad = table.elastic_pads_key if isinstance(table, JointTable) else None
     superfluous_key = pad or next(iter(tables), None)
     if superfluous_key is None:
         if table.stiffness is None and getattr(table, "pad", None) is not None:
-            what = {"what": PAD_WITHOUT_STIFFNESS}
-            raise error_at(table, PydanticCustomError("unsuitable", "{what}", what), "pad")
+            raise error_at(table, unsuitable(PAD_WITHOUT_STIFFNESS), "pad")
         if table.stiffness is None:
             raise error_at(table, "missing", "stiffness")
         return
@@ -160,13 +153,9 @@ class JointTable(ContactTable, BareJoint):
         return "pad.thickness" if self.pad is not None and self.pad.thickness else None
 
     @model_validator(mode="after")
-    def _pads_or_pad(self) -> Self:
+    def _one_law(self) -> Self:
         if self.pads and self.pad is not None:
             raise superfluous_error(self, "pads", "pad")
-        return self
-
-    @model_validator(mode="after")
-    def _one_law(self) -> Self:
         # With a lateral stiffness the lateral law is a power law, even if the vertical law is a
         # table.
         lateral = () if self.lateral_stiffness else ("lateral_exponent",)
@@ -176,6 +165,39 @@ class JointTable(ContactTable, BareJoint):
         if self.lateral_exponent and not self.lateral_stiffness and not self.pads:
             raise error_at(self, "missing", "lateral_stiffness")
         return self
+
+    def moving_drive(self, where: str, tail: float) -> Drive | None:
+        """Return the drive of the joint; None without one, or if the extension is constant.
+
+        ``where`` is the key of the joint, and ``tail`` the x in m of the inner segment's tail.
+
+        Raises:
+            BoomError: keys of the drive contradict one another, or a station is on no segment.
+        """
+        if self.drive is None:
+            return None
+        history = self.drive.history(f"{where}.drive")
+        carriers = tuple(
+            self._carrier(place, f"{where}.stations", "the station") for place in self.stations
+        )
+        locked: Carrier = "inner"
+        if isinstance(self.locked_at, float) and self.locked_at < tail:
+            # A cylinder, fixed at locked_at on the outer segment, pushes the tail.
+            locked = "outer"
+        elif self.locked_at is not None:
+            locked = self._carrier(self.locked_at, f"{where}.locked_at", "the place")
+        drive = Drive(history, carriers, self.drive.least_overlap, locked)
+        low, high = drive.reach
+        return drive if high - low > _MIN_TRAVEL else None
+
+    def _carrier(self, place: float | Distance, where: str, what: str) -> Carrier:
+        if not isinstance(place, Distance):
+            raise BoomError(
+                where,
+                f"{place:g} m does not tell on which segment {what} moves as {self.inner!r} "
+                "telescopes; give 'tail' or 'head', or a distance from one",
+            )
+        return "inner" if place.head is None else "outer"
 
     def exponent_of(self, key: str) -> float | None:
         along_z = 1.0 if self.elastic_pads_key and not self.stiffness else self.exponent

@@ -59,9 +59,25 @@ def check_elastic_drives(case: Case, boom: Boom) -> None:
     for number, joint, drive in _drives(case):
         where = f"joint[{number + 1}].drive"
         if drive.stiffness is None:
-            _check_rigid(where, drive)
+            for key in ("dashpot", "static_friction"):
+                if getattr(drive, key):
+                    raise BoomError(
+                        f"{where}.{key}",
+                        "without a stiffness the drive is stiff, and its segment neither sticks "
+                        f"nor slips; give stiffness, or leave {key} out",
+                    )
             continue
-        _check_friction(where, joint, drive)
+        if drive.static_friction is not None and joint.friction == 0.0:
+            raise BoomError(
+                f"{where}.static_friction",
+                "nothing rubs in the joint; give it friction, or leave static_friction out",
+            )
+        if drive.static_friction is not None and drive.static_friction < joint.friction:
+            raise BoomError(
+                f"{where}.static_friction",
+                f"must be at least the joint's friction of sliding, {joint.friction:g}, got "
+                f"{drive.static_friction:g}",
+            )
         mass = _moved_mass(boom, number) if boom.joints[number].drive is not None else 0.0
         rates = 2.0 * pi * _MAX_RATE
         for key, value, most, unit in (
@@ -74,32 +90,6 @@ def check_elastic_drives(case: Case, boom: Boom) -> None:
                     f"must be at most {most:.3g} {unit} for the {mass:.4g} kg that it draws, got "
                     f"{value:g} {unit}; leave it out where the drive is stiff",
                 )
-
-
-def _check_rigid(where: str, drive: DriveTable) -> None:
-    values = {"dashpot": drive.dashpot, "static_friction": drive.static_friction}
-    for key, value in values.items():
-        if value:
-            raise BoomError(
-                f"{where}.{key}",
-                "without a stiffness the drive is stiff, and its segment neither sticks nor "
-                f"slips; give stiffness, or leave {key} out",
-            )
-
-
-def _check_friction(where: str, joint: JointTable, drive: DriveTable) -> None:
-    coefficient = drive.static_friction
-    if coefficient is not None and joint.friction == 0.0:
-        raise BoomError(
-            f"{where}.static_friction",
-            "nothing rubs in the joint; give it friction, or leave static_friction out",
-        )
-    if coefficient is not None and coefficient < joint.friction:
-        raise BoomError(
-            f"{where}.static_friction",
-            f"must be at least the joint's friction of sliding, {joint.friction:g}, got "
-            f"{coefficient:g}",
-        )
 
 
 def _drives(case: Case) -> Iterator[tuple[int, JointTable, DriveTable]]:

@@ -15,7 +15,6 @@ from geometry.axial import AxialChange, Thrust, with_compression
 from geometry.boom import Boom, BoomError, Joint, Segment
 from geometry.telescoping import drives_of
 from runs.case.load_tables import build_history
-from runs.case.motion_tables import WindTable
 from runs.case.schema import Case
 from runs.case.turning import frame_motion
 
@@ -23,7 +22,7 @@ from runs.case.turning import frame_motion
 _SLACK = 1.0e6
 
 
-def check_hoist(case: Case, spatial: bool) -> None:
+def check_hoist(case: Case) -> None:
     """Check the data of a hoisted load.
 
     Raises:
@@ -56,18 +55,13 @@ def check_hoist(case: Case, spatial: bool) -> None:
         )
     for number, wind in enumerate(table.wind, start=1):
         build_history(f"hoist.wind[{number}]", wind)
-        if wind.direction == "y" and not spatial:
-            raise BoomError(
-                f"hoist.wind[{number}].direction",
-                "the boom is flat, and nothing moves along 'y'; give the joints lateral_play",
-            )
-    rope_data = {key: getattr(table, key) for key in ("area", "modulus", "length")}
-    for key, value in rope_data.items():
-        if table.stiffness is None and value is None:
-            raise BoomError(f"hoist.{key}", "missing; give it, or the stiffness of the rope")
-        if table.stiffness is not None and value is not None:
-            raise BoomError(f"hoist.{key}", "stiffness is given; leave one of them out")
-    if table.travel is not None or table.table is not None:
+    what = "stiffness is given; leave one of them out"
+    if table.stiffness is None:
+        what = "missing; give it, or the stiffness of the rope"
+    for key in ("area", "modulus", "length"):
+        if (getattr(table, key) is None) == (table.stiffness is None):
+            raise BoomError(f"hoist.{key}", what)
+    if table.has_winch:
         table.history("hoist")
     elif not table.hanging:
         raise BoomError("hoist.travel", "missing; it is the length in m by which the winch hoists")
@@ -78,9 +72,17 @@ def hanging_load(case: Case, boom: Boom) -> HangingLoad | None:
     table = case.hoist
     if table is None or case.gravity is None or table.dropped:
         return None
-    has_winch = table.travel is not None or table.table is not None
-    history = table.history("hoist") if has_winch else None
-    gravity = case.gravity.acceleration
+    history = table.history("hoist") if table.has_winch else None
+    gravity, pendulum = case.gravity.acceleration, None
+    if table.pendulum is not None:
+        last = len(boom.segments) - 1
+        extension = HistorySum(tuple(drive.history for drive in drives_of(boom.joints, last)))
+        winds = [
+            (wind.direction, wind.force, build_history(f"hoist.wind[{number}]", wind))
+            for number, wind in enumerate(table.wind, start=1)
+        ]
+        frame, tip = frame_motion(case, boom.segments), boom.segments[last].end
+        pendulum = Pendulum(table.pendulum, frame, tip, extension, winds)
     return HangingLoad(
         table.mass,
         table.rope_stiffness,
@@ -88,22 +90,7 @@ def hanging_load(case: Case, boom: Boom) -> HangingLoad | None:
         None if history is None or is_constant(history) else history,
         case.gravity.across / gravity,
         None if table.hanging else table.slack,
-        None if table.pendulum is None else _pendulum(case, boom, table.pendulum, table.wind),
-    )
-
-
-def _pendulum(case: Case, boom: Boom, length: float, winds: Sequence[WindTable]) -> Pendulum:
-    last = len(boom.segments) - 1
-    drives = drives_of(boom.joints, last)
-    return Pendulum(
-        length,
-        frame_motion(case, boom.segments),
-        boom.segments[last].end,
-        HistorySum(tuple(drive.history for drive in drives)),
-        [
-            (wind.direction, wind.force, build_history(f"hoist.wind[{number}]", wind))
-            for number, wind in enumerate(winds, start=1)
-        ],
+        pendulum,
     )
 
 

@@ -34,7 +34,7 @@ def key_of(steps: Iterable[str | int]) -> str:
     return "".join(parts).removeprefix(".")
 
 
-def leaves(item: object, steps: Steps = ()) -> Iterator[tuple[Steps, object]]:
+def leaves(item: Any, steps: Steps = ()) -> Iterator[tuple[Steps, Any]]:
     """Yield path and value of all entries of nested tables and lists that are none themselves."""
     if isinstance(item, Mapping | list):
         for step, value in item.items() if isinstance(item, Mapping) else enumerate(item):
@@ -51,11 +51,7 @@ def is_table(value: Any) -> bool:
 def map_tables(table: Any, change: Callable[[str, Any], Mapping[str, Any]], key: str = "") -> Any:
     """Return a copy of a table with changed values, also in all tables within it.
 
-    Args:
-        table: a table of a case, or a part of a boom.
-        change: function that takes the key of a table and the table, and returns changed values by
-            field name.
-        key: key of the table, empty for a case.
+    ``change`` takes the key of a table and the table, and returns changed values by field name.
     """
 
     def mapped(value: Any, key: str) -> Any:
@@ -81,10 +77,7 @@ def map_tables(table: Any, change: Callable[[str, Any], Mapping[str, Any]], key:
 def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
     """Return the units of the numbers of a key; an empty tuple for other values.
 
-    Args:
-        table: table with the key.
-        key: name of the field.
-        exponent: exponent of the contact law if the table has none.
+    ``exponent`` is that of the contact law if the table has none.
     """
     if isinstance(table, CaseTable):
         units = table.declared_units(key)
@@ -113,8 +106,12 @@ def error_at(table: Any, kind: str | PydanticCustomError, *keys: str) -> Validat
 
 def superfluous_error(table: Any, key: str, *keys: str) -> ValidationError:
     """Return the validation error at keys that contradict or repeat another key."""
-    what = {"what": f"{key} is given; leave one of them out"}
-    return error_at(table, PydanticCustomError("unsuitable", "{what}", what), *keys)
+    return error_at(table, unsuitable(f"{key} is given; leave one of them out"), *keys)
+
+
+def unsuitable(what: str) -> PydanticCustomError:
+    """Return the error of a value with a message of its own."""
+    return PydanticCustomError("unsuitable", "{what}", {"what": what})
 
 
 # A Hertz contact has the exponent 3/2; the upper limit excludes input errors.

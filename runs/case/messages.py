@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from difflib import get_close_matches
 from typing import Any, get_args
 
@@ -38,11 +39,8 @@ _SYNONYMS = {
 
 # Advice on unknown keys of a table.
 _ADVICE = {
-    (
-        "pad",
-        "position",
-    ): "a pad is one of a mirrored pair; give offset, its distance from the corner",
-    ("load", "mass"): "give magnitude, -m g cos(luffing angle) in N, or the table payload",
+    "pad.position": "a pad is one of a mirrored pair; give offset, its distance from the corner",
+    "load.mass": "give magnitude, -m g cos(luffing angle) in N, or the table payload",
 }
 
 # Descriptions of valid input by error type, for messages that quote the given value. Limits of the
@@ -104,6 +102,17 @@ class BadInput(Exception):
         return cls(file, re.sub(r"\.start$", ".span", key), error.what)
 
 
+@contextmanager
+def refusing(file: str) -> Iterator[None]:
+    """Raise errors in the tables and in the boom of a case file as :class:`BadInput`."""
+    try:
+        yield
+    except ValidationError as error:
+        raise BadInput.from_validation(file, error) from None
+    except BoomError as error:
+        raise BadInput.from_boom(file, error) from None
+
+
 def _explain(
     fault: str, location: tuple[int | str, ...], value: Any, context: Mapping[str, Any] | None
 ) -> tuple[str, str]:
@@ -115,16 +124,12 @@ def _explain(
     if fault == "missing":
         return key, f"missing; it is {describe(_field(location))}"
     if fault == "union_tag_not_found":
-        return f"{key}.kind", f"missing; give {_kinds()}"
+        return f"{key}.kind", f"missing; give {choices([*KINDS])}"
     if fault in _UNKNOWN:
         return key, _unknown_key(location)
-    if fault == "union_tag_invalid" and location[0] == "model":
-        return f"{key}.kind", f"must be {_kinds()}, got {_format_value(value['kind'])}"
     if fault == "union_tag_invalid":
-        return (
-            f"{key}.shape",
-            f"must be {choices(list(SHAPES))}, got {_format_value(value['shape'])}",
-        )
+        tag, tags = ("kind", [*KINDS]) if location[0] == "model" else ("shape", [*SHAPES])
+        return f"{key}.{tag}", f"must be {choices(tags)}, got {_format_value(value[tag])}"
     if fault == "too_short" and limits["min_length"] == 1:
         return key, "empty; give at least one"
     if fault == "too_long" and limits["max_length"] == 2:
@@ -195,8 +200,8 @@ def _unknown_key(location: Sequence[int | str]) -> str:
     if table is AxialTable and key in HistoryTable.model_fields:
         return "an axial force is constant; give it at its largest, or one [[load_case]] per value"
     heading = next((step for step in reversed(location[:-1]) if isinstance(step, str)), "")
-    if (heading, key) in _ADVICE:
-        return f"unknown key; {_ADVICE[heading, key]}"
+    if (advice := _ADVICE.get(f"{heading}.{key}")) is not None:
+        return f"unknown key; {advice}"
     synonym = _SYNONYMS.get(key.lower(), "")
     if "." in synonym:
         return f"unknown key; use {synonym}"
@@ -207,10 +212,6 @@ def _unknown_key(location: Sequence[int | str]) -> str:
     if near:
         return f"unknown key; the nearest known one is {near[0]}"
     return f"unknown key; known ones are {', '.join(keys)}"
-
-
-def _kinds() -> str:
-    return choices(list(KINDS))
 
 
 def _format_value(value: Any) -> str:

@@ -12,21 +12,17 @@ from pydantic import Field
 from dynamics.arrays import Array
 from dynamics.excitation import History, MotionLaw, PiecewiseLinear, SCurve, Shaped, Spline, Stroke
 from geometry.boom import BoomError
-from geometry.fields import Distance, Few, Flag, In, NotNegative, Number, Positive, describe
-from geometry.joint import Carrier, Drive
+from geometry.fields import Few, Flag, In, NotNegative, Number, Positive, describe
 from runs.case.limits import MOST_TIMES, CaseTable, Text
 from runs.case.load_tables import HistoryTable
 
-# Shorter times in s are input errors; a shorter travel in m counts as none.
-_MIN_TIME, _MIN_TRAVEL = 1.0e-6, 1.0e-9
+# Shorter times in s are input errors.
+_MIN_TIME = 1.0e-6
 
 # Minimum number of sampling times, number per period of the fastest history, and maximum number.
 _TIMES, _PER_PERIOD, _MOST_TIMES = 2001, 100, 1_000_001
 # Two times closer than this fraction of the duration count as one.
 _SAME_TIME = 1.0e-9
-
-# Keys that define the history of the extension; a drive has one of them.
-_HISTORY_KEYS = ("time", "speed", "table")
 
 Ratio = Annotated[float, Field(strict=True, ge=0.0, lt=1.0)]
 
@@ -74,23 +70,16 @@ class TravelTable(CaseTable):
     def history(self, where: str) -> MotionLaw:
         """Return the history of the travel in ``unit``, after input shaping.
 
-        Arguments and errors are those of :meth:`unshaped`.
+        Raises:
+            BoomError: keys contradict one another, or a key is missing.
         """
-        law = self.unshaped(where)
+        law = self._unshaped_history(where)
         for frequency, damping in self.shaper:
             law = Shaped(law, frequency, damping)
         return law
 
-    def unshaped(self, where: str) -> MotionLaw:
-        """Return the history of the travel in ``unit``, before input shaping.
-
-        Args:
-            where: key of the drive.
-
-        Raises:
-            BoomError: keys contradict one another, or a key is missing.
-        """
-        keys = [key for key in _HISTORY_KEYS if getattr(self, key) is not None]
+    def _unshaped_history(self, where: str) -> MotionLaw:
+        keys = [key for key in ("time", "speed", "table") if getattr(self, key) is not None]
         if not keys:
             raise BoomError(
                 f"{where}.time",
@@ -158,38 +147,6 @@ class DriveTable(TravelTable):
     static_friction: Annotated[Positive, In("1")] | None = None
     """the coefficient of friction while the segment sticks; the joint's unless given"""
 
-    def drive(
-        self,
-        where: str,
-        stations: tuple[float | Distance, ...],
-        locked_at: float | Distance | None,
-        inner: tuple[str, float],
-    ) -> Drive | None:
-        """Return the drive of a joint; None if the extension is constant.
-
-        Args:
-            where: key of the joint, for messages.
-            stations: stations of the joint.
-            locked_at: locked station of the joint.
-            inner: name of the inner segment, and the x in m of the segment's tail.
-
-        Raises:
-            BoomError: see :meth:`history`; or a station is on no segment.
-        """
-        history = self.history(f"{where}.drive")
-        name, tail = inner
-        context = f"{where}.stations", "the station", name
-        carriers = tuple(_carrier(place, *context) for place in stations)
-        locked: Carrier = "inner"
-        if isinstance(locked_at, float) and locked_at < tail:
-            # A cylinder, fixed at locked_at on the outer segment, pushes the tail.
-            locked = "outer"
-        elif locked_at is not None:
-            locked = _carrier(locked_at, f"{where}.locked_at", "the place", name)
-        drive = Drive(history, carriers, self.least_overlap, locked)
-        low, high = drive.reach
-        return drive if high - low > _MIN_TRAVEL else None
-
 
 def max_speed(history: History) -> float:
     """Return the largest speed in m/s of a travel in m that varies over time."""
@@ -212,16 +169,6 @@ def resolving_times(histories: Sequence[History], duration: float) -> Array:
     nearest = np.clip(np.rint(kinks / uniform_times[1]), 1, number - 2).astype(np.int64)
     same = np.abs(uniform_times[nearest] - kinks) <= _SAME_TIME * duration
     return np.union1d(np.delete(uniform_times, nearest[same]), kinks)
-
-
-def _carrier(place: float | Distance, where: str, what: str, inner: str) -> Carrier:
-    if not isinstance(place, Distance):
-        raise BoomError(
-            where,
-            f"{place:g} m does not tell on which segment {what} moves as {inner!r} telescopes; "
-            "give 'tail' or 'head', or a distance from one",
-        )
-    return "inner" if place.head is None else "outer"
 
 
 class LuffTable(TravelTable):
@@ -295,6 +242,11 @@ class HoistTable(TravelTable):
     factor with φ₂ = phi_2_min + beta_2 v of the hoisting speed v (EN 13001-2)"""
     beta_2: Annotated[NotNegative, In("s/m")] | None = None
     """the increase in s/m of the dynamic factor with the hoisting speed, by the hoisting class"""
+
+    @property
+    def has_winch(self) -> bool:
+        """True if a winch hoists or lowers the load."""
+        return self.travel is not None or self.table is not None
 
     @property
     def rope_stiffness(self) -> float:

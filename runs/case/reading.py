@@ -15,13 +15,12 @@ from dataclasses import dataclass, field, fields
 from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
-from typing import Any, NamedTuple, TypeGuard
+from typing import Any, NamedTuple
 
 import numpy as np
-from pydantic import ValidationError
 
 from geometry.boom import Boom, BoomError
-from geometry.fields import describe
+from geometry.fields import describe, is_number
 from geometry.typography import choices
 from runs.case.build import build_boom, check_ensemble_data, check_names
 from runs.case.columns import Column, read_pairs
@@ -39,7 +38,7 @@ from runs.case.limits import (
     units_of,
 )
 from runs.case.load_tables import HistoryTable
-from runs.case.messages import BadInput
+from runs.case.messages import BadInput, refusing
 from runs.case.motion_tables import TravelTable
 from runs.case.sanity import check_ranges
 from runs.case.schema import Case, EnsembleTable, Model, TimeTable
@@ -105,10 +104,9 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
         BadInput: the content is invalid.
     """
     try:
-        means, _ = take_means(tables, path)
-        case = convert_to_si(_read_files(Case.model_validate(means), path))
-    except ValidationError as error:
-        raise BadInput.from_validation(path, error) from None
+        with refusing(path):
+            means, _ = take_means(tables, path)
+            case = convert_to_si(_read_files(Case.model_validate(means), path))
     except OverflowError:
         what = "a number is too large for SI units; look for one that is out of proportion"
         raise BadInput(path, "units", what) from None
@@ -123,10 +121,9 @@ def check(case: Case, path: str) -> CheckedCase:
     """
     checked = CheckedCase(case)
     try:
-        _check_time(case.time)
-        _check_boom(checked)
-    except BoomError as error:
-        raise BadInput.from_boom(path, error) from None
+        with refusing(path):
+            _check_time(case.time)
+            _check_boom(checked)
     except ArithmeticError as error:
         raise BadInput(
             path, "segment", f"numbers out of proportion ({error.args[-1]}); give them in SI units"
@@ -172,10 +169,8 @@ def select(
             raise BadInput(
                 path, "--mesh-size", f"must be a finite number of m above 0, got {mesh_size:g}"
             )
-        try:
+        with refusing(path):
             check_mesh_size("--mesh-size", mesh_size, build_boom(case))
-        except BoomError as error:
-            raise BadInput.from_boom(path, error) from None
         subset = _with_shells(
             subset, path, "--mesh-size", {"mesh_size": mesh_size, "contact_tolerance": "any"}
         )
@@ -193,16 +188,12 @@ def select(
                 "--members",
                 f"must be from 2 to {MOST_MEMBERS}, or 0 for no ensembles, got {members}",
             )
-        ensemble_keys = {} if ensemble is None else ensemble.model_dump()
-        ensemble = (
-            EnsembleTable.model_validate({**ensemble_keys, "members": members}) if members else None
-        )
+        keys = {} if ensemble is None else ensemble.model_dump()
+        ensemble = EnsembleTable(**keys | {"members": members}) if members else None
     selected = case.model_copy(update={"models": subset, "ensemble": ensemble})
     if members:
-        try:
+        with refusing(path):
             check_ensemble_data(selected, build_boom(selected))
-        except BoomError as error:
-            raise BadInput.from_boom(path, error) from None
     return selected
 
 
@@ -289,7 +280,6 @@ def _pairs_of_file(path: str, key: str, table: Any, system: System) -> dict[str,
 
 
 def _columns(table: Any, system: System) -> tuple[Column, Column]:
-    """Return the quantities and units of the columns of a table's CSV file."""
     if isinstance(table, HistoryTable):
         (unit,) = units_of(table, table.amount)
         return Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
@@ -339,7 +329,6 @@ def _check_time(time: TimeTable) -> None:
 
 
 def _check_boom(checked: CheckedCase) -> None:
-    """Check the boom, the models, and the load cases and combinations."""
     case, boom = checked.case, checked.boom
     check_ranges(case, boom)
     check_names("model", [model.name for model in case.models])
@@ -375,7 +364,7 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
     """
     spreads: list[Spread] = []
 
-    def replace_by_means(item: object, steps: Steps) -> object:
+    def replace_by_means(item: Any, steps: Steps) -> object:
         if isinstance(item, list):
             return [replace_by_means(value, (*steps, i)) for i, value in enumerate(item)]
         if not isinstance(item, Mapping):
@@ -383,7 +372,8 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
         if item.keys() != {"mean", "sd"}:
             return {key: replace_by_means(value, (*steps, key)) for key, value in item.items()}
         mean, sd = item["mean"], item["sd"]
-        if not (_is_finite(mean) and _is_finite(sd) and sd > 0.0):
+        finite = all(is_number(one) and math.isfinite(one) for one in (mean, sd))
+        if not (finite and sd > 0.0):
             what = f"must have a finite mean and an sd above 0, got {mean!r} and {sd!r}"
             raise BadInput(file, key_of(steps), what)
         spreads.append(Spread(steps, float(mean), float(sd)))
@@ -392,17 +382,8 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
     return {key: replace_by_means(value, (key,)) for key, value in tables.items()}, spreads
 
 
-def _is_finite(value: object) -> TypeGuard[float]:
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    return math.isfinite(value)
-
-
 def convert_to_si(case: Case) -> Case:
-    """Return the case in SI units; ``shown_units`` keeps the original units for display.
-
-    Args:
-        case: a case without references to files.
+    """Return a case without files in SI units; ``shown_units`` keeps the original ones for display.
 
     Raises:
         OverflowError: a number overflows in SI units.

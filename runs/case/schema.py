@@ -334,14 +334,18 @@ class Case(CaseKeys, CaseHeading):
             model.resolve_shell(by_name) if isinstance(model, CalibratedTable) else model
             for model in self.models
         )
-        if any(new is not old for new, old in zip(resolved, self.models, strict=True)):
-            object.__setattr__(self, "models", resolved)
+        object.__setattr__(self, "models", resolved)
         return self
 
     @property
     def system(self) -> System:
         """The system of units of tables and sweeps."""
         return System(self.shown_units or self.units)
+
+    @property
+    def spatial(self) -> bool:
+        """True if the boom bends in both planes."""
+        return any(joint.lateral_play is not None for joint in self.joints)
 
     @property
     def regular(self) -> bool:

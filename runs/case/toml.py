@@ -27,7 +27,12 @@ def digest(case: Case) -> str:
 
 def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
     """Yield the lines of a table: plain values first, as TOML requires, then nested tables."""
-    nested = {key: value for key, value in table.items() if _is_nested(value)}
+    nested = {
+        key: value
+        for key, value in table.items()
+        if isinstance(value, Mapping)
+        or (value and isinstance(value, tuple) and all(isinstance(one, Mapping) for one in value))
+    }
     for key, value in table.items():
         if key not in nested:
             yield f"{_key(key)} = {_value(value)}"
@@ -42,14 +47,6 @@ def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
 def _key(name: str) -> str:
     """Return a key as TOML, quoted if needed. Names of segments occur as keys of velocities."""
     return name if _BARE.fullmatch(name) else _value(name)
-
-
-def _is_nested(value: Any) -> bool:
-    return isinstance(value, Mapping) or (
-        isinstance(value, tuple)
-        and bool(value)
-        and all(isinstance(item, Mapping) for item in value)
-    )
 
 
 def _value(value: bool | int | float | str | tuple[Any, ...] | Mapping[str, Any]) -> str:

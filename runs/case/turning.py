@@ -15,7 +15,7 @@ from geometry.telescoping import drives_of
 from runs.case.schema import Case
 
 
-def check_turning(case: Case, spatial: bool) -> None:
+def check_turning(case: Case) -> None:
     """Check the data of slewing and luffing.
 
     Raises:
@@ -32,13 +32,7 @@ def check_turning(case: Case, spatial: bool) -> None:
             )
         table.history(key)
         if case.hoist is not None and not case.hoist.hanging:
-            raise BoomError(
-                f"{key}", "the load of hoist lies on the ground; give hoist.hanging = true"
-            )
-    if case.slew is not None and not spatial:
-        raise BoomError(
-            "slew", "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
-        )
+            raise BoomError(key, "the load of hoist lies on the ground; give hoist.hanging = true")
     if case.luff is not None:
         if case.gravity is None:
             raise BoomError(

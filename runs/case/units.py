@@ -67,16 +67,9 @@ class Unit:
         return cls(float(size), (exponents[0], exponents[1], exponents[2]))
 
 
-# In each system of units, the units that replace SI units.
 SystemName = Literal["SI", "mm-t-s", "N-mm"]
+# The units that replace SI units in the other systems, which are the same.
 _MILLIMETRES = {"m": "mm", "kg": "t", "Pa": "MPa"}
-_SYSTEMS: Mapping[SystemName, Mapping[str, str]] = {
-    "SI": {},
-    "mm-t-s": _MILLIMETRES,
-    "N-mm": _MILLIMETRES,
-}
-
-
 _RAISED = str.maketrans("234", "²³⁴")
 
 
@@ -88,7 +81,7 @@ class System:
 
     def unit(self, si: str) -> str:
         """Return the system's unit in place of an SI unit, for example ``N/mm`` for ``N/m``."""
-        symbols = _SYSTEMS[self.name]
+        symbols = {} if self.name == "SI" else _MILLIMETRES
         return re.sub("[A-Za-z]+", lambda match: symbols.get(match[0], match[0]), si)
 
     def size(self, si: str) -> Fraction:

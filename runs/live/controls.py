@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
 from geometry.boom import Boom
@@ -22,7 +21,7 @@ from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.kinds.model import select_kind
 from runs.case.kinds.shell import Shell
-from runs.case.messages import BadInput
+from runs.case.messages import BadInput, refusing
 from runs.case.reading import CheckedCase
 from runs.case.sanity import usual_ranges
 from runs.case.schema import Case
@@ -170,7 +169,9 @@ class Draft:
 
     def _range(self, place: Place, value: float) -> tuple[float, float]:
         """Return the range of a number in SI units, within the limits of schema and checks."""
-        low, high = _limits(self.case, place)
+        rules = _field(self.case, place).metadata
+        low = max((float(rule.ge) for rule in rules if hasattr(rule, "ge")), default=-math.inf)
+        high = min((float(rule.le) for rule in rules if hasattr(rule, "le")), default=math.inf)
         if not (math.isfinite(low) and math.isfinite(high)):
             ends = sorted((_LEAST * value, _MOST * value))
             if place.steps[0] == "joint":
@@ -201,10 +202,7 @@ class Draft:
         return [low, high]
 
     def changed(self, values: Mapping[str, float]) -> Case:
-        """Return the case with changed numbers, not checked beyond its schema.
-
-        Args:
-            values: values by key, in the unit of the case.
+        """Return the case with other numbers in its units, by key, not checked beyond its schema.
 
         Raises:
             BadInput: a number exceeds the limits of its key.
@@ -214,10 +212,8 @@ class Draft:
             if key not in self._numbers or not is_number(value) or not math.isfinite(value):
                 raise BadInput(self.file, key, f"must be a number of the case, got {value!r}")
             self._numbers[key][0].put(tables, float(value))
-        try:
+        with refusing(self.file):
             return Case.model_validate(tables)
-        except ValidationError as error:
-            raise BadInput.from_validation(self.file, error) from None
 
     @property
     def shells(self) -> list[Shell]:
@@ -248,11 +244,3 @@ class Draft:
 def _field(case: Case, place: Place) -> FieldInfo:
     table, name = innermost(place, case)
     return fields_of(type(table))[name]
-
-
-def _limits(case: Case, place: Place) -> tuple[float, float]:
-    """Return the limits of a number in the schema; infinite if it has none."""
-    rules = _field(case, place).metadata
-    low = max((rule.ge for rule in rules if hasattr(rule, "ge")), default=-math.inf)
-    high = min((rule.le for rule in rules if hasattr(rule, "le")), default=math.inf)
-    return float(low), float(high)

@@ -11,7 +11,7 @@ import subprocess
 import sys
 import webbrowser
 from collections.abc import Callable, Generator, Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import asdict, dataclass, field
 from functools import cached_property, partial
 from http import HTTPStatus
@@ -67,10 +67,6 @@ class ShellRuns:
     def run(self, case: Case, file: str) -> Iterator[Any]:
         """Yield the progress of a run, then its results; closing the generator ends the run.
 
-        Args:
-            case: the case, with the models to run.
-            file: name of the case in messages.
-
         Raises:
             BadInput: another run has not ended, or the run fails.
         """
@@ -91,9 +87,11 @@ class ShellRuns:
                     stdout=subprocess.DEVNULL,
                     stderr=stream,
                 )
-            while (status := self._wait()) is None:
+            while (status := self._process.poll()) is None:
                 line = _last_line(messages) or "starting"
                 yield {"stage": "shell", "progress": f"{line} ({perf_counter() - begin:.0f} s)"}
+                with suppress(subprocess.TimeoutExpired):
+                    self._process.wait(_REPORT_INTERVAL)
             # Status 1 is a run that does not meet a demand of the case.
             if status not in (0, 1):
                 raise BadInput(file, "shell", _last_line(messages) or f"ended with status {status}")
@@ -123,14 +121,6 @@ class ShellRuns:
         if self._folder is not None:
             self._folder.cleanup()
             self._folder = None
-
-    def _wait(self) -> int | None:
-        """Wait a short while for the process, and return its status; None while it runs."""
-        assert self._process is not None
-        try:
-            return self._process.wait(_REPORT_INTERVAL)
-        except subprocess.TimeoutExpired:
-            return None
 
     def _stop(self) -> None:
         if self._process is not None:
@@ -275,21 +265,16 @@ class _Handler(BaseHTTPRequestHandler):
         if not (size.isdecimal() and int(size) <= _MAX_SIZE):
             self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
             return
-        try:
+        request = None
+        with suppress(ValueError):
             request = json.loads(self.rfile.read(int(size)))
-        except ValueError:
-            request = None
         if not isinstance(request, dict):
             self.send_error(HTTPStatus.BAD_REQUEST)
             return
         self._begin("application/x-ndjson")
-        try:
-            with closing(self._live.lines(str(path), request)) as lines:
-                for line in lines:
-                    self.wfile.write(line)
-        except ConnectionError:
-            # The page sent a newer request, or is closed.
-            pass
+        # The connection ends if the page sends a newer request, or is closed.
+        with suppress(ConnectionError), closing(self._live.lines(str(path), request)) as lines:
+            self.wfile.writelines(lines)
 
     def log_message(self, *_: Any) -> None:
         """Print nothing."""
@@ -316,11 +301,7 @@ def make_server(live: LivePage) -> tuple[ThreadingHTTPServer, str]:
 
 
 def serve(file: str, browser: bool) -> None:
-    """Serve the live page of a case file until the process is interrupted.
-
-    Args:
-        file: a case file.
-        browser: whether to open the page in the user's browser.
+    """Serve the live page of a case file, also in the user's browser, until an interrupt.
 
     Raises:
         BadInput: the file cannot be read, or its content is invalid.

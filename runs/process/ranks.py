@@ -55,6 +55,15 @@ def enter_mpi(
     return None
 
 
+def single_rank(case: Case) -> MPI.Intracomm | None:
+    """Return the communicator of this process, which a shell needs; None for beams."""
+    if not any(model.needs_shell for model in case.models):
+        return None
+    from mpi4py import MPI
+
+    return MPI.COMM_SELF
+
+
 def launched_ranks(file: str) -> MPI.Intracomm | None:
     """Return the communicator of all ranks; None if a launcher did not start several.
 

@@ -16,7 +16,6 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from pydantic import ValidationError
 
 from geometry.fields import names_of
 from geometry.section import BoxSection
@@ -24,7 +23,7 @@ from geometry.typography import choices
 from runs.case import reading as case_file
 from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.messages import BadInput
+from runs.case.messages import BadInput, refusing
 from runs.case.schema import Case
 from runs.case.sections import SectionTable
 from runs.pipeline.quantities import Limit, case_limits
@@ -178,26 +177,25 @@ def make_points(
 
 
 def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
-    """Return the case with new values of the varied keys."""
     changed = deepcopy(tables)
     try:
         for variation, value in settings:
             for place in variation.places:
                 place.put(changed, value)
-        return Case.model_validate(changed)
+        with refusing(file):
+            return Case.model_validate(changed)
     except OverflowError:
         what = "a value is too large for SI units; give smaller ones"
         raise BadInput(file, f"--vary {_label(settings)}", what) from None
-    except ValidationError as error:
-        fault = BadInput.from_validation(file, error)
-    for variation, _ in settings:
-        if any(f"{place.name}.".startswith(f"{fault.key}.") for place in variation.places):
-            raise BadInput(file, f"--vary {variation.key}", fault.what)
-    raise BadInput(file, f"--vary {_label(settings)}", f"{fault.key}: {fault.what}")
+    except BadInput as fault:
+        for variation, _ in settings:
+            if any(f"{place.name}.".startswith(f"{fault.key}.") for place in variation.places):
+                raise BadInput(file, f"--vary {variation.key}", fault.what) from None
+        what = f"{fault.key}: {fault.what}"
+        raise BadInput(file, f"--vary {_label(settings)}", what) from None
 
 
 def _check_point(file: str, label: str, case: Case, inferred: bool = False) -> Case:
-    """Check the case of a point, and return it."""
     try:
         case_file.check(case, file)
     except BadInput as fault:
@@ -221,8 +219,7 @@ def infer_plates(case: Case) -> Plates:
 
 def hold_plates(case: Case, plates: Plates) -> Case:
     """Return the case with inferred plates written as tables of sections."""
-    in_space = any(joint.lateral_play is not None for joint in case.joints)
-    needed = in_space or any(model.needs_plates for model in case.models)
+    needed = case.spatial or any(model.needs_plates for model in case.models)
     segments = tuple(
         segment
         if plate is None

@@ -24,6 +24,7 @@ from runs.pipeline.model_run import RunContext
 from runs.pipeline.quantities import Quantities
 from runs.pipeline.run import run_case
 from runs.process.ending import when_interrupted
+from runs.process.ranks import single_rank
 from runs.process.terminal import Progress, message, say, shorten
 from runs.process.workers import end
 from runs.sweep.distances import Features, comparison_end
@@ -49,10 +50,6 @@ class Outcome:
 def prepare(folder: Path, file: str) -> None:
     """Create the folder of a sweep, or check that an existing folder belongs to a sweep.
 
-    Args:
-        folder: folder as the user gave it.
-        file: the case file, for messages.
-
     Raises:
         BadInput: the folder contains other files, or is the current directory.
         OSError: the folder cannot be created.
@@ -73,14 +70,9 @@ def run_points(
     progress: Progress,
     cache: Cache | None = None,
 ) -> list[Outcome]:
-    """Run the points that are not in the cache, store each, and return the outcomes of all.
+    """Run the points that are not in the cache of the folder, and return the outcomes of all.
 
-    Args:
-        plan: plan of the sweep.
-        folder: folder from :func:`prepare`.
-        pool: executor of the points.
-        progress: callback that receives the completed fraction.
-        cache: cache of reduced shells.
+    ``cache`` is that of reduced shells.
 
     Raises:
         MemoryError: the system killed a process.
@@ -119,11 +111,7 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
     models: dict[str, Quantities] = {}
     failures: dict[str, str] = {}
     runs: dict[str, Results] = {}
-    comm = None
-    if any(model.needs_shell for model in case.models):
-        from mpi4py import MPI
-
-        comm = MPI.COMM_SELF
+    comm = single_rank(case)
     for model in case.models:
         case_of_model = case.model_copy(update={"models": (model,)})
         try:

@@ -5,7 +5,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
+from concurrent.futures import Executor
 from itertools import pairwise
+from pathlib import Path
 
 import numpy as np
 from rich.console import Console
@@ -15,19 +17,21 @@ from runs.case.build import build_boom
 from runs.case.messages import BadInput
 from runs.case.schema import Case
 from runs.case.units import scale
+from runs.folder.cache import Cache
 from runs.pipeline.largest_loads import BeamStates
 from runs.pipeline.pad_walls import pad_wall_lines
 from runs.pipeline.quantities import QUANTITIES, Limit
 from runs.pipeline.statics import boom_with_play, statics
+from runs.process.terminal import Progress
 from runs.report.tables import Table
 from runs.sweep.points import Plan
-from runs.sweep.run import Outcome
+from runs.sweep.run import Outcome, run_points
 
 OPTION = "--until"
 # Width of the final bracket as a fraction of its larger end.
 CLOSE = 1.0e-3
 
-_BOUND = re.compile(r"\s*([a-z_]+)\s*(<|>)=?\s*([-+.\deE]+)\s*")
+_BOUND = re.compile(r"\s*([a-z_]+)\s*(<|>)=?\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?)\s*")
 
 
 def parse_bound(text: str, plan: Plan) -> Limit:
@@ -38,13 +42,9 @@ def parse_bound(text: str, plan: Plan) -> Limit:
     """
     quantities = {one.name: one for one in QUANTITIES}
     match = _BOUND.fullmatch(text)
-    try:
-        if match is None:
-            raise ValueError
-        value = float(match[3])
-    except ValueError:
+    if match is None:
         what = f"{text!r} is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER"
-        raise BadInput(plan.file, OPTION, what) from None
+        raise BadInput(plan.file, OPTION, what)
     if match[1] not in quantities:
         what = f"{match[1]!r} is no quantity of a sweep; give {choices([*quantities])}"
         raise BadInput(plan.file, OPTION, what)
@@ -55,7 +55,7 @@ def parse_bound(text: str, plan: Plan) -> Limit:
         if len(several) != 1:
             raise BadInput(plan.file, OPTION, f"{len(several)} {what}; {remedy}")
     quantity = quantities[match[1]]
-    si = scale(value, plan.points[0].case.system.size(quantity.unit))
+    si = scale(float(match[3]), plan.points[0].case.system.size(quantity.unit))
     return Limit(quantity, si, least=match[2] == ">")
 
 
@@ -63,7 +63,10 @@ def run_until(
     plan: Plan,
     bound: Limit | None,
     plan_of: Callable[[Sequence[str]], Plan],
-    run: Callable[[Plan], list[Outcome]],
+    folder: Path,
+    pool: Executor,
+    progress: Progress,
+    cache: Cache | None,
 ) -> tuple[Plan, list[Outcome]]:
     """Run a plan, and bisect until two values enclose the bound closely.
 
@@ -71,7 +74,7 @@ def run_until(
         plan: plan of the first values.
         bound: bound of a quantity that the first values enclose; None for no bisection.
         plan_of: function that returns the plan of other variations KEY=VALUES.
-        run: function that runs a plan and returns its outcomes.
+        folder, pool, progress, cache: see :func:`runs.sweep.run.run_points`.
 
     Returns:
         The plan with the values of all steps, and its outcomes.
@@ -80,7 +83,7 @@ def run_until(
         BadInput: the first values do not enclose the bound exactly once, or a point has no value.
     """
     while True:
-        outcomes = run(plan)
+        outcomes = run_points(plan, folder, pool, progress, cache)
         if bound is None:
             return plan, outcomes
         low, high = _bracket(plan, outcomes, bound)
@@ -116,10 +119,8 @@ def _bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit) -> tuple[int
     changes = [pair for pair in pairwise(range(len(values))) if within[pair[0]] != within[pair[1]]]
     if len(changes) == 1:
         return changes[0]
-    key, span = (
-        plan.variations[0].key,
-        f"{bound.format(min(values))} to {bound.format(max(values))}",
-    )
+    key = plan.variations[0].key
+    span = f"{bound.format(min(values))} to {bound.format(max(values))}"
     passes, times = ("passes", f" {len(changes)} times") if changes else ("does not pass", "")
     what = (
         f"{bound.quantity.title} {passes} {bound.format(bound.permitted)}{times} over {key}, where "

@@ -93,12 +93,7 @@ class Variation:
 
 
 def parse(texts: Sequence[str], tables: Tables, file: str) -> list[Variation]:
-    """Read all ``--vary`` options.
-
-    Args:
-        texts: options KEY=VALUES.
-        tables: case to which the keys refer.
-        file: file of the case, for messages.
+    """Read all options KEY=VALUES for the tables of a case.
 
     Raises:
         BadInput: an option is invalid, or its key is not in the case.
@@ -134,7 +129,8 @@ def numbers(tables: Tables) -> Iterator[tuple[Place, float]]:
 
 def innermost(place: Place, case: Case) -> tuple[Any, str]:
     """Return the innermost table of a case that contains a number, and the field in this table."""
-    table, name, here = case, "", case
+    table: Any = case
+    name, here = "", table
     for step in place.steps:
         if is_table(here):
             table, name = here, names_of(type(here))[str(step)]
