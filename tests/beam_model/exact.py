@@ -7,6 +7,7 @@ Statics follows from Macaulay's brackets, frequencies follow from determinants.
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 from scipy.optimize import brentq
@@ -96,73 +97,48 @@ class Span:
     """Four solutions of EI w'''' = m ω² w on [a, b], each at most 1 there, and derivatives."""
 
     def __init__(self, segment: Segment, a: float, b: float, omega: float) -> None:
-        self.a, self.b = a, b
-        self.bending_stiffness = segment.bending_stiffness
+        self.a, self.b, self.bending_stiffness = a, b, segment.bending_stiffness
         self.beta = (segment.mass_per_length * omega**2 / segment.bending_stiffness) ** 0.25
 
-    def row(self, x: float, order: int) -> Array:
-        """(4,) derivative of each solution at x, over βᵒʳᵈᵉʳ."""
+    def derivative(self, x: float, order: int) -> Array:
+        """(4,) derivative of each solution at x."""
         angle = self.beta * (x - self.a)
         quarters = 0.5 * np.pi * order
         cosine, sine = np.cos(angle + quarters), np.sin(angle + quarters)
         fading = (-1.0) ** order * np.exp(-angle)
         growing = np.exp(self.beta * (x - self.b))
-        return np.array([cosine, sine, fading, growing])
+        return self.beta**order * np.array([cosine, sine, fading, growing])
+
+    def forces(self, x: float) -> Array:
+        """(2, 4) shear force and moment of each solution at x, on the part beyond it."""
+        shear, moment = self.derivative(x, 3), self.derivative(x, 2)
+        return self.bending_stiffness * np.array([shear, -moment])
 
 
 def bonded_determinant(boom: Boom, omega: float) -> float:
     """Return a determinant, up to a positive factor, of the bonded boom's exact equations at ω.
 
-    The outer segment has spans between supports, stations and end, the inner segment between
-    stations and tip. Deflections of both are equal at the stations. The slope and moment of each
-    segment are continuous there.
+    A span between supports, stations and ends has the dynamic stiffness F U⁻¹, with the forces F
+    and the displacements U of its four solutions at its ends. Both segments have equal deflections
+    at the stations, and slopes of their own. The determinants of U remove the poles.
     """
-    outer, inner = boom.segments
-    x0, x1 = (support.x for support in outer.supports)
+    held = [support.x for support in boom.segments[0].supports]
     tail, head = boom.joints[0].stations
-    spans = [
-        Span(outer, x0, x1, omega),
-        Span(outer, x1, tail, omega),
-        Span(outer, tail, head, omega),
-        Span(inner, tail, head, omega),
-        Span(inner, head, inner.end, omega),
-    ]
-    rows: list[Array] = []
-
-    def require(*terms: tuple[int, float, int, float]) -> None:
-        """Add the equation Σ factor · (derivative of a span at x) = 0; terms are (span, x, order,
-        factor).
-
-        Derivatives are in the units of the first term, forces in the units of the outer beam.
-        """
-        row = np.zeros(20)
-        for span, x, order, factor in terms:
-            scale = (spans[span].beta / spans[terms[0][0]].beta) ** order
-            row[4 * span : 4 * span + 4] += factor * scale * spans[span].row(x, order)
-        rows.append(row)
-
-    def passes(left: int, right: int, x: float, *orders: int) -> None:
-        for order in orders:
-            require((left, x, order, 1.0), (right, x, order, -1.0))
-
-    stiffness = inner.bending_stiffness / outer.bending_stiffness
-    require((0, x0, 0, 1.0))
-    require((0, x0, 2, 1.0))
-    require((0, x1, 0, 1.0))
-    require((1, x1, 0, 1.0))
-    passes(0, 1, x1, 1, 2)
-    passes(1, 2, tail, 0, 1, 2)
-    require((3, tail, 2, 1.0))
-    require((2, tail, 0, 1.0), (3, tail, 0, -1.0))
-    require((2, tail, 3, 1.0), (1, tail, 3, -1.0), (3, tail, 3, stiffness))
-    require((2, head, 2, 1.0))
-    require((2, head, 0, 1.0), (3, head, 0, -1.0))
-    passes(3, 4, head, 0, 1, 2)
-    require((2, head, 3, -1.0), (4, head, 3, stiffness), (3, head, 3, -stiffness))
-    require((4, inner.end, 2, 1.0))
-    require((4, inner.end, 3, 1.0))
-    sign, logarithm = np.linalg.slogdet(np.array(rows))
-    return float(sign * np.exp(logarithm))
+    runs = (*held, tail, head), (tail, head, boom.tip)
+    free = [tail, head, boom.tip, *((number, x) for number in (0, 1) for x in runs[number])]
+    index = {place: number for number, place in enumerate(free + held)}
+    whole, factors = np.zeros((len(index), len(index))), []
+    for number, (segment, places) in enumerate(zip(boom.segments, runs, strict=True)):
+        for a, b in pairwise(places):
+            span = Span(segment, a, b, omega)
+            moved = np.array([span.derivative(x, order) for x in (a, b) for order in (0, 1)])
+            forces = np.concatenate([span.forces(a), -span.forces(b)])
+            at = [index[place] for place in (a, (number, a), b, (number, b))]
+            whole[np.ix_(at, at)] += forces @ np.linalg.inv(moved)
+            factors.append(moved)
+    dofs = slice(len(free))
+    signs, logarithms = zip(*map(np.linalg.slogdet, (whole[dofs, dofs], *factors)), strict=True)
+    return float(np.prod(signs) * np.exp(np.sum(logarithms)))
 
 
 def bonded_frequencies(boom: Boom, highest: float) -> Array:

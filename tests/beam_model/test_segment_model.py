@@ -9,12 +9,13 @@ import pytest
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import Theory, finite_element_segments
+from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
-from geometry.boom import Boom, Joint, Material, PadSize, Segment, Support
+from geometry.boom import Boom, Joint, Material, Segment, Support
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import OverhangingBeam, bonded_deflections, bonded_frequencies
 from tests.touching import touching
@@ -39,17 +40,6 @@ def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Model
     assert np.abs(errors[-1]).max() < 2e-6
     assert np.abs(errors[-2]).max() < 1e-4
     np.testing.assert_allclose(np.log2(errors[1][2:] / errors[2][2:]), 4.0, atol=0.1)
-
-
-def test_pads_do_not_matter_to_a_bonded_boom(paper_boom: Boom, elements: Models) -> None:
-    """Reference: the same boom without pads, equal bits."""
-    (joint,) = paper_boom.joints
-    padded = replace(paper_boom, joints=(replace(joint, pad=PadSize(0.2, 0.06)),))
-    models = elements(1.0)
-    np.testing.assert_array_equal(
-        gap_system(padded.bonded, models).frequencies,
-        gap_system(paper_boom.bonded, models).frequencies,
-    )
 
 
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
@@ -128,6 +118,38 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
     for name in ("head", "head-2", "tail", "tail-2"):
         assert bonded.observers[name].row @ position > 0.0
     assert bonded.observers["tail-2"].row @ position > bonded.observers["head"].row @ position
+
+
+def chain(boom: Boom, count: int) -> Boom:
+    """Return the paper's boom with additional segments, each a metre inside the previous one."""
+    outer, inner = boom.segments
+    (joint,) = boom.joints
+    starts = [9.0 * number for number in range(1, count)]
+    inners = [
+        replace(inner, name=f"inner {x}", section=None, start=x, end=x + 10.0) for x in starts
+    ]
+    joints = [
+        replace(joint, outer=number, inner=number + 1, stations=(x, x + 1.0))
+        for number, x in enumerate(starts)
+    ]
+    return Boom((replace(outer, section=None), *inners), tuple(joints))
+
+
+@pytest.mark.parametrize("kind", ["series", "elements"])
+def test_the_size_grows_with_the_number_of_segments(paper_boom: Boom, kind: str) -> None:
+    """Reference: external source, section 5.3. A segment adds its equations and two forces."""
+    sizes = []
+    for count in (2, 3, 4, 5):
+        boom = touching(chain(paper_boom, count), PowerContact(1.0e9, 1.0).with_clearance(7.0e-3))
+        models = (
+            kantorovich_segments(boom, [6] * count, "complete", False)
+            if kind == "series"
+            else finite_element_segments(boom, 0.5, "euler-bernoulli", False)
+        )
+        system = gap_system(boom, models)
+        sizes.append(system.num_modes)
+        assert len(system.laws) == 2 * (count - 1)
+    assert np.diff(sizes).tolist() == [6 if kind == "series" else 42] * 3
 
 
 def in_leaves(boom: Boom) -> Boom:

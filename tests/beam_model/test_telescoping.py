@@ -4,14 +4,19 @@
 import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from math import copysign, cos, pi, sin
+from typing import Any
 
 import numpy as np
 import pytest
-from scipy.linalg import eigh
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicHermiteSpline
+from scipy.linalg import block_diag, eigh
 
 from beam_model.boom_modes import critical_factor
 from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segments
+from beam_model.elements import Theory
+from beam_model.finite_element import finite_element_segment, finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.segment_model import gap_system
 from dynamics.arrays import Array
@@ -22,19 +27,104 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, BoomError, Joint, PointMass, Stop, Support
+from geometry.boom import Boom, BoomError, Joint, PointMass, Segment, Stop, Support
 from geometry.joint import Carrier, Drive
-from tests.beam_model.telescoping import (
-    DRIVE,
-    LAW,
-    LONGEST,
-    elements,
-    runge_kutta,
-    shifted,
-    telescope,
-    tips,
-)
+from geometry.segment import NO_COMPRESSION
 from tests.touching import touching
+
+LAW = PowerContact(1.0e6, 1.0).with_clearance(7.0e-3)
+DRIVE = Drive(SCurve(4.0, 5.0), ("inner", "outer"))
+
+
+def shifted(segment: Segment, way: float) -> Segment:
+    return replace(segment, start=segment.start + way, end=segment.end + way)
+
+
+def telescope(boom: Boom, way: float, drive: Drive | None = None, **changes: Any) -> Boom:
+    """Return the paper's boom with an overlap of 5 m, reduced by an initial extension in m."""
+    outer, inner = boom.segments
+    inner = shifted(inner, way - 4.0)
+    joint = replace(boom.joints[0], stations=(inner.start, outer.end), drive=drive, **changes)
+    return replace(boom, segments=(outer, inner), joints=(joint,))
+
+
+def elements(
+    boom: Boom,
+    length: float = 0.5,
+    theory: Theory = "euler-bernoulli",
+    rotary_inertia: bool = True,
+) -> GapSystem:
+    return gap_system(boom, finite_element_segments(boom, length, theory, rotary_inertia))
+
+
+def tips(system: GapSystem) -> list[float]:
+    """Return the outputs of the ends at rest."""
+    rest = equilibrium(system, system.load)
+    return [float(system.observers[name].row @ rest) for name in ("tip", "head", "tail")]
+
+
+# The longest element in m.
+LONGEST = 3.0
+
+POINTS, WEIGHTS = np.polynomial.legendre.leggauss(3)
+
+
+def softened(rows: CubicHermiteSpline, start: float, end: float) -> Array:
+    """Return ∫ w′ᵀ w′ dx (num_dofs, num_dofs) of the rows of a beam from start to end in m."""
+    edges = np.array([start, *rows.x[(rows.x > start) & (rows.x < end)], end])
+    middle, half = 0.5 * (edges[1:] + edges[:-1]), 0.5 * np.diff(edges)
+    slopes = rows((middle[:, None] + np.outer(half, POINTS)).ravel(), 1)
+    return np.asarray((slopes.T * np.outer(half, WEIGHTS).ravel()) @ slopes)
+
+
+def runge_kutta(boom: Boom, history: SCurve, times: Array, thrust: float) -> tuple[Array, float]:
+    """Return the tip deflection (num_times,) in m and the work of the drive in J by Hermite
+    elements of ``LONGEST``, whose rows are read where the segments touch.
+
+    A thrust in N compresses the inner segment, and the outer segment up to the tail of the inner
+    one.
+    """
+    plain = [replace(one, compression=NO_COMPRESSION) for one in boom.segments]
+    outer, inner = (
+        finite_element_segment(one, LONGEST, own, "euler-bernoulli", False).components["z"]
+        for one, own in zip(plain, (boom.stations_of(0), boom.stations_of(1)), strict=True)
+    )
+    n, ends = len(outer.load), len(outer.load) + len(inner.load)
+    stiffness, mass = (
+        block_diag(getattr(outer, name), getattr(inner, name)) for name in ("stiffness", "mass")
+    )
+    of_outer, of_inner = (
+        CubicHermiteSpline(b := one.breaks, *([one.at(x, k) for x in b] for k in (0, 1)))
+        for one in (outer, inner)
+    )
+    tail, head = boom.joints[0].stations
+    stiffness[n:, n:] -= thrust * softened(of_inner, tail, boom.tip)
+    inverse = np.linalg.inv(mass)
+    turned, pushed = -inverse @ stiffness, inverse @ np.concatenate([outer.load, inner.load])
+
+    def change(time: float, state: Array) -> Array:
+        part = min(max(time / history.duration, 0.0), 1.0)
+        way = history.travel * (part - sin(2 * pi * part) / (2 * pi))
+        speed = history.travel / history.duration * (1 - cos(2 * pi * part))
+        q, v = state[:ends], state[ends:-1]
+        pull = np.zeros(ends)
+        pull[:n] = thrust * softened(of_outer, 0.0, tail + way) @ q[:n]
+        power = -0.5 * thrust * speed * (of_outer(tail + way, 1) @ q[:n]) ** 2
+        for x_outer, x_inner, moved in ((tail + way, tail, 0), (head, head - way, 1)):
+            row = np.concatenate([-of_outer(x_outer), of_inner(x_inner)])
+            gap = row @ q
+            if abs(gap) > 7.0e-3:
+                force = 1.0e6 * (gap - copysign(7.0e-3, gap))
+                pull -= force * row
+                slope = of_inner(x_inner, 1) @ q[n:] if moved else of_outer(x_outer, 1) @ q[:n]
+                power -= force * speed * slope
+        return np.concatenate([v, turned @ q + pushed + inverse @ pull, [power]])
+
+    start = np.zeros(2 * ends + 1)
+    found = solve_ivp(
+        change, (0.0, times[-1]), start, "DOP853", times, rtol=1e-9, atol=1e-12, max_step=1e-3
+    )
+    return inner.at(boom.tip) @ found.y[n:ends], float(found.y[-1, -1])
 
 
 def three(boom: Boom, ways: tuple[float, float], drives: Sequence[Drive | None]) -> Boom:
