@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from functools import partial
 from html import escape
 from io import StringIO
-from itertools import zip_longest
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -266,11 +265,11 @@ def _damping_ratios(preview: Preview) -> Table:
     coefficients += [joint.dashpot for joint in boom.joints]
     coefficients += [cylinder.dashpot for cylinder in boom.cylinders]
     coefficients += [support.dashpot for segment in boom.segments for support in segment.supports]
-    rows: list[tuple[str, ...]] = []
-    for model in case.models if any(coefficients) else ():
-        # Some booms have fewer modes.
-        cells = zip_longest(range(SHOWN_MODES), _ratios(preview, model), fillvalue="")
-        rows.append((_beam_name(model), *(cell for _, cell in [*cells][:SHOWN_MODES])))
+    # Some booms have fewer modes.
+    rows = [
+        [_beam_name(model), *_ratios(preview, model), *[""] * SHOWN_MODES][: 1 + SHOWN_MODES]
+        for model in (case.models if any(coefficients) else ())
+    ]
     headings = ("model", *(f"mode {number}" for number in range(1, SHOWN_MODES + 1)))
     walls = "In this table walls under pads are rigid, also for shells."
     notes = [walls] if boom.pads_on_walls else []

@@ -325,9 +325,10 @@ def calibration_card(boom: Boom, system: GapSystem, calibration: Calibration) ->
 
 
 def _beam_stiffness(segment: Segment, stiffness: Stiffness) -> BeamStiffness:
-    planes = (
-        (segment, segment.turned())[: len(stiffness.bending)] if segment.lateral else (segment,)
-    )
+    planes = [segment]
+    if segment.lateral and len(stiffness.bending) > 1:
+        planes.append(segment.turned())
+    bending = [plane.bending_stiffness for plane in planes]
     shear = [plane.prismatic_at(0.5 * sum(plane.ends)).shear_stiffness or 0.0 for plane in planes]
     torsion = None
     if stiffness.torsion is not None and segment.lateral is not None:
@@ -338,13 +339,7 @@ def _beam_stiffness(segment: Segment, stiffness: Stiffness) -> BeamStiffness:
         bending=list(stiffness.bending),
         shear=list(stiffness.shear),
         torsion=stiffness.torsion,
-        bending_part=[
-            calibrated / plane.bending_stiffness
-            for calibrated, plane in zip(stiffness.bending, planes, strict=True)
-        ],
-        shear_part=[
-            calibrated / section_torsion
-            for calibrated, section_torsion in zip(stiffness.shear, shear, strict=True)
-        ],
+        bending_part=(np.array(stiffness.bending) / bending).tolist(),
+        shear_part=(np.array(stiffness.shear) / shear).tolist(),
         torsion_part=torsion,
     )
