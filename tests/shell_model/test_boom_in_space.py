@@ -9,12 +9,11 @@ import pytest
 from beam_model.finite_element import finite_element_segments
 from beam_model.segment_model import gap_system
 from dynamics.contact import ContactLaw
-from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Load
+from geometry.boom import Boom, BoomError
 from studies import sections
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.models import bonded_beams, reduced
@@ -140,24 +139,6 @@ def test_friction_of_each_pad_follows_its_contact() -> None:
 
 
 @pytest.mark.slow
-def test_friction_in_space_takes_energy_and_gives_none_back() -> None:
-    """Reference: analytic. With lateral contact the boom loses energy at each station, gains none,
-    and friction is below μ times the largest contact force.
-    """
-    motion = AdaptiveStep()(
-        Motion(reduced(boom_in_space(friction=0.2, sideways=0.5), 0.5).system, 0.3)
-    )
-    loss = motion.data["friction_loss"].values
-    assert (np.diff(loss) > -1.0e-9 * loss[-1]).all()
-    assert loss[-1] > 1.0e-3 * float(motion.data["work"][-1])
-    assert motion.energy_residual < 1.0e-4
-    blows = np.abs(motion.data["contact_force_peak"]).max("time").values
-    rubbed = np.abs(motion.data["friction_force"]).max("time").values
-    assert (rubbed > 0.0).all()
-    assert (rubbed < 0.2 * blows).all()
-
-
-@pytest.mark.slow
 def test_lateral_motion_follows_beams() -> None:
     """Reference: other code, Timoshenko frame elements in space under lateral loads."""
     flat = boom_in_space()
@@ -182,15 +163,6 @@ def test_the_bonded_boom_vibrates_as_beams_in_both_planes() -> None:
     boom = replace(boom, joints=(replace(boom.joints[0], bonded=True),))
     expected = bonded_beams(boom, 0.5).frequencies[:6]
     assert reduced(boom, 0.5).system.frequencies[:6] == pytest.approx(expected, rel=0.01)
-
-
-def test_a_load_along_y_pushes_along_y() -> None:
-    boom = replace(boom_in_space(), loads=(Load(1, "y", 50.0, 19.0, Step()),))
-    system = reduced(boom, 0.5).system
-    (excitation,) = system.excitations
-    rest = excitation.load / (system.omega2 + 1.0)
-    assert system.observers["tip_lateral"].row @ rest > 0.1
-    assert abs(system.observers["tip"].row @ rest) < 1.0e-9
 
 
 def test_contact_across_the_flanges_is_for_flat_booms() -> None:

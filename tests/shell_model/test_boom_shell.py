@@ -38,16 +38,6 @@ def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine
 
 
 @pytest.mark.slow
-def test_the_load_lifts_the_boom_by_its_weight() -> None:
-    """Reference: analytic. The centre of the free segment accelerates with q/m̄ = 1 m/s²."""
-    system = reduced(flat_boom(), 0.25, moments=2).system
-    rigid = system.omega2 == 0.0
-    tip, tail = (system.observers[name].row[rigid] for name in ("tip", "tail"))
-    acceleration = 0.5 * (tip + tail) @ system.load[rigid]
-    assert acceleration == pytest.approx(1.0, rel=1.0e-9)
-
-
-@pytest.mark.slow
 def test_first_contact_follows_the_beam() -> None:
     """Reference: other code, beams: 0.1195 s; shear and distortion delay it by less than 1 %."""
     trajectory = AdaptiveStep()(Motion(reduced(flat_boom(), 0.25, moments=2).system, 0.4))
@@ -55,18 +45,6 @@ def test_first_contact_follows_the_beam() -> None:
     assert trajectory.energy_residual < 1.0e-4
     assert float(trajectory.data["contact_force"].sel(station=10.0).max()) > 0.0
     assert trajectory.data["tip_rotation"].attrs["units"] == "rad"
-
-
-@pytest.mark.slow
-def test_fields_agree_with_observers() -> None:
-    """The mean u_z of vertices at the tip equals its output except for distortion."""
-    shell = reduced(flat_boom(), 0.25, moments=2)
-    state = AdaptiveStep()(Motion(shell.system, 0.1)).states[-1]
-    displacement = np.tensordot(state, shell.fields["modes"].values, axes=1)
-    at_tip = np.abs(shell.fields["points"].values[:, 0] - 19.0) < 1.0e-9
-    read = float(shell.system.observers["tip"].row @ state)
-    assert displacement[at_tip, 2].mean() == pytest.approx(read, rel=1.0e-3)
-    assert read > 1.0e-3
 
 
 def test_a_shell_needs_a_section() -> None:

@@ -70,22 +70,6 @@ def test_dashpots_dissipate_equally_in_shells_and_beams(line: ContactLine) -> No
 
 
 @pytest.mark.slow
-def test_friction_takes_energy_and_gives_none_back() -> None:
-    """Reference: analytic. The loss never falls, and the energy balance closes."""
-    rough, smooth = (
-        AdaptiveStep()(Motion(reduced(flat_boom(friction), 0.5).system, 0.25))
-        for friction in (0.2, 0.0)
-    )
-    loss = rough.data["friction_loss"].values
-    assert (np.diff(loss) > -1.0e-9 * loss[-1]).all()
-    assert loss[-1] > 0.01 * float(rough.data["work"][-1])
-    assert rough.energy_residual < 1.0e-4
-    assert not smooth.data["friction_loss"].values.any()
-    largest = np.abs(rough.data["friction_force"]).max("time").values
-    assert largest == pytest.approx([0.2 * 4500.0, 0.2 * 5000.0], rel=1.0e-3)
-
-
-@pytest.mark.slow
 def test_loads_act_at_their_positions_and_times() -> None:
     """Reference: analytic, force over mass of a free segment; uniform is constant load."""
     boom = flat_boom()

@@ -126,13 +126,6 @@ def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) 
         assert [job.symmetry_class for job in jobs] == expected
 
 
-def test_symmetry_planes_fix_the_antisymmetric_components() -> None:
-    """Reference: analytic. In bending along z, u_z and slope mirror in both planes."""
-    assert SymmetryClass(1, -1).fixed_components(1) == [(0, 1), (1, 0), (1, 2)]
-    assert SymmetryClass(1, -1).fixed_components(2) == [(0, 0), (0, 1), (1, 2)]
-    assert SymmetryClass(1, 0).fixed_components(1) == SymmetryClass(1, -1).fixed_components(1)
-
-
 def _shifted(mesh: SegmentMesh) -> SegmentMesh:
     points = mesh.points.copy()
     points[np.abs(points[:, 0] - 5.0).argmin(), 0] += 0.01

@@ -198,14 +198,6 @@ def test_products_are_rounded_once() -> None:
     assert found.tolist() == [math.fsum(left * column) for column in right.T]
 
 
-def test_the_order_of_rows_does_not_show() -> None:
-    left, right = _terms()
-    order = np.random.default_rng(4).permutation(left.size)
-    found = exact_product(MPI.COMM_SELF, left[order], right[order])
-    assert np.array_equal(found, exact_product(MPI.COMM_SELF, left, right))
-    assert not np.array_equal(left[order] @ right[order], left @ right)
-
-
 def test_cancelling_terms_are_zero() -> None:
     """Reference: analytic, a force and its negative mirror image but for a last bit."""
     left, right = _terms()

@@ -120,13 +120,6 @@ def test_von_mises_of_simple_states(membrane: tuple[float, ...], expected: float
     assert stress.largest() >= stress.von_mises("middle")
 
 
-def test_the_faces_differ_by_twice_the_bending() -> None:
-    stress = Stress(np.float32([[5.0, 0.0, 0.0]]), np.float32([[-2.0, 0.0, 0.0]]))
-    faces = [float(stress.von_mises(face)[0]) for face in ("outer", "middle", "inner")]
-    assert faces == pytest.approx([3.0, 5.0, 7.0])
-    assert stress.largest() == pytest.approx(7.0)
-
-
 def at_rest(
     boom: Boom, size: float, tolerance: float | None = None
 ) -> tuple[xr.Dataset, ShellStress]:
