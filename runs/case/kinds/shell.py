@@ -8,10 +8,19 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 
+from beam_model.component import SegmentModel
+from beam_model.finite_element import finite_element_segments
 from geometry.boom import Boom, BoomError
 from geometry.fields import In, Length, Positive
 from geometry.refinement import refinement_zones
-from runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom, ModelTable, Surrogate
+from runs.case.kinds.model import (
+    BeamTable,
+    BuildContext,
+    BuiltModel,
+    ModelBoom,
+    ModelTable,
+    Surrogate,
+)
 from runs.case.limits import ContactTolerance, Count, Modes, Part
 
 if TYPE_CHECKING:
@@ -33,6 +42,24 @@ _OF_DOF, _OF_DOF_AND_COORDINATE, _REDUCTION = 2000.0, 5.0, 0.45e-4
 _SMALL = 5.0e4
 # Number of elements of the longest segment in the surrogate of a shell.
 _ELEMENTS = 20
+
+
+class _ShellSurrogate(BeamTable):
+    """Shear-flexible beam elements that replace a shell in estimates of its cost."""
+
+    kind: Literal["beam of a shell"] = "beam of a shell"
+    """the kind of model"""
+    element_length: Length
+    """the greatest length of an element in m"""
+
+    def describe(self) -> str:
+        return self.kind
+
+    def segments(self, boom: Boom) -> list[SegmentModel]:
+        return finite_element_segments(boom, self.element_length, "timoshenko", True)
+
+    def surrogate(self, boom: Boom) -> Surrogate:
+        return Surrogate(self, 0)
 
 
 class Shell(ModelTable):
@@ -155,13 +182,11 @@ class Shell(ModelTable):
         return estimate_critical_factor(model_boom.boom)
 
     def surrogate(self, boom: Boom) -> Surrogate:
-        from runs.case.kinds.finite_element import BeamElements
-
         dofs = self.estimate_dofs(boom)
         coordinates = (_SPATIAL if boom.spatial else _FLAT) * len(boom.segments)
         if isinstance(self.modes, int):
             coordinates = min(coordinates, self.modes * len(boom.segments))
-        beam = BeamElements(
+        beam = _ShellSurrogate(
             name=self.name,
             contact=self.contact,
             step=self.step,
