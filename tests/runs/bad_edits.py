@@ -38,6 +38,9 @@ FORMS = [
      "one of them such as { tail = 0.2 }, got '2 m'"),
     ("density = 7850.0\n", "",
      "material.density: missing; it is the density in kg/m^3"),
+    ("[material]\nyoungs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\n", "",
+     "material: missing, and 'outer' has none of its own; it is the table of elastic constants and "
+     "density, for all segments without a material of their own"),
     ("mass_per_length = 55.07\n", "",
      "segment[2].mass_per_length: missing; it is the mass per length in kg/m; follows from the "
      "section unless given"),

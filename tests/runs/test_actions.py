@@ -47,6 +47,10 @@ def load(**keys: object) -> str:
     return table("[[load]]", segment="beam", **keys)
 
 
+def observe(name: str, x: float, quantity: str = "deflection", segment: str = "inner") -> str:
+    return table("[[observe]]", name=name, segment=segment, x=x, quantity=quantity)
+
+
 def tip(folder: Path, text: str) -> np.ndarray:
     return np.asarray(run(folder, text).trajectories["tip"].values[0])
 
@@ -148,6 +152,19 @@ MOMENT = '[[load]]\nsegment = "beam"\nx = 6.0\nmagnitude = 2.0e4\nmoment = true\
         ('[[stop]]\nsegment = "beam"\nx = 10.0\nplay = 0.01\nstiffness = 0.0',
          "stop[1].stiffness: must be positive on one side at least, got 0 on both"),
         ("[start]\nvelocity = { fly = 1.0 }", "start.velocity: 'fly' is no segment; give 'beam'"),
+        ("[start]\nvelocity = { beam = { speed = 1.0 } }",
+         "start.velocity.beam.speed: unknown key; known ones are z, y, turn, lateral_turn, x"),
+        ("[start]\nvelocity = { beam = { lateral_turn = 1.0 } }",
+         "start.velocity.beam.lateral_turn: the boom is flat, and nothing moves along 'y'; "
+         "give the joints lateral_play"),
+        (observe("contact_force", 9.0, segment="beam"),
+         "observe[1].name: 'contact_force' is the name of another output already; give it its "
+         "own"),
+        (observe("a", 9.0, segment="beam") + observe("a", 8.0, segment="beam"),
+         "observe[2].name: 'a' is the name of observe[1] already; give each its own"),
+        (observe("a", 9.0, "twist", "beam"),
+         "observe[1].quantity: the boom is flat, and nothing moves along 'y' or twists; give "
+         "another quantity, or the joints lateral_play"),
     ],
 )  # fmt: skip
 def test_bad_actions_are_refused(tmp_path: Path, text: str, line: str) -> None:
@@ -204,10 +221,6 @@ def test_a_shell_rests_near_a_beam_with_shear(
     beams = tip_at_rest(read_case(tmp_path, beam + load + elements))
     shell = tip_at_rest(read_case(tmp_path, beam + load + SHELL))
     assert shell == pytest.approx(beams, rel=5e-3)
-
-
-def observe(name: str, x: float, quantity: str = "deflection", segment: str = "inner") -> str:
-    return table("[[observe]]", name=name, segment=segment, x=x, quantity=quantity)
 
 
 TURNED = "[start]\nvelocity = { inner = { z = 0.01, turn = 0.02, x = 9.0 } }\n"
@@ -314,25 +327,3 @@ def test_a_segment_s_name_may_have_blanks_and_points(tmp_path: Path) -> None:
     start = '[start]\nvelocity = { "fly 2.1" = { z = 0.1 }, outer = 0.2 }\n\n'
     case = read_case(tmp_path, text.replace("[[model]]", start + "[[model]]", 1))
     assert read_case(tmp_path, toml.dumps(case)) == case
-
-
-@pytest.mark.parametrize(
-    ("text", "line"),
-    [
-        (observe("contact_force", 11.0),
-         "observe[1].name: 'contact_force' is the name of another output already; give it its "
-         "own"),
-        (observe("a", 11.0) + observe("a", 12.0),
-         "observe[2].name: 'a' is the name of observe[1] already; give each its own"),
-        (observe("a", 11.0, "twist"),
-         "observe[1].quantity: the boom is flat, and nothing moves along 'y' or twists; give "
-         "another quantity, or the joints lateral_play"),
-        ("[start]\nvelocity = { inner = { speed = 1.0 } }",
-         "start.velocity.inner.speed: unknown key; known ones are z, y, turn, lateral_turn, x"),
-        ("[start]\nvelocity = { inner = { lateral_turn = 1.0 } }",
-         "start.velocity.inner.lateral_turn: the boom is flat, and nothing moves along 'y'; "
-         "give the joints lateral_play"),
-    ],
-)  # fmt: skip
-def test_bad_observers_are_refused(tmp_path: Path, text: str, line: str) -> None:
-    assert refusal(tmp_path, COARSE.replace("[[model]]", f"{text}\n\n[[model]]", 1)) == line

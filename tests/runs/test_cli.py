@@ -119,7 +119,6 @@ MISTAKES = {
     "folder or one of an earlier run",
     "check case.toml --picture boom.pdf": "case.toml: --picture boom.pdf: must end in .png",
     "report nowhere": "nowhere: folder: does not exist; give the folder of a run",
-    "report .": ".: trajectories.nc: missing; give the folder of a run that has finished",
     "report case.toml": "case.toml: folder: is a file; give the folder of a run",
 }  # fmt: skip
 

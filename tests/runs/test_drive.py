@@ -30,6 +30,7 @@ DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
 DRIVE = "drive = { travel = 4.0, time = 5.0, least_overlap = 1.0 }\n"
 SHORT, FAST = ("duration = 7.0", "duration = 0.3"), ("time = 5.0", "time = 0.2")
 drawn_out = partial(edited, DRAWN)
+ROPE = "least_overlap = 1.0, stiffness = 2e5, dashpot = 500.0, static_friction = 0.3 }"
 TABLE = "drive = { table = [[0.0, 0.0], [1.0, 2.0], [4.0, -1.0]] }\n"
 
 
@@ -106,6 +107,18 @@ def test_a_drive_has_a_history(
         (DRIVE, "locked_at = 4.0\ndrive = { travel = -3.0, time = 5.0 }\n",
          "joint[1].locked_at: 'inner' retracts by 3 m, past 4 m, where it is pushed; make "
          "the travel shorter, or move the place"),
+        ("least_overlap = 1.0 }", "static_friction = 0.3 }",
+         "joint[1].drive.static_friction: without a stiffness the drive is stiff, and its "
+         "segment neither sticks nor slips; give stiffness, or leave static_friction out"),
+        ("least_overlap = 1.0 }", ROPE.replace("0.3", "0.1"),
+         "joint[1].drive.static_friction: must be at least the joint's friction of sliding, "
+         "0.2, got 0.1"),
+        ("least_overlap = 1.0 }", ROPE.replace("2e5", "1e12"),
+         "joint[1].drive.stiffness: must be at most 2.17e+10 N/m for the 550.7 kg that it draws, "
+         "got 1e+12 N/m; leave it out where the drive is stiff"),
+        ("least_overlap = 1.0 }", ROPE.replace("500.0", "1e9"),
+         "joint[1].drive.dashpot: must be at most 3.46e+06 N s/m for the 550.7 kg that it draws, "
+         "got 1e+09 N s/m; leave it out where the drive is stiff"),
     ],
 )  # fmt: skip
 def test_slips_in_a_drive(tmp_path: Path, before: str, after: str, message: str) -> None:

@@ -18,7 +18,6 @@ from dynamics.integrator import simulate
 from dynamics.trajectory import Trajectory
 from dynamics.travel import RowTable, Travel
 from protractile.cases import change, run_case
-from runs import CASES
 from runs.case.build import build_boom
 from runs.case.elastic_drive import elastic_drives
 from runs.case.schema import Case
@@ -39,9 +38,8 @@ from runs.sweep.residual_vibration import (
 )
 from tests.runs.case_texts import edited, read_case, refusal, shipped
 from tests.runs.summaries import printed_check
+from tests.runs.test_drive import DRAWN, ROPE
 
-DRAWN = (CASES / "drawn-out.toml").read_text(encoding="utf-8")
-ROPE = "least_overlap = 1.0, stiffness = 2e5, dashpot = 500.0, static_friction = 0.3 }"
 # Without play, at rest under loads downwards, so that pads press all the time.
 PRESSED = {"play = 0.014": "play = 0.0", "load = 55.07": "load = -540.0"}
 RESTS = {"[[joint]]": '[start]\nstate = "equilibrium"\n\n[[joint]]'}
@@ -50,28 +48,6 @@ RESTS = {"[[joint]]": '[start]\nstate = "equilibrium"\n\n[[joint]]'}
 def drawn_by(folder: Path, rope: str, **others: str) -> Case:
     changes = {**PRESSED, **RESTS, "least_overlap = 1.0 }": rope, **others}
     return read_case(folder, edited(DRAWN, *changes.items()))
-
-
-@pytest.mark.parametrize(
-    ("rope", "message"),
-    [
-        ("least_overlap = 1.0, static_friction = 0.3 }",
-         "joint[1].drive.static_friction: without a stiffness the drive is stiff, and its "
-         "segment neither sticks nor slips; give stiffness, or leave static_friction out"),
-        (ROPE.replace("0.3", "0.1"),
-         "joint[1].drive.static_friction: must be at least the joint's friction of sliding, "
-         "0.2, got 0.1"),
-        (ROPE.replace("2e5", "1e12"),
-         "joint[1].drive.stiffness: must be at most 2.17e+10 N/m for the 550.7 kg that it draws, "
-         "got 1e+12 N/m; leave it out where the drive is stiff"),
-        (ROPE.replace("500.0", "1e9"),
-         "joint[1].drive.dashpot: must be at most 3.46e+06 N s/m for the 550.7 kg that it draws, "
-         "got 1e+09 N s/m; leave it out where the drive is stiff"),
-    ],
-)  # fmt: skip
-def test_slips_in_a_drive(tmp_path: Path, rope: str, message: str) -> None:
-    """Reference: exact message."""
-    assert refusal(tmp_path, edited(DRAWN, ("least_overlap = 1.0 }", rope))) == message
 
 
 def test_no_stick_slip_without_friction(tmp_path: Path) -> None:
