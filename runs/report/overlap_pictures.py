@@ -190,8 +190,8 @@ class OverlapView:
         places: Array,
         cuts: Iterable[str],
         stress: tuple[Array, StressScale] | None = None,
-    ) -> None:
-        """Draw both segments and the forces between them on a sheet.
+    ) -> str:
+        """Draw both segments and the forces between them, and return a sentence on the forces.
 
         Args:
             plotter: stage of the size of the view.
@@ -220,7 +220,11 @@ class OverlapView:
         strongest = np.abs(self.motion["contact_force"].values).max()
         now = self.motion.sel(time=time, method="nearest")
         forces = np.nan_to_num(now["contact_force"].values)
-        peaks = now["contact_force_peak"].values
+        if not forces.any():
+            return "no contact here"
+        interval = float(np.diff(self.motion["time"].values[:2])[0])
+        meaning = f"forces: mean of the last {1.0e3 * interval:.3g} ms"
+        impact, peaks = "", now["contact_force_peak"].values
         for x, force, peak in zip(self.stations, forces, peaks, strict=True):
             if force == 0.0:
                 continue
@@ -231,19 +235,9 @@ class OverlapView:
             text = f"{digits(1e-3 * abs(force))} kN"
             if abs(peak) >= PEAK * abs(force):
                 text += f"\n(peak {digits(1e-3 * abs(peak))} kN)"
+                impact = "; peak: maximum of a short impact"
             sheet.arrow(camera.project(outside), side * length, text)
-
-    def explain_forces(self, time: float) -> str:
-        """Return a sentence on the forces at a time in s and the numbers at their arrows."""
-        now = self.motion.sel(time=time, method="nearest")
-        forces = np.nan_to_num(now["contact_force"].values)
-        if not forces.any():
-            return "no contact here"
-        interval = float(np.diff(self.motion["time"].values[:2])[0])
-        text = f"forces: mean of the last {1.0e3 * interval:.3g} ms"
-        peaks = np.abs(now["contact_force_peak"].values)
-        impacts = (forces != 0.0) & (peaks >= PEAK * np.abs(forces))
-        return f"{text}; peak: maximum of a short impact" if impacts.any() else text
+        return f"{meaning}{impact}"
 
 
 def draw_overlap(
@@ -264,11 +258,11 @@ def draw_overlap(
     )
     with stage(PIXELS) as plotter:
         for instant in instants:
-            view.draw(plotter, sheet, instant.time, view.places(instant.time), labels)
+            forces = view.draw(plotter, sheet, instant.time, view.places(instant.time), labels)
             sheet.write(
                 instant.heading(scene),
                 f"{aside}cut open; play and displacements relative to {outer} × {view.scale:g}, "
-                f"walls not to scale\n{view.explain_forces(instant.time)}",
+                f"walls not to scale\n{forces}",
             )
             yield sheet.image()
 
@@ -349,14 +343,15 @@ def draw_stress(
             for instant, values, boom in zip(instants, corners, booms, strict=True):
                 sheet.show(boom, 20, 550)
                 places = view.places(instant.time)
-                view.draw(plotter, sheet, instant.time, places, CUT_COLORS, (values, scale))
+                stress = values, scale
+                forces = view.draw(plotter, sheet, instant.time, places, CUT_COLORS, stress)
                 sheet.write(
                     instant.heading(scene),
                     f"{aside}boom: displacements × {whole.scale:g}, sections × {SECTION_DRAWN:g}; "
                     f"overlap: cut open, × {view.scale:g}, cuts white (outer), grey (inner)\n"
                     f"{_ring_largest(sheet, view, places, values)}; "
                     f"{_largest(view, instant.time)}\n"
-                    f"{view.explain_forces(instant.time)}{_coarse_mesh_caution(view)}",
+                    f"{forces}{_coarse_mesh_caution(view)}",
                 )
                 images.append(sheet.image())
         yield images
@@ -413,18 +408,15 @@ def _ring_largest(sheet: Sheet, view: OverlapView, places: Array, values: Array)
 
 def _coarse_mesh_caution(view: OverlapView) -> str:
     """Return a caution if webs have too few elements to resolve their stresses."""
-    fewest = min(_across_web(view.scene, number) for number in view.numbers)
+    across_webs = []
+    for number in view.numbers:
+        x, _, z = view.scene.points[view.scene.owner == number].T
+        inside = np.abs(z - 0.5 * (z.min() + z.max())) < 0.999 * 0.5 * np.ptp(z)
+        counts = np.unique(x[inside].round(6), return_counts=True)[1]
+        # Count the points of two webs, without those at their ends.
+        across_webs.append(int(np.median(counts)) // 2 + 1)
+    fewest = min(across_webs)
     return "" if fewest >= ENOUGH else f";  webs of {fewest} elements are coarse for stresses"
-
-
-def _across_web(scene: Scene, segment: int) -> int:
-    """Return the typical number of element edges across a web."""
-    x, _, z = scene.points[scene.owner == segment].T
-    middle, half = 0.5 * (z.min() + z.max()), 0.5 * np.ptp(z)
-    inside = np.abs(z - middle) < 0.999 * half
-    counts = np.unique(x[inside].round(6), return_counts=True)[1]
-    # Count the points of two webs, without those at their ends.
-    return int(np.median(counts)) // 2 + 1
 
 
 def _band(line: Array, thickness: float) -> Any:
