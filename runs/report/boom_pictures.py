@@ -40,25 +40,15 @@ MODE_LENGTH, MODE_DRAWN = 4.0, 0.12
 
 @dataclass(frozen=True, slots=True)
 class BoomView:
-    """View settings that all pictures of a boom have in common for comparison.
+    """View settings that all pictures of a boom have in common for comparison."""
 
-    Args:
-        scene: scene of the boom in motion.
-        scale: magnification of displacements and play.
-        largest: largest magnitude of the deflection in mm.
-        camera: camera whose view contains the boom at every instant.
-        span: smallest and largest x of the boom in m.
-        rest: pyvista surface of the undeformed boom.
-        edges: sharp edges of the undeformed boom.
-    """
-
-    scene: Scene
-    scale: float
-    largest: float
-    camera: Camera
-    span: tuple[float, float]
-    rest: Any
-    edges: Any
+    scene: Scene  #: scene of the boom in motion
+    scale: float  #: magnification of displacements and play
+    largest: float  #: largest magnitude of the deflection in mm
+    camera: Camera  #: camera whose view contains the boom at every instant
+    span: tuple[float, float]  #: smallest and largest x of the boom in m
+    rest: Any  #: pyvista surface of the undeformed boom
+    edges: Any  #: sharp edges of the undeformed boom
 
     @classmethod
     def of(

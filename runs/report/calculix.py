@@ -44,19 +44,12 @@ _TERMS = 4
 
 
 class SpringRow(NamedTuple):
-    """Spring to the ground on a weighted mean of displacements.
+    """Spring to the ground on a weighted mean of displacements."""
 
-    Args:
-        name: comment in the deck.
-        parts: weights (num_owned,) of the displacements of each segment, by its number.
-        stiffness: stiffness in N/m, or in N·m/rad.
-        force: force in N on the mean displacement.
-    """
-
-    name: str
-    parts: Mapping[int, Array]
-    stiffness: float = _FREE
-    force: float = 0.0
+    name: str  #: comment in the deck
+    parts: Mapping[int, Array]  #: weights (num_owned,) of displacements, by number of the segment
+    stiffness: float = _FREE  #: stiffness in N/m, or in N·m/rad
+    force: float = 0.0  #: force in N on the mean displacement
 
 
 def deck(

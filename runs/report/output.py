@@ -98,7 +98,7 @@ def write_in_two_steps(
                 gather()
             except RenderingUnavailable as reason:
                 results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
-            _write_pages(results, addition, folder, figures)
+            write_report(results, addition, folder, figures)
 
         yield write_others
 
@@ -109,20 +109,19 @@ def write(run: Run, addition: Addition, folder: Path) -> None:
         write_others(addition)
 
 
-def write_report(results: Results, addition: Addition, folder: Path) -> None:
-    """Write summary, figures, tables and report.
+def write_report(
+    results: Results, addition: Addition, folder: Path, figures: Sequence[Figure] | None = None
+) -> None:
+    """Write summary, tables and report, and the figures unless they are given.
 
     Args:
         results: results of the run.
         addition: additions of the client.
         folder: folder of the files.
+        figures: figures with existing files.
     """
-    _write_pages(results, addition, folder, draw_in_folder(results, folder))
-
-
-def _write_pages(
-    results: Results, addition: Addition, folder: Path, figures: Sequence[Figure]
-) -> None:
+    if figures is None:
+        figures = draw_in_folder(results, folder)
     pictures = snapshots.describe(results, folder)
     viewer_file = VIEWER if (folder / VIEWER).is_file() else ""
     texts = {

@@ -79,19 +79,12 @@ LAST_TICK = 0.65
 
 @dataclass(frozen=True)
 class OverlapView:
-    """View of an overlap that all its pictures share.
+    """View of an overlap that all its pictures share."""
 
-    Args:
-        scene: scene of the boom in motion.
-        overlap: an overlap of the scene.
-        times: times of the pictures in s.
-        pixels: width and height of the picture.
-    """
-
-    scene: Scene
-    overlap: Overlap
-    times: Sequence[float]
-    pixels: tuple[int, int] = PIXELS
+    scene: Scene  #: scene of the boom in motion
+    overlap: Overlap  #: an overlap of the scene
+    times: Sequence[float]  #: times of the pictures in s
+    pixels: tuple[int, int] = PIXELS  #: width and height of the picture
 
     @property
     def stress(self) -> ShellStress:
@@ -269,15 +262,10 @@ def draw_overlap(
 
 @dataclass(frozen=True, slots=True)
 class StressScale:
-    """Colour scale of von Mises stresses, the same in all pictures of a shell.
+    """Colour scale of von Mises stresses, the same in all pictures of a shell."""
 
-    Args:
-        end: stress at the end of the scale in Pa, with three digits.
-        largest: largest stress of all triangles and times in Pa.
-    """
-
-    end: float
-    largest: float
+    end: float  #: stress at the end of the scale in Pa, with three digits
+    largest: float  #: largest stress of all triangles and times in Pa
 
     @classmethod
     def of(cls, shell: ShellStress, times: Iterable[float]) -> StressScale:

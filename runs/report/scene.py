@@ -183,22 +183,17 @@ class Scene:
     @cached_property
     def overlaps(self) -> list[Overlap]:
         """The overlaps of joints with play in the plane of the picture, from base to tip."""
-        midpoints: dict[int, list[float]] = {}
+        midpoints: dict[int, dict[int, list[float]]] = {}
         for pad in pads(self.boom):
-            midpoints.setdefault(pad.station, []).append(pad.midpoint)
-        overlaps, begin = [], 0
-        for direction in self.boom.directions:
-            for joint in self.boom.joints:
-                if joint.bonded:
-                    continue
-                stations = list(range(begin, begin + len(joint.stations)))
-                begin += len(stations)
-                play = joint.play if direction == "z" else joint.lateral_play
-                if direction == self.direction and play is not None:
-                    centres = [float(np.mean(midpoints[station])) for station in stations]
-                    overlaps.append(
-                        Overlap(joint.outer, joint.inner, stations, centres, 0.5 * play)
-                    )
+            if pad.direction == self.direction:
+                of_station = midpoints.setdefault(pad.number, {}).setdefault(pad.station, [])
+                of_station.append(pad.midpoint)
+        overlaps = []
+        for number, stations in midpoints.items():
+            joint = self.boom.joints[number]
+            clearance = 0.5 * ((joint.lateral_play or 0.0) if self.from_above else joint.play)
+            centres = [float(np.mean(several)) for several in stations.values()]
+            overlaps.append(Overlap(joint.outer, joint.inner, [*stations], centres, clearance))
         return overlaps
 
     def displacement(self, t: float) -> Array:

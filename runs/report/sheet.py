@@ -56,19 +56,12 @@ VIEW_ANGLE = 12.0
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """Camera along y, from negative y and slightly from above, so that x runs to the right.
+    """Camera along y, from negative y and slightly from above, so that x runs to the right."""
 
-    Args:
-        centre: (3,) centre of the picture in m.
-        width: width of the view at the centre in m.
-        pixels: width and height of the picture.
-        elevation: angle from above in degrees.
-    """
-
-    centre: Array
-    width: float
-    pixels: tuple[int, int]
-    elevation: float
+    centre: Array  #: (3,) centre of the picture in m
+    width: float  #: width of the view at the centre in m
+    pixels: tuple[int, int]  #: width and height of the picture
+    elevation: float  #: angle from above in degrees
 
     @property
     def axes(self) -> Array:

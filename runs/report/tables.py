@@ -48,21 +48,15 @@ Plain = str | float | list[float | None] | None
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """Column of a table.
+    """Column of a table."""
 
-    Args:
-        title: the heading.
-        cells: one cell per row: a number in SI units, text, or None for an empty cell; repeated
-            measurements are displayed as their median, rounded by their spread.
-        form: number format: ".2f" for two decimals, ".3g" for three significant digits, empty for
-            a count.
-        unit: displayed unit, such as "kN m" or "% of the range"; empty to leave numbers as they
-            are.
-    """
-
-    title: str
+    title: str  #: the heading
+    #: one cell per row: a number in SI units, text, or None for an empty cell; repeated
+    #: measurements are displayed as their median, rounded by their spread
     cells: Sequence[Cell]
+    #: number format: ".2f" for two decimals, ".3g" for three significant digits, empty for a count
     form: str = ""
+    #: displayed unit, such as "kN m" or "% of the range"; empty to leave numbers as they are
     unit: str = ""
 
     @property
@@ -123,22 +117,15 @@ class Column:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """Table for people and for programs.
+    """Table for people and for programs."""
 
-    Args:
-        title: title above the table.
-        columns: columns; the first is aligned left, the others right. Missing cells at the end of a
-            column are empty.
-        notes: sentences below the table.
-        name: name of its anchor in the report.
-        strong: texts of highlighted cells.
-    """
-
-    title: str
+    title: str  #: title above the table
+    #: columns; the first is aligned left, the others right; missing cells at the end of a column
+    #: are empty
     columns: Sequence[Column]
-    notes: Sequence[str] = ()
-    name: str = ""
-    strong: Sequence[str] = ()
+    notes: Sequence[str] = ()  #: sentences below the table
+    name: str = ""  #: name of its anchor in the report
+    strong: Sequence[str] = ()  #: texts of highlighted cells
 
     @classmethod
     def of_rows(

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import cycle
 from typing import Any
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -110,10 +111,6 @@ def strokes(models: Sequence[str], bonded: Sequence[str]) -> dict[str, Stroke]:
         models: names in the order of the case.
         bonded: names of models without play, whose curves are grey and dashed.
     """
-    with_play = [name for name in models if name not in bonded]
-    strokes_of_models = {name: Stroke(PLAY_FREE, "--") for name in bonded}
-    for i, name in enumerate(with_play):
-        # If the palette is too short, its colours are repeated with dashes.
-        again, color = divmod(i, len(PALETTE))
-        strokes_of_models[name] = Stroke(PALETTE[color], ("-", "-.", ":")[again % 3])
-    return {name: strokes_of_models[name] for name in models}
+    # If the palette is too short, its colours are repeated with dashes.
+    looks = cycle(Stroke(color, dashes) for dashes in ("-", "-.", ":") for color in PALETTE)
+    return {name: Stroke(PLAY_FREE, "--") if name in bonded else next(looks) for name in models}
