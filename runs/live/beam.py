@@ -334,8 +334,7 @@ def _segments(boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[st
 
 
 def _deflection(diagram: Diagram, factor: float) -> Array:
-    zero = [0.0] * len(diagram.x)
-    return factor * np.array(diagram.curves.get("deflection", zero))
+    return factor * np.array(diagram.curves.get("deflection", [0.0] * len(diagram.x)))
 
 
 def _cylinders(boom: Boom) -> Iterator[dict[str, Any]]:

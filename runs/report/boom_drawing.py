@@ -176,9 +176,8 @@ def _draw_whole(panel: Panel, symbols: Sequence[Symbol]) -> None:
     boom, axes, angle = panel.boom, panel.axes, panel.angle
     low, high = _extent(boom, angle)
     margin = MARGIN * boom.length
-    axes.set_xlim(low[0] - margin, high[0] + margin)
-    axes.set_ylim(low[1] - margin, high[1] + margin)
-    axes.set_aspect("equal")
+    (left, bottom), (right, top) = low - margin, high + margin
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     axes.set_axis_off()
     degrees = with_minus_signs(f"{angle:g}°")
     axes.set_title(f"at {degrees}, to scale" if angle else "to scale", fontsize=10.0)
@@ -211,11 +210,10 @@ def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
             annotation_clip=False,
         )
     margin = MARGIN * boom.length
-    axes.set_xlim(boom.segments[0].start - margin, boom.tip + _farthest(boom) + margin)
+    reach = boom.segments[0].start - margin, boom.tip + _farthest(boom) + margin
     tallest = factor * max(abs(z) for s in boom.segments for x in s.ends for z in edges(boom, s, x))
-    axes.set_ylim(-2.9 * tallest, 2.6 * tallest)
+    axes.set(xlim=reach, ylim=(-2.9 * tallest, 2.6 * tallest), yticks=[])
     axes.grid(False)
-    axes.set_yticks([])
     axes.spines["left"].set_visible(False)
     axes.xaxis.set_major_locator(MaxNLocator(9, steps=[1, 2, 5, 10]))
     axes.set_xlabel("x along the boom (m)", fontsize=10.0)
@@ -355,9 +353,8 @@ def _draw_sections(axes: Axes, boom: Boom, sections: Sequence[tuple[int, Section
             va="top",
             fontsize=9.0 if len(sections) < 4 else 8.0,
         )
-    axes.set_xlim(-0.6 * pitch, (len(sections) - 0.4) * pitch)
-    axes.set_ylim(1.6 * lowest, 1.05 * highest)
-    axes.set_aspect("equal")
+    reach = -0.6 * pitch, (len(sections) - 0.4) * pitch
+    axes.set(xlim=reach, ylim=(1.6 * lowest, 1.05 * highest), aspect="equal")
     axes.set_axis_off()
     axes.set_title("sections to scale; mid-lines\nand walls in mm", fontsize=10.0)
 

@@ -245,11 +245,7 @@ def _draw_mode(heading: str, points: Array, triangles: Numbers, shape: Array, pa
         edges = sharp_edges(surface(sides * points, triangles[near]))
         plotter.add_mesh(edges, color=theme.INK, line_width=2.4, **UNLIT)
         sheet.show(camera.render(plotter))
-    orientation = " and ".join(
-        name
-        for name, flipped in zip(("from behind", "upside down"), flip < 0.0, strict=True)
-        if flipped
-    )
+    orientation = " and ".join(np.array(["from behind", "upside down"])[flip < 0.0])
     text = f"; seen {orientation}" if orientation else ""
     sheet.write(heading, f"first mode, magnified{text}")
     sheet.image().save(path)

@@ -12,7 +12,7 @@ import gzip
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 import numpy as np
@@ -67,8 +67,7 @@ class Chart:
         """The figure as an object of plotly, which checks it."""
         from plotly.graph_objects import Figure
 
-        plain = self.plain
-        return Figure(plain["data"], plain["layout"])
+        return Figure(self.plain)
 
     @property
     def plain(self) -> dict[str, Any]:
@@ -106,12 +105,9 @@ class Chart:
                  "yref": f"{_axis('y', number)} domain", "y": 1, "yanchor": "bottom",
                  "showarrow": False}
             )  # fmt: skip
-        named: set[str] = set()
-        traces = []
-        for curve in self.curves:
-            traces += [*self._traces(curve, curve.name not in named)]
-            named.add(curve.name)
-        return {"data": traces, "layout": layout}
+        first = {curve.name: curve for curve in reversed(self.curves)}
+        traces = (self._traces(curve, curve is first[curve.name]) for curve in self.curves)
+        return {"data": [*chain.from_iterable(traces)], "layout": layout}
 
     def _traces(self, curve: Curve, named: bool) -> Iterator[dict[str, Any]]:
         """Yield the traces of a curve: its band and its line, in the legend if ``named``."""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from itertools import chain
 
@@ -60,12 +60,7 @@ def render(
     texts, proofs = tables_by_part(results), results.summary.design.proofs
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
-    numbered_things = [
-        *_numbered("Table", chain(*texts.values())),
-        *_numbered("Figure", chain(*pictures.values())),
-    ]
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
-    costs = _costs(results)
     names = list(results.summary.models)
     strokes = theme.strokes(names, [m.name for m in results.case.models if m.bonded])
     return page(
@@ -75,7 +70,11 @@ def render(
         duration=f"{results.case.time.duration:g}",
         cautions=results.summary.cautions,
         remarks=addition.remarks,
-        labels={thing.anchor: label for thing, label in numbered_things},
+        labels={
+            thing.anchor: f"{kind}\N{NO-BREAK SPACE}{i}"
+            for kind, several in (("Table", texts), ("Figure", pictures))
+            for i, thing in enumerate(chain(*several.values()), start=1)
+        },
         colors={name: strokes[name].color for name in names},
         adds=play_effect(results),
         of=results.play.model if results.play else "",
@@ -89,7 +88,7 @@ def render(
         skipped=results.summary.snapshots.skipped,
         versions={k: v for k, v in results.summary.versions.items() if v is not None},
         case_hash=results.summary.case_hash,
-        costs=costs,
+        costs=_costs(results),
         case_text=toml.dumps(results.case),
         **texts,
         **pictures,
@@ -108,11 +107,6 @@ def tables_by_part(results: Results) -> dict[str, list[Table]]:
         "models": model_tables(results),
     }
     return {part: [table for table in several if table.rows] for part, several in tables.items()}
-
-
-def _numbered(kind: str, things: Iterable[Table | Figure]) -> list[tuple[Table | Figure, str]]:
-    """Return each table or figure with its label, such as *Table 1* (with a no-break space)."""
-    return [(thing, f"{kind}\N{NO-BREAK SPACE}{i}") for i, thing in enumerate(things, start=1)]
 
 
 def _costs(results: Results) -> Mapping[str, str]:

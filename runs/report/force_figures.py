@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
+from matplotlib.ticker import NullLocator
 
 from geometry.arrays import Array
 from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
@@ -152,8 +152,7 @@ def _log_scale(panels: Sequence[Axes], values: Array) -> None:
     for axes in panels:
         axes.set_yscale("log")
         axes.set_ylim(low, high)
-        axes.yaxis.set_major_locator(FixedLocator(labels.tolist()))
-        axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.3g}"))
+        axes.set_yticks(labels, [f"{label:.3g}" for label in labels])
         axes.yaxis.set_minor_locator(NullLocator())
 
 

@@ -10,6 +10,7 @@ leaves out section fields, and coupling between the springs of different station
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -204,12 +205,10 @@ def _contacts(
     model_boom: ModelBoom, parts: Sequence[Part], calibration: Calibration | None
 ) -> Iterator[dict[str, object]]:
     """Yield two nodes and the points (m, N) of the contact law for each contact."""
-    boom, row = model_boom.boom, 0
+    boom, rows = model_boom.boom, count()
 
     def points(law: ContactLaw) -> list[list[float]]:
-        nonlocal row
-        spring = None if calibration is None else calibration.spring(row)
-        row += 1
+        spring = None if calibration is None else calibration.spring(next(rows))
         return _points(law, 0.0 if spring is None else 1.0 / spring)
 
     for pad in pads(boom):
@@ -249,8 +248,8 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
         nodal_loads = part.nodal(part.component.load)
         if nodal_loads:
             yield {"segment": number, "nodes": nodal_loads, "values": None}
-    count = round(case.time.duration / case.time.output_step) + 2
-    times = case.time.output_step * np.arange(count)
+    num_times = round(case.time.duration / case.time.output_step) + 2
+    times = case.time.output_step * np.arange(num_times)
     for load in boom.loads:
         part = parts[load.segment]
         values = np.asarray(load.history(times), dtype=float)

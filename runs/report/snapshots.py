@@ -47,7 +47,7 @@ TITLES = {
 }
 
 # Events that happen at a station.
-AT_A_STATION = ("largest-force", "first-contact")
+AT_A_STATION = {"largest-force", "first-contact"}
 
 # Two times closer than this fraction of the run count as one.
 SAME = 0.02
@@ -187,14 +187,10 @@ def _named_times(motion: xr.Dataset, times: Times) -> dict[str, float]:
 
 
 def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant]:
-    return [
-        Instant(
-            t,
-            TITLES.get(name, "")
-            + (place_of_largest_force(views, t) if name in AT_A_STATION else ""),
-        )
-        for name, t in when.items()
-    ]
+    places = {
+        name: place_of_largest_force(views, when[name]) for name in AT_A_STATION & when.keys()
+    }
+    return [Instant(t, TITLES.get(name, "") + places.get(name, "")) for name, t in when.items()]
 
 
 def characteristic_instants(motion: xr.Dataset) -> dict[str, float]:

@@ -8,7 +8,6 @@ from textwrap import fill
 
 import numpy as np
 
-from geometry.arrays import Array
 from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, join_words, with_minus_signs
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.load_table import release_note
@@ -67,7 +66,11 @@ def summary_table(results: Results) -> Table | None:
     aside = [
         max((s.tip_lateral or 0.0 for s in one.static), key=abs, default=0.0) for one in designs
     ]
-    dynamic = [*map(_farthest, designs, tips)]
+    tip_peaks = [largest_peak(one, "deflection") for one in designs]
+    dynamic = [
+        _milli(farthest(tip)) + (times(peak) if peak else "")
+        for tip, peak in zip(tips, tip_peaks, strict=False)
+    ]
     travel = [farthest(x - x[0]) if x[0] else None for x in tips]
     bending, plates = ([one and _stress(one) for one in several] for several in (fibres, walls))
     z, lateral = ", vertical (z)" if results.boom.spatial else "", "Static lateral tip deflection"
@@ -164,17 +167,12 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
         return ""
     governing.sort(key=lambda one: one.value or 0.0, reverse=True)
     used = "; ".join(map(str, governing))
-    missing = _missing_strengths(results, model)
-    return f"In this run, without safety factors, the utilisation is {used}.{missing}"
-
-
-def _missing_strengths(results: Results, model: str) -> str:
-    """Return a text on missing strengths of steel and of loaded pads."""
     steels = [one.name for one in results.boom.segments if one.yield_strength is None]
     loaded = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
     pads = {pad.inner: None for pad in loaded if pad.utilisation is None}
     missing = {"yield strength is given of": steels, "allowable pressure is given of pads of": pads}
-    return "".join(f" No {what} {join_words([*of])}." for what, of in missing.items() if of)
+    more = "".join(f" No {what} {join_words([*of])}." for what, of in missing.items() if of)
+    return f"In this run, without safety factors, the utilisation is {used}.{more}"
 
 
 _PHRASES = {
@@ -304,12 +302,6 @@ def _span(values: Iterable[float | None]) -> str:
         if millions
         else ""
     )
-
-
-def _farthest(results: ModelDesignResults, tip: Array) -> str:
-    """Return as text the signed maximum tip deflection and its ratio to the static value."""
-    peak = largest_peak(results, "deflection")
-    return _milli(farthest(tip)) + (times(peak) if peak else "")
 
 
 def _vibration(results: ModelDesignResults) -> str | None:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 
 from rich.console import Console
 
@@ -84,9 +84,19 @@ def print_models(results: Results, console: Console) -> None:
     texts = {column.heading: column.text for column in model_table(results).columns}
     columns = [Column(SHOWN[one], texts[one]) for one in texts if one in SHOWN]
     Table(f"Models: {results.case.title}", columns).show(console)
+    for name, model in results.summary.models.items():
+        if errors := model.reduction_errors:
+            print_text(
+                console,
+                f"{name}: {model.modes} generalised coordinates. Relative errors of the reduction: "
+                f"local contact compliance {number(errors['contact_compliance'], 1)}, deflections "
+                f"of tip and segment heads {number(errors['deflections'], 1)}. Mesh error of "
+                "the local contact compliance: "
+                f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}.",
+            )
     skipped = results.summary.snapshots.skipped
     missing = [] if skipped is None else [f"no snapshots: {skipped}"]
-    for line in (*_model_notes(results), *missing, *results.summary.cautions):
+    for line in (*missing, *results.summary.cautions):
         print_text(console, line)
 
 
@@ -160,19 +170,6 @@ def lateral_table(results: Results) -> Table | None:
         Column("dynamic", dynamic, ".1f", "mm"),
     ]
     return Table("Lateral tip deflection", columns)
-
-
-def _model_notes(results: Results) -> Iterator[str]:
-    """Yield notes on the accuracy of shells."""
-    for name, model in results.summary.models.items():
-        if errors := model.reduction_errors:
-            yield (
-                f"{name}: {model.modes} generalised coordinates. Relative errors of the reduction: "
-                f"local contact compliance {number(errors['contact_compliance'], 1)}, deflections "
-                f"of tip and segment heads {number(errors['deflections'], 1)}. Mesh error of "
-                "the local contact compliance: "
-                f"{'unknown' if model.mesh_error is None else percent(model.mesh_error, 2)}."
-            )
 
 
 def print_proofs(
