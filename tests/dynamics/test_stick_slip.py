@@ -127,13 +127,12 @@ def test_sudden_start_of_another_drive(start: float) -> None:
 Friction = Callable[[Array | float], Array]
 
 
-class Stops:
-    """End of a slip, as an event for solve_ivp."""
+def stops(_: float, y: Array, sign: float) -> float:
+    """Return the event at the end of a slip."""
+    return float(sign * y[1] + (1e-14 if y[1] == 0.0 else 0.0))
 
-    terminal, direction = True, -1
 
-    def __call__(self, _: float, y: Array, sign: float) -> float:
-        return float(sign * y[1] + (1e-14 if y[1] == 0.0 else 0.0))
+stops.terminal, stops.direction = True, -1
 
 
 def by_runge_kutta(
@@ -163,7 +162,7 @@ def by_runge_kutta(
         sign = float(np.sign(force(time, place, 0.0)))
         run = solve_ivp(
             slides, (time, end), [place, 0.0],
-            args=(sign,), events=Stops(), rtol=1e-11, atol=1e-13, max_step=0.01,
+            args=(sign,), events=stops, rtol=1e-11, atol=1e-13, max_step=0.01,
         )  # fmt: skip
         time, place = float(run.t[-1]), float(run.y[0, -1])
         sticks += run.t_events[0].size

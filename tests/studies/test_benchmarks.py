@@ -50,7 +50,6 @@ def test_a_roof_is_too_stiff_and_softens(found: Study) -> None:
     row = next(row for row in found.data["benchmarks"] if "roof" in str(row["quantity"]))
     coarse, medium, fine = (float(row[f"edges × {size}"]) for size in (4, 2, 1))
     assert coarse < medium < fine < PUBLISHED.scordelis_lo_roof
-    assert np.log2((0.3024 - coarse) / (0.3024 - medium)) > 1.1
 
 
 def test_shear_deepens_a_dent(found: Study) -> None:

@@ -18,7 +18,7 @@ from studies.numerics_1997.schemes import (
     integrate,
     lowest,
 )
-from tests.modal import oscillator
+from tests.modal import modal_system, oscillator
 
 ALL = (NEWMARK, WILSON, CENTRAL)
 DEEP = 100.0
@@ -76,14 +76,7 @@ def amplitude_loss(root: complex) -> float:
 def sprung() -> GapSystem:
     """Return 1 kg always in contact with two stops of together 1 N/m, without another spring."""
     contact = PowerContact(0.5, 1.0).with_clearance(-DEEP)
-    return replace(
-        oscillator(),
-        omega2=np.zeros(1),
-        rows=np.ones((1, 1)),
-        laws=[contact],
-        station_of_row=np.array([0]),
-        stations=[0.0],
-    )
+    return modal_system([0.0], [0.0], [1.0], [contact], tip=[1.0])
 
 
 def rubbing(force: float) -> GapSystem:
@@ -180,13 +173,7 @@ def test_friction_stop_within_a_step_does_not_converge() -> None:
 
 
 def test_the_lowest_modes_are_kept_in_their_order() -> None:
-    rows = np.arange(3.0)[None]
-    system = replace(
-        oscillator(), omega2=np.array([9.0, 0.0, 4.0]), load=np.array([1.0, 2.0, 3.0]),
-        rows=rows, laws=sprung().laws, station_of_row=np.array([0]), stations=[0.0],
-        damping=np.zeros(3), dashpots=np.zeros((0, 3)), friction_rows=np.zeros((0, 3)),
-        released_load=np.zeros(3), initial_impulse=np.zeros(3), observers={},
-    )  # fmt: skip
+    system = modal_system([9.0, 0.0, 4.0], [1.0, 2.0, 3.0], np.arange(3.0), sprung().laws)
     cut = lowest(system, 2)
     assert cut.omega2.tolist() == [0.0, 4.0]
     assert cut.load.tolist() == [2.0, 3.0]

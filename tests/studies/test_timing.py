@@ -18,7 +18,6 @@ from runs.case import reading as case_file
 from runs.report.formatting import repeated
 from studies.cost import other_programs, timing
 from studies.cost.bench import (
-    LEVELS,
     PAPER,
     Sizes,
     bench,
@@ -135,14 +134,6 @@ def test_generic_solvers_err_no_more_than_the_time_step(data: Any) -> None:
             assert 0.01 * target < entry["tip off (of range)"] <= target
             assert len(entry["wall s"]) == len(entry["over the time step"]) == 2
             assert min(entry["wall s"]) > 0.0
-
-
-@pytest.mark.slow
-def test_the_levels_of_the_command() -> None:
-    """The command has descending steps and all solvers."""
-    steps = [step for step, _ in LEVELS]
-    assert steps == sorted(steps, reverse=True)
-    assert {name for _, names in LEVELS for name in names} == set(SOLVERS)
 
 
 def test_less_accurate_solver_is_named() -> None:
