@@ -151,6 +151,17 @@ def unprinted(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(theme.Canvas, "print_figure", blank)
 
 
+@pytest.fixture(scope="session")
+def opengl() -> None:
+    """Skip pictures where OpenGL does not work."""
+    from runs.report.opengl import RenderingUnavailable, require_opengl
+
+    try:
+        require_opengl()
+    except RenderingUnavailable as reason:
+        pytest.skip(str(reason))
+
+
 @pytest.fixture
 def on_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Return a runner of Python programs on a number of ranks in an empty folder."""

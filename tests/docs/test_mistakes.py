@@ -19,9 +19,9 @@ ARM = (CASES / "inspection-arm.toml").read_text("utf-8").partition("# Combinatio
 ARM = ARM.replace("gust.csv", str(CASES / "gust.csv"))
 
 
-def with_table(text: str) -> tuple[str, str]:
-    """Return the replacement that adds a table to the lift."""
-    return "[damping]", f"{text}\n[damping]"
+def with_load(keys: str) -> tuple[str, str]:
+    """Return the replacement that adds a load of the fly to the lift."""
+    return "[damping]", f'[[load]]\nsegment = "fly"\n{keys}\n[damping]'
 
 
 # Each mistake with the text of the case and its replacement.
@@ -38,22 +38,14 @@ LIFT_MISTAKES = {
     "cylinder on fly": ('segment = "base"\nx = 2.4', 'segment = "fly"\nx = 8.0'),
     "duration in ms": ("duration = 5.0", "duration = 5000"),
     "tail and head of load": ('x = "head"\nmagnitude', 'x = "tail"\nmagnitude'),
-    "cage also as a force across": with_table(
-        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -1040.0'
-    ),
-    "cage also as a force with g of 10": with_table(
-        '[[load]]\nsegment = "fly"\nx = "head"\nmagnitude = -1500.0'
-    ),
+    "cage also as a force across": with_load('x = "head"\nmagnitude = -1040.0'),
+    "cage also as a force with g of 10": with_load('x = "head"\nmagnitude = -1500.0'),
     "cage also as a mass near the head": (
         "section = { height = 0.256",
         "masses = [{ x = { head = 0.05 }, mass = 150 }]\nsection = { height = 0.256",
     ),
-    "weight of fly at its middle": with_table(
-        '[[load]]\nsegment = "fly"\nx = 8.3\nmagnitude = -1778.0'
-    ),
-    "load twice, other form of x": with_table(
-        '[[load]]\nsegment = "fly"\nx = 11.3\nmagnitude = -1595.0\nramp = 0.1'
-    ),
+    "weight of fly at its middle": with_load("x = 8.3\nmagnitude = -1778.0"),
+    "load twice, other form of x": with_load("x = 11.3\nmagnitude = -1595.0\nramp = 0.1"),
     "E a tenth": ("youngs_modulus = 2.1e11", "youngs_modulus = 2.1e10"),
     "walls a tenth": ("flange = 0.006, web = 0.005", "flange = 0.0006, web = 0.0005"),
     "foot clamped": ('kind = "hinged"', 'kind = "clamped"'),

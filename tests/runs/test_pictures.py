@@ -54,14 +54,6 @@ def _coarse() -> Iterator[None]:
         yield
 
 
-@pytest.fixture(scope="module")
-def _opengl() -> None:
-    try:
-        opengl.require_opengl()
-    except RenderingUnavailable as reason:
-        pytest.skip(str(reason))
-
-
 def test_characteristic_instants_are_those_of_the_motion(shell: Scene) -> None:
     """Reference: analytic. The tip's sin² has its first peak at 0.5 s."""
     expected = {"first-peak": 0.5, "largest-force": 1.6, "first-contact": 0.2}
@@ -118,7 +110,7 @@ def test_refuses_a_time_outside_the_run(shell: Scene, tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("_opengl")
+@pytest.mark.usefixtures("opengl")
 @pytest.mark.parametrize("place", [(4.0, 0.0, 1.0), (-6.0, 2.0, -0.5)])
 def test_labels_are_at_the_projected_points(place: tuple[float, ...]) -> None:
     """Reference: other code, the centre of a small plate in VTK's picture."""
@@ -133,7 +125,7 @@ def test_labels_are_at_the_projected_points(place: tuple[float, ...]) -> None:
 
 
 @pytest.fixture(scope="module")
-def pictures(_opengl: None, shell: Scene, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
+def pictures(opengl: None, shell: Scene, tmp_path_factory: pytest.TempPathFactory) -> list[Path]:
     folder = tmp_path_factory.mktemp("snapshots")
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(snapshots, "FRAMES", FRAMES)
@@ -210,7 +202,7 @@ def test_the_scale_of_stresses_ends_with_the_largest(steep: float) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("_opengl")
+@pytest.mark.usefixtures("opengl")
 @pytest.mark.parametrize("steep", [1.0, 4.0])
 def test_arrows_and_their_numbers_stay_above_the_axis(steep: float) -> None:
     """Reference: analytic. Forces of 1 and 0.9 of the maximum have arrows of 110 and 104 pixels."""
@@ -241,7 +233,7 @@ def test_large_stress_is_dark(pictures: list[Path]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("_opengl")
+@pytest.mark.usefixtures("opengl")
 def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
     (overlap,) = shell.overlaps
     with rc_context(theme.PAGE_RC):
@@ -254,7 +246,7 @@ def test_mesh_and_sections_are_drawn(shell: Scene) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("_opengl")
+@pytest.mark.usefixtures("opengl")
 def test_symbols_of_loads_masses_and_cylinders_follow_the_boom(shell: Scene) -> None:
     """Reference: analytic. 30 pt: a red arrow, a black ball at the tip, a cylinder bar."""
     payload = PayloadTable(mass=100.0)
@@ -302,7 +294,7 @@ def test_animation_is_small_and_moves(pictures: list[Path]) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("_opengl")
+@pytest.mark.usefixtures("opengl")
 def test_given_times_name_the_files(
     shell: Scene, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -20,9 +20,8 @@ from runs.case.schema import BucklingTable
 from runs.pipeline.results import Results
 from runs.pipeline.summary import Summary
 from runs.pipeline.wall_buckling import with_locations
-from runs.report import opengl, sheet
+from runs.report import sheet
 from runs.report.boom_pictures import render_buckling
-from runs.report.opengl import RenderingUnavailable
 from runs.report.result_tables import buckling_table
 from runs.report.summary_table import summary_table
 from shell_model.buckling import SegmentBuckling
@@ -98,12 +97,9 @@ def test_a_case_without_the_table_has_none() -> None:
     assert not results.summary.design.models["timoshenko"].panels
 
 
+@pytest.mark.usefixtures("opengl")
 def test_each_mode_has_its_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: by hand. A mode of the bottom is displayed upside down, and has no instant."""
-    try:
-        opengl.require_opengl()
-    except RenderingUnavailable as reason:
-        pytest.skip(str(reason))
     monkeypatch.setattr(sheet, "OVERSAMPLING", 1)
     scene = moving_scene()
     points = scene.points[scene.owner == 0]

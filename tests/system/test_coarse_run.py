@@ -162,10 +162,8 @@ def test_the_fields_move_as_the_trajectory_does(whole: Path) -> None:
     assert np.abs(moved - tip).max() < 1e-3 * np.abs(tip).max()
 
 
-@pytest.mark.usefixtures("few_figures", "_short_film")
+@pytest.mark.usefixtures("few_figures", "opengl", "_short_film")
 def test_snapshots_of_given_times_join_the_others(whole: Path, again: Path) -> None:
-    if not can_draw():
-        pytest.skip("pictures take OpenGL, and VTK finds none that works")
     assert protractile("snapshot", again, "--time", "0.25") == 0
     names = {path.name for path in (again / "snapshots").iterdir()}
     assert names == {path.name for path in (whole / "snapshots").iterdir()} | {
