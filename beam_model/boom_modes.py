@@ -34,6 +34,7 @@ from geometry.cylinder import ground_lines
 from geometry.telescoping import (
     TelescopingStations,
     drives_below,
+    reach,
     sample_extensions,
     station_positions,
 )
@@ -360,15 +361,15 @@ def _breaks(boom: Boom, models: Sequence[SegmentModel], group: TelescopingStatio
     for stop in boom.stops:
         if drives_below(boom.joints, stop.segment) == group.joints:
             crossings += [stop.x - c.breaks for c in models[stop.segment].components.values()]
-    return _extensions_between(boom, group.reach, crossings)
+    return _extensions_between(boom, reach(group.drives), crossings)
 
 
 def _extensions_between(
-    boom: Boom, reach: tuple[float, float], passed: Sequence[Array]
+    boom: Boom, ends: tuple[float, float], passed: Sequence[Array]
 ) -> list[float]:
-    """Return the ends of the range ``reach`` in m, and the extensions ``passed`` within it."""
-    low, high = reach
-    extensions = np.unique(np.clip(np.concatenate([reach, *passed]), low, high))
+    """Return the ``ends`` of a range in m, and the extensions ``passed`` within it."""
+    low, high = ends
+    extensions = np.unique(np.clip(np.concatenate([ends, *passed]), low, high))
     near = SAME_PLACE * boom.length
     inside = (one for one in extensions[1:-1] if low + near < one < high - near)
     kept = [low, *inside, high]

@@ -197,7 +197,8 @@ def _bending(segment: Segment, probed: ProbeResponses, motion: ProbedMotion) -> 
 
 def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: int) -> Array:
     """Return the ratios (count,) of shell stiffness to beam stiffness, by least squares."""
-    first, turns = _component(segment, probed, motion, np.ones(count))
+    first = _component(segment, probed, motion, np.ones(count))
+    turns = first.rigid_modes
     probes = _probes(first, probed, motion)
     excited = probes.any(axis=1)
     modes = natural_modes(first.stiffness, first.mass, turns)
@@ -211,7 +212,7 @@ def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: 
     pairs = np.triu_indices(len(shell))
 
     def errors(logarithms: Array) -> Array:
-        component, _ = _component(segment, probed, motion, np.exp(logarithms))
+        component = _component(segment, probed, motion, np.exp(logarithms))
         sigma = (2.0 * np.pi * PROBE_FREQUENCY) ** 2
         pushes = _probes(component, probed, motion).T @ balanced
         beam = pushes.T @ np.linalg.solve(component.stiffness + sigma * component.mass, pushes)
@@ -222,8 +223,8 @@ def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: 
 
 def _component(
     segment: Segment, probed: ProbeResponses, motion: ProbedMotion, factors: Array
-) -> tuple[Component, int]:
-    """Return the component of a motion with scaled stiffnesses, and its number of rigid modes."""
+) -> Component:
+    """Return the component of a motion with scaled stiffnesses."""
     if motion == "twist":
         assert segment.lateral is not None
         torsion = factors[0] * segment.lateral.torsion_constant
@@ -240,8 +241,7 @@ def _component(
         )
     length = segment.length / _ELEMENTS
     model = finite_element_segment(changed, length, probed.places, "timoshenko", True)
-    component = model.components["twist" if motion == "twist" else "z"]
-    return component, component.rigid_modes
+    return model.components["twist" if motion == "twist" else "z"]
 
 
 def _probes(component: Component, probed: ProbeResponses, motion: ProbedMotion) -> Array:

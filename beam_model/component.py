@@ -69,10 +69,7 @@ class Component:
         return BeamSegment(lambda motion, rule: rule(self) if motion == "z" else nothing)
 
     def uniform(self, span: tuple[float, float] | None) -> Array:
-        """Return the load vector (num_dofs,) of 1 N/m between both x in m of ``span``.
-
-        The load acts along the whole segment if ``span`` is None.
-        """
+        """Return the load vector (num_dofs,) of 1 N/m, see :class:`geometry.load.LoadedSegment`."""
         if span is None:
             return self.unit_load
         start, end = span

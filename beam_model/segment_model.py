@@ -8,7 +8,7 @@ from dataclasses import replace
 from functools import partial
 
 from beam_model.boom_modes import BoomModes, travel
-from beam_model.component import SegmentModel
+from beam_model.component import Motion, SegmentModel
 from dynamics.gap_builder import GapBuilder, OutputOperator
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
@@ -16,7 +16,7 @@ from geometry.axial import pin_moments
 from geometry.boom import Boom
 from geometry.contact_places import pads
 from geometry.cylinder import ground_lines
-from geometry.observation import Observation, Quantity
+from geometry.observation import Displacement, Observation, Quantity
 from geometry.section import Side
 from geometry.telescoping import drives_below, telescoping_stations
 
@@ -57,7 +57,7 @@ def system_without_drives(
     return _rows(boom, modes, sides, {}).system(
         lambda row: row,
         modes.omega2,
-        sum((push for _, push in pin_moments(boom.segments, boom.joints, beams)), modes.load),
+        sum((push for _, push in pin_moments(boom, beams)), modes.load),
         boom.stations,
         {
             place.name: OutputOperator(_row(place, modes), place.kind.unit, place.kind.derivative)
@@ -110,17 +110,15 @@ def _rows(
     return rows
 
 
+# Motion of each displacement, and order of its row.
+_ROWS: Mapping[Displacement, tuple[Motion, int]] = {
+    "deflection": ("z", 0), "rotation": ("z", 1), "lateral": ("y", 0), "twist": ("twist", 0),
+}  # fmt: skip
+
+
 def _row(place: Observation, modes: BoomModes) -> Array:
     """Return the row (num_modes,) of the displacement of an observation."""
-    beam = modes.beams[place.segment]
-    match place.kind.displacement:
-        case "rotation":
-            return beam.moment(place.x, "z")
-        case "twist":
-            return beam.torque(place.x)
-        case "lateral":
-            return beam.at("y", place.x)
-        case "distortion":
-            raise ValueError("the cross-section of a beam keeps its shape")
-        case "deflection":
-            return beam.at("z", place.x)
+    if place.kind.displacement not in _ROWS:
+        raise ValueError("the cross-section of a beam keeps its shape")
+    motion, order = _ROWS[place.kind.displacement]
+    return modes.beams[place.segment].at(motion, place.x, order)

@@ -27,7 +27,7 @@ from dynamics.failure import NUMERICAL_ERRORS
 from dynamics.gap_system import GapSystem
 from geometry.arrays import Array
 from geometry.boom import Boom
-from geometry.contact_places import contact_centres
+from geometry.contact_places import contact_centres, pad_places
 
 # Minimum number of elements of the longest segment in a boom with axial forces or tapers.
 ELEMENTS_WITH_AXIAL_FORCE = 20
@@ -173,10 +173,7 @@ def _reaction_places(boom: Boom, number: int) -> set[float]:
     places = {support.x for support in boom.segments[number].supports}
     places |= {stop.x for stop in boom.stops if stop.segment == number}
     places |= {jack.x for jack in boom.cylinders if jack.segment == number}
-    joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
-    return places | {
-        x for joint in joints for at in contact_centres(boom, joint).values() for x in at
-    }
+    return places | pad_places(boom, number)
 
 
 def _reactions(

@@ -218,26 +218,20 @@ class GapSystem:
         """Return the system with its extensions fixed at a time in s."""
         rows_at = {kind: getattr(self, kind).copy() for kind in ROW_KINDS}
         laws = list(self.laws)
-        geometric_stiffness = (
-            self.geometric_stiffness
-            if self.geometric_stiffness.size
-            else np.zeros((self.num_modes,) * 2)
-        )
+        parts = [self.geometric_stiffness] if self.geometric_stiffness.size else []
         for travel in self.travels:
             extension = float(travel.history(np.array(time)))
             rows = travel.table(extension)
-            for force in travel.axial_forces:
-                geometric_stiffness = geometric_stiffness + force.geometric_stiffness(extension)
+            parts += [force.geometric_stiffness(extension) for force in travel.axial_forces]
             for (kind, position), row in zip(travel.moved_rows, rows, strict=True):
                 rows_at[kind][position] = row
             for (_, position), shift in zip(travel.moved_rows, travel.shifts, strict=False):
                 laws[position] = laws[position].with_clearance(
                     -shift * extension, shift * extension
                 )
-        geometric_stiffness = geometric_stiffness if geometric_stiffness.any() else np.zeros((0, 0))
-        return replace(
-            self, **rows_at, laws=laws, travels=(), geometric_stiffness=geometric_stiffness
-        )
+        whole = sum(parts, np.zeros(()))
+        softening = whole if whole.any() else np.zeros((0, 0))
+        return replace(self, **rows_at, laws=laws, travels=(), geometric_stiffness=softening)
 
     def in_own_modes(self) -> GapSystem:
         """Return the system in the modes of its stiffness, geometric stiffness included."""

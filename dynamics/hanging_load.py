@@ -79,10 +79,8 @@ class Pendulum:
             time: time in s.
             across, lateral: rows (num_modes,) of the deflections of the tip along z and y.
         """
-        luffed, slewed = (
-            self.frame.luff_angle(np.array(time)),
-            self.frame.slew_angle(np.array(time)),
-        )
+        at = np.array(time)
+        luffed, slewed = self.frame.luff_angle(at), self.frame.slew_angle(at)
         out = -np.sin(luffed) * across
         return np.array(
             [

@@ -81,7 +81,6 @@ class StepSchedule:
         return run.trajectory(self.substeps, self.window)
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
-        """Return this integrator."""
         return self
 
     def finer(self) -> StepSchedule:
@@ -106,7 +105,6 @@ class FixedStep:
         return StepSchedule((substeps,), window)(motion, progress)
 
     def like(self, trajectory: Trajectory) -> FixedStep:
-        """Return this integrator."""
         return self
 
     def finer(self) -> FixedStep:

@@ -199,14 +199,14 @@ class Integration:
             resistance = np.sign(steps) * friction
             power = np.diff(work + np.cumsum((resistance + travel.axial_load) * steps), prepend=0.0)
             power[1:] /= np.diff(trajectory.time)
-            values = extension, resistance, power
-            for (name, of), value in zip(DRIVE_VARIABLES.items(), values, strict=True):
-                added[f"{name}{travel.suffix}"] = ("time", value, of)
+            values = dict(zip(DRIVE_VARIABLES, (extension, resistance, power), strict=True))
             if travel.elastic is not None:
                 lagged = move_segment(travel.elastic, travel.history, trajectory.time, friction)
                 stick_slip[f"drive_force{travel.suffix}"] = lagged.results
-                for name, value in lagged.series.items():
-                    added[f"{name}{travel.suffix}"] = ("time", value, ELASTIC_DRIVE_VARIABLES[name])
+                values |= lagged.series
+            for name, value in values.items():
+                of = {**DRIVE_VARIABLES, **ELASTIC_DRIVE_VARIABLES}[name]
+                added[f"{name}{travel.suffix}"] = ("time", value, of)
         data = trajectory.data.assign(added)
         data.attrs |= {"stick_slip": stick_slip} if stick_slip else {}
         return Trajectory(data, trajectory.states)

@@ -260,12 +260,10 @@ class Trajectory:
         """
         deflection = np.asarray(self.data[observer].values)
         prominence = 0.2 * np.ptp(deflection)
-        if prominence < _ROUND_OFF * np.abs(deflection).max():
-            return float("nan"), float("nan")
         off = deflection - deflection[0]
         side = np.sign(off[np.argmax(np.abs(off) > prominence)])
         peak = _first_prominent(side * deflection, prominence)
-        if peak is None:
+        if peak is None or prominence < _ROUND_OFF * np.abs(deflection).max():
             return float("nan"), float("nan")
         return float(self.time[peak]), float(deflection[peak])
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from operator import attrgetter
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -22,6 +22,9 @@ from geometry.load import Body
 from geometry.section import Direction
 from geometry.segment import NO_COMPRESSION, SAME_PLACE, Compression, PointMass, Segment
 from geometry.taper import mean_area
+
+if TYPE_CHECKING:
+    from geometry.boom import Boom
 
 # Number of steps of uniform weight in a tapered segment. Forces are exact at the ends of steps;
 # between them the error is some thousandths of the weight of a step.
@@ -125,18 +128,16 @@ def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: in
     return segment.compression.transferred
 
 
-def pin_moments(
-    segments: Sequence[Segment], joints: Sequence[Joint], bodies: Sequence[Body]
-) -> Iterator[tuple[int, Array]]:
+def pin_moments(boom: Boom, bodies: Sequence[Body]) -> Iterator[tuple[int, Array]]:
     """Yield (segment, load vector) of the moment of axial forces, for each pin below the axis.
 
     The pin, at the depth d, does not move. So a slope w′ at the pin moves the segment along x by
     −d w′ against its compression P. The work P d w′ equals that of a moment P d at the pin.
     """
-    for number, segment in enumerate(segments):
+    for number, segment in enumerate(boom.segments):
         foot = segment.foot
         if foot is not None and foot.depth != 0.0:
-            moment = foot.depth * foot_thrust(segments, joints, number)
+            moment = foot.depth * foot_thrust(boom.segments, boom.joints, number)
             yield number, moment * bodies[number].moment(foot.x, "z")
 
 

@@ -124,8 +124,13 @@ class Boom:
     @cached_property
     def bonded(self) -> Boom:
         """The boom with all joints bonded."""
-        bonded = tuple(joint.without_play for joint in self.joints)
-        return replace(self, joints=bonded)
+        bonded = (
+            replace(
+                joint, bonded=True, pad=None, pads=(), contact_length=None, dashpot=0.0, drive=None
+            )
+            for joint in self.joints
+        )
+        return replace(self, joints=tuple(bonded))
 
     @property
     def without_drives(self) -> Boom:
@@ -196,10 +201,8 @@ class Boom:
 
     def stations_of(self, segment: int) -> tuple[float, ...]:
         """Return ascending x in m of the stations, stops, lugs, loads and masses of a segment."""
-        places = {
-            x for joint in self.joints if segment in (joint.outer, joint.inner)
-            for x in joint.stations
-        }  # fmt: skip
+        joints = (joint for joint in self.joints if segment in (joint.outer, joint.inner))
+        places = {x for joint in joints for x in joint.stations}
         places |= {stop.x for stop in self.stops if stop.segment == segment}
         places |= {lug.x for lug in self.cylinders if lug.segment == segment}
         places |= {

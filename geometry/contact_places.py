@@ -262,11 +262,15 @@ def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
     }
 
 
+def pad_places(boom: Boom, number: int) -> set[float]:
+    """Return the x in m of the centres of top and bottom pads on a segment."""
+    joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
+    return {x for joint in joints for at in contact_centres(boom, joint).values() for x in at}
+
+
 def load_places(boom: Boom, number: int) -> tuple[float, ...]:
     """Return the x in m of all forces and masses on a segment, including centres of pads."""
-    joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
-    midpoints = (x for joint in joints for at in contact_centres(boom, joint).values() for x in at)
-    return tuple(sorted({*boom.stations_of(number), *midpoints}))
+    return tuple(sorted({*boom.stations_of(number), *pad_places(boom, number)}))
 
 
 def _points(

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import KW_ONLY, dataclass, field, replace
+from dataclasses import KW_ONLY, dataclass, field
 from functools import cached_property
 from typing import Annotated, Any, Literal
 
@@ -279,13 +279,6 @@ class Joint(BareJoint):
         here = [pad for pad in self.pads if pad.touches(direction, side)]
         whole = sum(pad.stiffness for pad in here)
         return [(pad, pad.stiffness / whole, pad.shim) for pad in here]
-
-    @property
-    def without_play(self) -> Joint:
-        """The joint with the segments bonded at its stations."""
-        return replace(
-            self, bonded=True, pad=None, pads=(), contact_length=None, dashpot=0.0, drive=None
-        )
 
 
 @part(frozen=True, slots=True, config=PART)

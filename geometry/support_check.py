@@ -73,7 +73,7 @@ def check_contacts_at_rest(boom: Boom) -> None:
     from scipy.optimize import nnls
 
     pushes = [body.load for body in bodies]
-    pushes += [push for _, push in pin_moments(boom.segments, boom.joints, bodies)]
+    pushes += [push for _, push in pin_moments(boom, bodies)]
     load = sum(pushes, np.zeros(len(free))) @ free
     _, unbalanced = nnls((np.array(_one_way_restraints(boom, bodies)) @ free).T, -load)
     if unbalanced > _ROUND_OFF * np.linalg.norm(load):

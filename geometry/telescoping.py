@@ -32,11 +32,6 @@ class TelescopingStations:
     stations: tuple[int, ...]  #: indices of the stations in ``Boom.stations``
 
     @property
-    def reach(self) -> tuple[float, float]:
-        """The range of the sum of all extensions in m."""
-        return reach(self.drives)
-
-    @property
     def suffix(self) -> str | None:
         """The suffix of result names; None if several joints move the stop's segment."""
         if len(self.joints) > 1:

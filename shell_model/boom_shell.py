@@ -160,7 +160,7 @@ def assemble_boom(
             loads=[(load, load.push(shells[load.segment])) for load in boom.loads],
             observed=observers(boom, shells),
             lines=list(ground_lines(boom, shells)),
-            pin_moments=list(pin_moments(boom.segments, boom.joints, shells)),
+            pin_moments=list(pin_moments(boom, shells)),
         )
 
 

@@ -29,7 +29,7 @@ from shell_model.contact.local_compliance import (
     probe_responses,
 )
 from shell_model.contact.rows import ties
-from shell_model.contact.surface import without_stiff_modes
+from shell_model.contact.surface import SURFACE_MOMENTS, SURFACE_SHIFTS, without_stiff_modes
 from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from shell_model.reduction.symmetry import result_or_compute
@@ -100,7 +100,7 @@ def reduce_boom(
     else:
         nothing = [np.zeros((shell.free.size, 0)) for shell in full.shells]
         segments = _reduce(boom, full, options, stages, nothing)
-    coordinates = BoomCoordinates(full.comm, full.shells, segments, full.ties, full.lines)
+    coordinates = BoomCoordinates(full, segments, full.ties, full.lines)
     with stages.stage("rows"):
         own_loads = np.array([coordinates.push(i, load) for i, load in enumerate(full.own_loads)])
         system = _gap_system(full, coordinates, own_loads)
@@ -163,7 +163,7 @@ def _contact_compliance(full: BoomShell, segments: Sequence[ReducedSegment]) -> 
 
     The error (num_contacts,) is the sum of the errors of all reduced segments. Collective.
     """
-    separate = BoomCoordinates(full.comm, full.shells, segments, ())
+    separate = BoomCoordinates(full, segments, ())
     contacts = full.rows.contacts
     rows = np.array([separate.row(contact.operator) for contact in contacts])
     errors = np.zeros(len(contacts))
@@ -187,8 +187,7 @@ def _reduce(
     krylov, observed = options.krylov, [output.operator for output in full.observed.values()]
     at_surface = options.contact_line == "surface"
     if at_surface:
-        surface = options.surface
-        krylov = replace(krylov, shifts=surface.shifts, moments=surface.moments, tolerance=None)
+        krylov = replace(krylov, shifts=SURFACE_SHIFTS, moments=SURFACE_MOMENTS, tolerance=None)
     with stages.stage("reduction") as progress:
         inputs = [
             SegmentInputs(
@@ -243,7 +242,7 @@ def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegmen
     if not boom.compressed:
         return float("inf")
     bonds = ties(boom.bonded, full.shells)
-    factor = BoomCoordinates(full.comm, full.shells, reduced, bonds, full.lines).critical_factor
+    factor = BoomCoordinates(full, reduced, bonds, full.lines).critical_factor
     if factor is not None and factor <= 1.0:
         raise NumericsError(
             f"the shell of the boom buckles under {factor:.3g} times its axial forces; make these "

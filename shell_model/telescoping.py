@@ -35,14 +35,14 @@ from dynamics.travel import ROW_KINDS, MovingAxialForce, RowKind, RowTable, Trav
 from geometry.arrays import Array, Mask
 from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
-from geometry.telescoping import TelescopingStations, telescoping_stations
+from geometry.telescoping import TelescopingStations, reach, telescoping_stations
 from shell_model.boom_shell import BoomShell
 from shell_model.reduction.coordinates import BoomCoordinates, exact_product
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.reduction.symmetry import Job, SymmetryReduction
-from shell_model.segment.cross_section import Operator
+from shell_model.segment.cross_section import Operator, Row
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver, times
+from shell_model.segment.solver import ShiftedSolver, squared, times
 from shell_model.stress.stresses import lines_around
 
 # Maximum frequency of modes in Hz, frequency in Hz up to which all modes are kept, and minimum
@@ -84,12 +84,10 @@ class _SampledRows:
 
     def columns(self, shell: SegmentShell, number: int, step: int = 1) -> Array:
         """Return rows as columns (num_owned, num_columns), at each ``step``-th extension."""
-        nothing = np.zeros(shell.free.size)
-
-        def read(operator: Operator) -> Array:
-            return shell.row(operator[number]) if number in operator else nothing
-
-        rows = [one.evaluate_rows(self.moving, read) for one in self.touching[::step]]
+        rows = [
+            one.evaluate_rows(self.moving, lambda operator: shell.row(operator.get(number, Row())))
+            for one in self.touching[::step]
+        ]
         return np.asarray(np.concatenate(rows).T)
 
     def moving_and_constant_rows(self, comm: MPI.Comm, columns: Array) -> tuple[Mask, Mask]:
@@ -116,7 +114,7 @@ def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]
     for group in telescoping_stations(boom):
         pieces = [
             np.linspace(start, end, max(round((end - start) / size), _FEWEST) + 1)
-            for start, end in pairwise(sorted({*group.reach, 0.0}))
+            for start, end in pairwise(sorted({*reach(group.drives), 0.0}))
         ]
         moving, extensions = full.rows.rows_at(group.stations), np.unique(np.concatenate(pieces))
         touching = [
@@ -124,16 +122,10 @@ def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]
         ]
         samples.append(_SampledRows(group, moving, extensions, touching))
     moving_rows = {row for sampled in samples for row in sampled.moving}
-    counts = len(full.rows.contacts), len(full.rows.frictions), len(full.rows.dashpots)
-    every = [
-        (kind, row) for kind, count in zip(ROW_KINDS, counts, strict=True) for row in range(count)
-    ]
-    fixed_rows = [row for row in every if row not in moving_rows]
-    return (
-        [*samples, _SampledRows(None, fixed_rows, np.zeros(1), [full.rows])]
-        if fixed_rows
-        else samples
-    )
+    every = full.rows.rows_at(range(len(full.stations)))
+    if fixed_rows := [row for row in every if row not in moving_rows]:
+        samples.append(_SampledRows(None, fixed_rows, np.zeros(1), [full.rows]))
+    return samples
 
 
 class TelescopingShell:
@@ -170,7 +162,7 @@ class TelescopingShell:
             self.reduced.append(self._with_few_modes(number, segment, columns))
         # Springs represent the residual response, without axial forces.
         free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
-        self._segment_coordinates = BoomCoordinates(full.comm, full.shells, free, ())
+        self._segment_coordinates = BoomCoordinates(full, free, ())
         self._rows = [sampled.rows(self._segment_coordinates) for sampled in self._sampled]
         self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
 
@@ -386,8 +378,3 @@ def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     kept = np.abs(pulls).max(axis=(0, 1)) > _NEGLIGIBLE
     rows = sizes[:, None] * pulls * np.sqrt(shifted)
     return (shifted - squared(SLOW))[kept], rows[..., kept]
-
-
-def squared(frequency: float) -> float:
-    """Return ω² in rad²/s² of a frequency in Hz."""
-    return float((2.0 * np.pi * frequency) ** 2)

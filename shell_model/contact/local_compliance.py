@@ -20,7 +20,7 @@ from geometry.probe_responses import ProbedMotion, ProbeResponses, probe_places
 from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver
+from shell_model.segment.solver import ShiftedSolver, squared
 
 # Frequency f in Hz of the shift σ = (2π f)², between rigid and elastic modes.
 SLOW = 20.0
@@ -28,7 +28,7 @@ SLOW = 20.0
 
 def compliance(omega2: Array, rows: Array) -> Array:
     """Return B diag(ω² + σ)⁻¹ Bᵀ (num_rows, num_rows) in m/N for rows B (num_rows, num_modes)."""
-    return np.asarray(rows / (omega2 + (2.0 * np.pi * SLOW) ** 2) @ rows.T)
+    return np.asarray(rows / (omega2 + squared(SLOW)) @ rows.T)
 
 
 def full_compliance(

@@ -34,6 +34,10 @@ STIFF = 1.0e-4
 # 0.3 %.
 POINTS = (8, 4)
 
+# Shifts in Hz and moments of the reduction. Few suffice, since all points are inputs: more moments
+# change the tip deflection of the paper's boom with friction by 0.05 % of its range.
+SURFACE_SHIFTS, SURFACE_MOMENTS = (10.0, 60.0), 1
+
 
 @dataclass(frozen=True, slots=True)
 class SurfaceOptions:
@@ -44,16 +48,10 @@ class SurfaceOptions:
         stiffness: k_A in N/mⁿ⁺² of the stiffer side of all joints. By default it is the sum of the
             stiffnesses of the stations over the area, so that a uniform displacement causes the
             same force.
-        shifts, moments: shifts and moments of the reduction, see
-            :class:`shell_model.reduction.krylov.KrylovOptions`. Few suffice, since all points are
-            inputs: more moments change the tip deflection of the paper's boom with friction by
-            0.05 % of its range.
     """
 
     points: tuple[int, int] = POINTS
     stiffness: float | None = None
-    shifts: tuple[float, ...] = (10.0, 60.0)
-    moments: int = 1
 
 
 class SurfacePoint(NamedTuple):

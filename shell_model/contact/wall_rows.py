@@ -49,7 +49,7 @@ class CornerLines:
         self._segment = shell.segment
         self._lines: list[_CornerLine] = []
         along = WallsAlong(shell.segment, shell.nodes[:, 0])
-        for number in range(len(shell.section.plates)):
+        for number in range(len(shell.segment.widest.plates)):
             off = np.abs(shell.nodes[:, 1:] - along.starts(number)).max(axis=1)
             on = off < along.near
             x = np.concatenate(shell.comm.allgather(shell.nodes[on, 0]))

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 from mpi4py import MPI
@@ -14,7 +15,9 @@ from geometry.arrays import Array
 from geometry.cylinder import GroundLine
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Operator
-from shell_model.segment.segment_shell import SegmentShell
+
+if TYPE_CHECKING:
+    from shell_model.boom_shell import BoomShell
 
 # Fraction of the largest singular value below which a singular value is round-off.
 ROUND_OFF = 1.0e-9
@@ -30,8 +33,8 @@ class BoomCoordinates:
     """Mass-normalised coordinates of a boom with bonded joints and cylinders. Collective.
 
     Args:
-        comm: ranks that share the shells.
-        shells, reduced: shell and reduced coordinates of each segment.
+        full: shells of the boom.
+        reduced: reduced coordinates of each segment.
         ties: displacement operators that bonded joints constrain to zero.
         lines: springs to the ground, which the shells do not include.
 
@@ -45,13 +48,12 @@ class BoomCoordinates:
 
     def __init__(
         self,
-        comm: MPI.Comm,
-        shells: Sequence[SegmentShell],
+        full: BoomShell,
         reduced: Sequence[ReducedSegment],
         ties: Sequence[Operator],
         lines: Sequence[GroundLine] = (),
     ) -> None:
-        self._comm, self._shells, self._reduced = comm, shells, reduced
+        self._full, self._reduced, comm = full, reduced, full.comm
         self._combination: Array | None = None
         self.omega2 = np.concatenate([segment.omega2 for segment in reduced])
         springs = [line for line in lines if line.stiffness > 0.0]
@@ -77,15 +79,14 @@ class BoomCoordinates:
 
     def row(self, operator: Operator) -> Array:
         """Return the row (num_modes,) of a displacement operator, the same on every rank."""
-        rows = [
-            self.push(number, self._shells[number].row(row)) for number, row in operator.items()
-        ]
+        shells = self._full.shells
+        rows = [self.push(number, shells[number].row(row)) for number, row in operator.items()]
         return np.asarray(np.sum(rows, axis=0))
 
     def push(self, number: int, force: Array) -> Array:
         """Return the modal load (num_modes,) of a segment's load vector, from this rank's part."""
         parts = [np.zeros(segment.omega2.size) for segment in self._reduced]
-        parts[number] = exact_product(self._comm, force, self._reduced[number].shapes)
+        parts[number] = exact_product(self._full.comm, force, self._reduced[number].shapes)
         return self.of_rows(np.concatenate(parts))
 
     def of_rows(self, apart: Array) -> Array:

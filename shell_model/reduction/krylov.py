@@ -65,27 +65,30 @@ class KrylovOptions:
         return [float(frequency) for frequency in between[::-1]]
 
 
-class ClassCoordinates(NamedTuple):
-    """Mass-normalised coordinates of a symmetry class.
+@dataclass(frozen=True, slots=True)
+class Coordinates:
+    """Mass-normalised coordinates of a symmetry class or of a segment."""
 
-    Args:
-        omega2: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0.
-        shapes: shapes (num_rows, num_modes) in 1/√kg.
-        compliance_error, output_error, lost_compliance: errors as in ``ReducedSegment``.
-        accurate: mask (num_modes,) of modes with a natural frequency within 0.1 %.
-        geometric: K_G (num_modes, num_modes), to be subtracted from diag(ω²).
-        probe_compliance: compliance (num_probes, num_probes) of the full model to probes, at
-            ``PROBE_FREQUENCY``.
-    """
-
-    omega2: Array
-    shapes: Array
+    omega2: Array  #: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0
+    shapes: Array  #: this rank's rows (num_rows, num_modes) of the shapes in 1/√kg
+    #: largest relative error of the contact compliance at frequencies between the shifts
     compliance_error: float
+    #: largest error of the response of outputs to inputs, relative to the geometric mean of both
+    #: compliances
     output_error: float
+    #: largest error (num_inputs,) in m/N of the compliance of each input. The error for a pair of
+    #: inputs is at most the geometric mean of their errors (Galerkin).
     lost_compliance: Array
-    accurate: Mask
-    geometric: Array
+    geometric: Array  #: geometric stiffness K_G (num_modes, num_modes) in 1/s²
+    #: compliance (num_probes, num_probes) of the full model to probes, at ``PROBE_FREQUENCY``
     probe_compliance: Array
+
+
+@dataclass(frozen=True, slots=True)
+class ClassCoordinates(Coordinates):
+    """Coordinates of a symmetry class on the rows of its cell."""
+
+    accurate: Mask  #: mask (num_modes,) of modes with a natural frequency within 0.1 %
 
 
 def reduce_class(
@@ -153,7 +156,7 @@ def reduce_class(
     geometric = np.zeros((omega2.size, omega2.size))
     if shell.geometric is not None:
         geometric = shapes.T @ times(shell.geometric, shapes)
-    return ClassCoordinates(omega2, shapes, *errors, lost, accurate, geometric, probe_compliance)
+    return ClassCoordinates(omega2, shapes, *errors, lost, geometric, probe_compliance, accurate)
 
 
 class _FullResponse(NamedTuple):

@@ -23,29 +23,16 @@ from scipy.linalg import block_diag
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array
-from shell_model.reduction.krylov import ClassCoordinates, KrylovOptions, reduce_class
+from shell_model.reduction.krylov import ClassCoordinates, Coordinates, KrylovOptions, reduce_class
 from shell_model.reduction.mirror import SymmetryClass
 from shell_model.reduction.symmetry import Job, SymmetryCell, SymmetryReduction, share_jobs
 
 
 @dataclass(frozen=True, slots=True)
-class ReducedSegment:
-    """Mass-normalised coordinates of one segment."""
+class ReducedSegment(Coordinates):
+    """Coordinates of one segment."""
 
-    omega2: Array  #: ω² (num_modes,) in rad²/s², ascending, rigid motions first and exactly 0
-    shapes: Array  #: this rank's rows (num_owned, num_modes) of the shapes in 1/√kg
-    #: largest relative error of the contact compliance at frequencies between the shifts
-    compliance_error: float
-    #: largest error of the response of outputs to inputs, relative to the geometric mean of both
-    #: compliances
-    output_error: float
-    #: largest error (num_inputs,) in m/N of the compliance of each input. The error for a pair of
-    #: inputs is at most the geometric mean of their errors (Galerkin).
-    lost_compliance: Array
     frequency_limit: float  #: frequency in Hz up to which natural frequencies are accurate to 0.1 %
-    geometric: Array  #: geometric stiffness K_G (num_modes, num_modes) in 1/s²
-    #: compliance (num_probes, num_probes) of the full model to probes, at ``PROBE_FREQUENCY``
-    probe_compliance: Array
 
 
 class SegmentInputs(NamedTuple):
@@ -126,7 +113,7 @@ def _join(
     """
     comm = symmetry.shell.comm
     parts = [
-        comm.bcast(None if one is None else one._replace(shapes=np.empty(0)), root)
+        comm.bcast(None if one is None else replace(one, shapes=np.empty(0)), root)
         for root, one in results
     ]
     omega2 = np.concatenate([part.omega2 for part in parts])

@@ -13,7 +13,7 @@ from mpi4py import MPI
 from geometry.arrays import Array, Mask
 from geometry.boom import Direction, Segment
 from geometry.plating import PlatedMesh
-from geometry.section import COMPONENT, Section
+from geometry.section import COMPONENT
 from shell_model import compat
 from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.shell import (
@@ -34,7 +34,6 @@ _ROUND_OFF = 1.0e-10
 class SegmentShell(Shell):
     """Shell of one segment, and its load vectors; a :class:`geometry.load.LoadedSegment`."""
 
-    section: Section  #: section of the plates at the tail
     segment: Segment  #: the segment
     mesh: PlatedMesh | None  #: mesh of the segment, on rank 0
 
@@ -82,10 +81,7 @@ class SegmentShell(Shell):
         return self.row(self.outline(x).twist())
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
-        """Return the load vector (num_owned,) of 1 N/m between two mesh lines. Collective.
-
-        The load acts along the whole segment if ``span`` is None.
-        """
+        """Return the load vector (num_owned,) of 1 N/m; ``span`` has mesh lines. Collective."""
         if span is None:
             return self.unit_loads[direction]
         start, end = span
@@ -95,10 +91,7 @@ class SegmentShell(Shell):
         return loads[direction] / self.segment.area
 
     def inertia(self, direction: Direction, force: float) -> Array:
-        """Return the load vector (num_owned,) of a uniform acceleration. Collective.
-
-        ``force`` is the load in N/m without collars and diaphragms.
-        """
+        """Return the load vector (num_owned,) of a uniform acceleration. Collective."""
         acceleration = force / self.segment.mass_per_length
         of_stiffeners = self._loads_on(lambda mesh: mesh.thickness - mesh.plain)[direction]
         whole = force * self.plain_loads[direction]
@@ -151,8 +144,6 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) 
         mesh: mesh of its walls and diaphragms, on rank 0, with mesh lines at supports, masses and
             the ends of collars; None elsewhere.
     """
-    section = segment.section
-    assert section is not None
     plates = assemble_plates(comm, segment, mesh)
     first = plates.space.dofmap.index_map.local_range[0]
     free = free_rows(plates.space, plates.supports)
@@ -171,7 +162,6 @@ def assemble_segment(comm: MPI.Comm, segment: Segment, mesh: PlatedMesh | None) 
         plates.supports,
         attached(springs(segment)),
         attached(masses(segment)),
-        section,
         segment,
         mesh,
     )

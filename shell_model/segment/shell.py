@@ -123,15 +123,15 @@ class Plates:
 
         The first pair is for nodes of the displacement, the second for nodes of the rotation.
         """
-        return [self._nodes(part) for part in (0, 1)]
-
-    def _nodes(self, part: int) -> tuple[Array, Indices]:
-        collapsed, to_parent = self.space.sub(part).collapse()
-        index_map = self.space.dofmap.index_map
-        local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
-        places = compat.node_places(collapsed)[: len(local)]
-        owned = local[:, 0] < index_map.size_local
-        return places[owned], index_map.local_range[0] + local[owned].astype(np.int64)
+        nodes, index_map = [], self.space.dofmap.index_map
+        for part in (0, 1):
+            collapsed, to_parent = self.space.sub(part).collapse()
+            local = np.asarray(to_parent, dtype=np.int32).reshape(-1, 3)
+            places = compat.node_places(collapsed)[: len(local)]
+            owned = local[:, 0] < index_map.size_local
+            rows = index_map.local_range[0] + local[owned].astype(np.int64)
+            nodes.append((places[owned], rows))
+        return nodes
 
 
 @dataclass(frozen=True)

@@ -43,12 +43,17 @@ def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
 _PREFIX, _ORDERING = "shifted_", "mat_mumps_icntl_7"
 
 
+def squared(frequency: float) -> float:
+    """Return ω² in rad²/s² of a frequency in Hz."""
+    return float((2.0 * np.pi * frequency) ** 2)
+
+
 class ShiftedSolver:
     """Direct solver for K + σ M with the shift σ = (2π f)² of a frequency f in Hz. Collective."""
 
     def __init__(self, shell: Shell, frequency: float) -> None:
         self._mass = shell.mass
-        self.sigma = (2.0 * np.pi * frequency) ** 2
+        self.sigma = squared(frequency)
         self._matrix = shell.stiffness.copy()
         self._matrix.axpy(
             self.sigma,
@@ -69,7 +74,7 @@ class ShiftedSolver:
 
     def move(self, frequency: float) -> None:
         """Factorise K + σ M at another frequency in Hz, with the same symbolic analysis."""
-        sigma = (2.0 * np.pi * frequency) ** 2
+        sigma = squared(frequency)
         if sigma == self.sigma:
             return
         self._matrix.axpy(

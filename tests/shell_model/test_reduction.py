@@ -31,7 +31,7 @@ Shells = Callable[..., SegmentShell]
 
 def _inputs(shell: SegmentShell) -> np.ndarray:
     rows = [
-        shell.row(flange_deflection(shell.outline(x), side, 0.5 * shell.section.width))
+        shell.row(flange_deflection(shell.outline(x), side, 0.5 * shell.segment.section.width))
         for x in (2.0, 10.0)
         for side in (1.0, -1.0)
     ]

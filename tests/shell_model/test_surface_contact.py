@@ -251,7 +251,7 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
         across = COMPONENT["y" if pad.direction == "z" else "z"]
         moved = np.zeros(inner.free.size)
         moved[inner.node_dofs[:, COMPONENT[pad.direction]]] = inner.nodes[:, across] ** 2
-        near, far = pad.patch.across(inner.section.face(pad.direction, pad.side))
+        near, far = pad.patch.across(inner.segment.section.face(pad.direction, pad.side))
         mean = (far**3 - near**3) / (3.0 * (far - near))
         assert inner.row(contact.operator[1]) @ moved == pytest.approx(mean, rel=1e-9)
         share = (0.75 if pad.patch.offset == 0.0 else 0.25) / corners
