@@ -15,7 +15,7 @@ from dynamics.excitation import Excitation, Sine
 from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator, StepSchedule, simulate
 from dynamics.motion import MOST_STEPS, Motion
-from tests.dynamics.reference import runge_kutta, two_modes
+from tests.dynamics.reference import two_modes
 from tests.dynamics.test_time_step import driven, lossy_press, pressed, sliding, telescoping
 from tests.dynamics.two_stops import CHAOTIC, LINEAR, RATTLING
 
@@ -112,17 +112,6 @@ def test_a_regular_motion_keeps_its_tolerance(what: str, tolerance: float) -> No
     assert error < tolerance
     assert run.data.attrs["step_error"] < 1.01 * tolerance
     assert error < 2.0 * run.data.attrs["step_error"] + 1e-9
-
-
-def test_half_the_step_leaves_a_quarter_of_the_error() -> None:
-    """Reference: other code, scipy's DOP853."""
-    motion = driven()
-    expected = runge_kutta(motion)
-    one = FixedStep(2e-3)
-    ways = one, one.finer(), one.finer().finer()
-    found = [np.abs(way(motion).states - expected).max() for way in ways]
-    assert found[0] / found[1] == pytest.approx(4.0, abs=0.3)
-    assert found[1] / found[2] == pytest.approx(4.0, abs=0.3)
 
 
 @pytest.mark.parametrize(

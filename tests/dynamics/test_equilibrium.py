@@ -7,8 +7,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.finite_element import finite_element_segment
-from beam_model.segment_model import gap_system
 from dynamics.contact import PowerContact
 from dynamics.damping import closed_contact_damping, with_modal_damping
 from dynamics.equilibrium import equilibrium
@@ -17,9 +15,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.second_order import buckling_factor, soften_modes
-from geometry.boom import Boom
 from tests.modal import modal_system
-from tests.touching import touching
 
 
 def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
@@ -67,22 +63,6 @@ def test_buckled_system_has_no_equilibrium() -> None:
     message = "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
     with pytest.raises(NumericsError, match=f"^{message}$"):
         equilibrium(buckled, np.ones(1))
-
-
-@pytest.mark.parametrize("exponent", [1.0, 2.0])
-def test_the_inner_segment_hangs_on_its_stations(paper_boom: Boom, exponent: float) -> None:
-    """Reference: analytic, the lever rule: 550.7 N at x = 14 m on stations at 9 and 10 m."""
-    models = [
-        finite_element_segment(segment, 0.5, (9.0, 10.0), "euler-bernoulli", False)
-        for segment in paper_boom.segments
-    ]
-    law = PowerContact(1.0e9 if exponent == 1.0 else 1.0e13, exponent).with_clearance(7.0e-3)
-    system = gap_system(touching(paper_boom, law), models)
-    at_rest = equilibrium(system, system.load)
-    forces = [law.force(y) for law, y in zip(system.laws, system.rows @ at_rest, strict=True)]
-    assert forces == pytest.approx([-4.0 * 550.7, 5.0 * 550.7], rel=1e-5)
-    stays = FixedStep(1e-4)(Motion(system, 0.2, position=at_rest))
-    assert np.ptp(stays.data["tip"].values) < 1e-6 * abs(stays.data["tip"].values[0])
 
 
 MASS, NEGATIVE, STIFFNESS, CLEARANCE = 3.0, -48.0, 1.0e6, 0.01

@@ -219,16 +219,6 @@ def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:
         assert table_slope(sine, way)[1] == pytest.approx(np.cos(way), abs=1e-5)
 
 
-def test_system_at_a_fixed_extension() -> None:
-    """Reference: analytic, the sines at the position of the mass."""
-    there = lossy(SCurve(5.0, 0.4)).at_time(0.4)
-    row = np.append(-sines(7.0, 8), 1.0 / np.sqrt(20.0))
-    assert there.travels == ()
-    assert there.rows[0] == pytest.approx(row, abs=1e-9)
-    assert there.friction_rows[0] == pytest.approx(row, abs=1e-9)
-    assert there.dashpots[0] == pytest.approx(np.sqrt(50.0) * row, abs=1e-8)
-
-
 _TABLE = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 1, 1)))
 
 

@@ -9,7 +9,6 @@ import pytest
 from dynamics.excitation import PiecewiseLinear
 from geometry.axial import MovingForce, Thrust, axial_force, moving_force, with_compression
 from geometry.boom import (
-    Boom,
     Collar,
     Diaphragm,
     Joint,
@@ -20,7 +19,6 @@ from geometry.boom import (
 )
 from geometry.joint import Carrier, Drive
 from geometry.section import BoxSection
-from geometry.segment import NO_COMPRESSION
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
@@ -99,14 +97,6 @@ def test_each_of_three_segments_carries_the_outboard_forces() -> None:
     assert at(jib, 13.0, 19.0) == [700.0, 700.0]
     assert at(fly, 7.0, 12.5, 13.5) == pytest.approx([600.0, -100.0, 0.0], abs=1e-9)
     assert at(arm, 5.0, 6.5, 7.5) == pytest.approx([610.0, 10.0, 0.0], abs=1e-9)
-
-
-def test_without_forces_nothing_is_pressed() -> None:
-    alone = with_compression(segments(), [JOINT], [])
-    assert [segment.compression for segment in alone] == [NO_COMPRESSION, NO_COMPRESSION]
-    assert not Boom(alone, (JOINT,)).compressed
-    assert Boom(with_compression(alone, [JOINT], [], 1.0), (JOINT,)).compressed
-    assert at(alone[0], 1.0, 7.0) == [0.0, 0.0]
 
 
 @pytest.mark.parametrize(

@@ -74,15 +74,6 @@ def test_taper_does_not_depend_on_the_first_corner() -> None:
             assert interpolate_section(tail, head, part).plates == tail.plates
 
 
-def test_an_upright_rectangle_is_a_box() -> None:
-    """Reference: other code, the formulas of the box, including the areas of its webs."""
-    box = BoxSection(height=0.6, width=0.4, flange=0.02, web=0.01)
-    same = closed_polygon(rectangle(0.02, 0.02, 0.01, 0.01).corners, (0.02, 0.01, 0.02, 0.01))
-    for name in ("area", "second_moment_of_area", "shear_area", "lateral_shear_area"):
-        assert getattr(same, name) == pytest.approx(getattr(box, name), rel=1e-12), name
-    assert isinstance(closed_polygon(TRAPEZOID.corners, TRAPEZOID.thicknesses), PolygonSection)
-
-
 def test_a_regular_hexagon() -> None:
     """Reference: analytic, (3√3/2) a² and J = (5√3/16) a⁴ of hexagons of sides a ± t/√3."""
     side, wall = 0.2, 0.02

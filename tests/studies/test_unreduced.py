@@ -14,7 +14,7 @@ pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from dynamics.contact import DryFriction, PowerContact, contact_terms
+from dynamics.contact import DryFriction, PowerContact
 from dynamics.energy import energy_residual
 from dynamics.failure import NumericsError
 from dynamics.gap_builder import GapBuilder, OutputOperator
@@ -28,7 +28,7 @@ from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.segment.cross_section import Operator
 from shell_model.segment.segment_shell import SegmentShell
-from studies.reference_models.resisting_rows import ResistingRows, resist
+from studies.reference_models.resisting_rows import ResistingRows
 from studies.reference_models.unreduced import integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments
 from tests.shell_model.conftest import box_shell
@@ -207,41 +207,6 @@ def test_unsupported_booms_are_refused(boom: Boom, law: PowerContact, message: s
     full = assemble_boom(touching(boom, law, law), ShellOptions(2.0), MPI.COMM_SELF)
     with pytest.raises(BoomError, match=message):
         integrate_directly(full, 1.0e-3, 1.0e-3)
-
-
-@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
-def test_forces_of_a_step_obey_their_laws_to_round_off(exponent: float) -> None:
-    """Reference: analytic, (4) and Coulomb's law. Dependent rows slide by their mean."""
-    random = np.random.default_rng(1)
-    law = PowerContact(10.0 ** (5.0 + 3.0 * exponent), exponent).with_clearance(1.0e-3)
-    laws = [law.one_sided(side) for side in (1, -1, 1, -1)]
-    mean = np.array([[0.5, 0.5, 0.0, 0.0], [0.0, 0.0, 0.5, 0.5]])
-    states = set()
-    for _ in range(200):
-        factor = random.normal(size=(4, 4))
-        contact = 1.0e-7 * (factor @ factor.T + 0.1 * np.eye(4))
-        rows = np.vstack([np.eye(4), mean])
-        compliance = rows @ contact @ rows.T
-        free = rows @ random.normal(scale=2.0e-3, size=4)
-        bound, place = np.array([900.0, 1000.0]), random.normal(scale=1.0e-4, size=2)
-        force = np.zeros(6)
-        assert resist((compliance, free, contact_terms(laws), bound, place), force)
-        read = free - compliance @ force
-        noise = 1.0e-12 * np.abs(compliance).max() * np.abs(force).sum() + 1.0e-15
-        for reading, one, pushed in zip(read[:4], laws, force[:4], strict=True):
-            # By the reading that the force belongs to, as a stiff law multiplies round-off.
-            side, k, _, _ = one.terms[0]
-            depth = (abs(pushed) / k) ** (1.0 / exponent)
-            if pushed:
-                assert side * reading - one.onset(side) == pytest.approx(depth, abs=noise)
-            else:
-                assert side * reading <= one.onset(side) + noise
-        for reading, at, most, rubbed in zip(read[4:], place, bound, force[4:], strict=True):
-            held = abs(rubbed) < most
-            assert abs(rubbed) <= most
-            assert abs(reading - at) < noise if held else (reading - at) * rubbed > -noise * most
-        states.add((*(force[:4] != 0.0).tolist(), *(np.abs(force[4:]) < bound).tolist()))
-    assert len(states) > 10
 
 
 def test_a_block_on_a_rough_floor_stays_or_slides() -> None:
