@@ -85,9 +85,7 @@ def gather_ensembles(ensembles: Mapping[str, xr.Dataset]) -> xr.Dataset | None:
         for ensemble in ensembles.values()
     ]
     together = xr.concat(kept, xr.Variable("model", list(ensembles)), combine_attrs="override")
-    return together.drop_vars("station", errors="ignore").assign_attrs(
-        vary=kept[0].attrs["vary"], relative=kept[0].attrs["relative"], seed=kept[0].attrs["seed"]
-    )
+    return together.drop_vars("station", errors="ignore")
 
 
 def steps_for_peaks(motion: Motion, peaks: SlowPeaks, cutoff: float) -> StepsForPeaks | None:
