@@ -85,8 +85,7 @@ class FigureContext:
     def result(self, name: str, variable: str) -> Array:
         """Return a result of a model (num_times,), or (num_times, num_stations) at stations."""
         values = self.data[variable].sel(model=name)
-        dims = [dim for dim in ("time", "station") if dim in values.dims]
-        return np.asarray(values.transpose(*dims).values, dtype=float)
+        return np.asarray(values.transpose("time", ...).values, dtype=float)
 
     def stations(self) -> list[str]:
         """Return the title of each station's panel."""

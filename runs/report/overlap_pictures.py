@@ -98,20 +98,15 @@ class OverlapView:
         return self.scene.motion.isel(station=self.overlap.stations)
 
     @property
-    def stations(self) -> Array:
-        """The positions (num_stations,) in m of the stations, at the centres of their pads."""
-        return np.asarray(self.overlap.centres)
-
-    @property
     def midpoint(self) -> float:
         """The x in m of the centre between the stations."""
-        return float(0.5 * (self.stations.min() + self.stations.max()))
+        return float(0.5 * (self.overlap.centres.min() + self.overlap.centres.max()))
 
     @cached_property
     def scale(self) -> float:
         """The largest round magnification within the limits for drawn displacements and play."""
         height = 2.0 * self.scene.half_height(self.overlap.outer)
-        half = 0.5 * np.ptp(self.stations) + MARGIN
+        half = 0.5 * np.ptp(self.overlap.centres) + MARGIN
         near = np.abs(self.scene.points[:, 0] - self.midpoint) <= half
         near &= np.isin(self.scene.owner, self.numbers)
         largest = max(
@@ -131,7 +126,7 @@ class OverlapView:
         ends = [self.ends(self.places(time)) for time in self.times]
         tallest = float(np.ptp(ends, axis=1).max()) + self.scene.wall(self.overlap)
         room = tallest * self.pixels[0] / (self.pixels[1] - 2.0 * ARROW_ROOM)
-        return max(float(np.ptp(self.stations)) + 2.0 * MARGIN, room)
+        return max(float(np.ptp(self.overlap.centres)) + 2.0 * MARGIN, room)
 
     @cached_property
     def behind(self) -> Mask:
@@ -151,7 +146,7 @@ class OverlapView:
 
     def _relative_displacements(self, time: float) -> Array:
         """Return the displacements (num_points, 3) in m relative to the outer segment."""
-        between = (float(self.stations.min()), float(self.stations.max()))
+        between = (float(self.overlap.centres.min()), float(self.overlap.centres.max()))
         return self.scene.relative_displacements(time, self.overlap.outer, between)
 
     def flange(self, places: Array, segment: int, side: int) -> Array:
@@ -161,7 +156,7 @@ class OverlapView:
     def ends(self, places: Array) -> tuple[float, float]:
         """Return the lowest and highest z in m of the outer segment's flanges at the stations."""
         flanges = [self.flange(places, self.overlap.outer, side) for side in (-1, 1)]
-        heights = [_point_at(line, x)[2] for line in flanges for x in self.stations]
+        heights = [_point_at(line, x)[2] for line in flanges for x in self.overlap.centres]
         return min(heights), max(heights)
 
     def camera(self, places: Array) -> Camera:
@@ -218,7 +213,7 @@ class OverlapView:
         interval = float(np.diff(self.motion["time"].values[:2])[0])
         meaning = f"forces: mean of the last {1.0e3 * interval:.3g} ms"
         impact, peaks = "", now["contact_force_peak"].values
-        for x, force, peak in zip(self.stations, forces, peaks, strict=True):
+        for x, force, peak in zip(self.overlap.centres, forces, peaks, strict=True):
             if force == 0.0:
                 continue
             side = int(np.sign(force))

@@ -84,7 +84,7 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
     Raises:
         ValueError: a time lies outside the run.
     """
-    begin, end = _ends(views[0])
+    begin, end = views[0].motion["time"].values[[0, -1]]
     when = _named_times(views[0].motion, times)
     for t in when.values():
         if not begin <= t <= end:
@@ -123,10 +123,10 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
     """Draw the first seconds of the motion of a shell as ``motion.gif``."""
     # The view is the one in which the tip moves most.
     scene = max(views, key=lambda view: float(np.ptp(view.motion["tip"].values)))
-    film, (begin, _) = _film(scene), _ends(scene)
+    film = _film(scene)
     with rc_context(theme.PAGE_RC):
         view = BoomView.of(scene, [*_instants(views, _named_times(scene.motion, times)), *film])
-        last = film[-1].time
+        begin, last = film[0].time, film[-1].time
         slow = SHOWN / (last - begin) if last > begin else 1.0
         pace = f"; {slow:.3g} times slower than real time" if slow > 1.0 else ""
         pictures = list(draw_boom(view, film, last, pace, SMALL))
@@ -164,14 +164,9 @@ def render_files(
     return [path for render in renders for path in render(views, folder, times)]
 
 
-def _ends(scene: Scene) -> tuple[float, float]:
-    """Return start and end of a scene's motion in s."""
-    begin, end = scene.motion["time"].values[[0, -1]]
-    return float(begin), float(end)
-
-
 def _film(scene: Scene) -> list[Instant]:
-    times = np.linspace(_ends(scene)[0], _film_end(scene.motion, scene.crane), FRAMES)
+    begin, end = scene.motion["time"].values[0], _film_end(scene.motion, scene.crane)
+    times = np.linspace(begin, end, FRAMES)
     return [Instant(t) for t in times.tolist()]
 
 

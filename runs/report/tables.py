@@ -73,11 +73,6 @@ class Column:
         return self.title.replace("-\n", "").replace("\n", " ")
 
     @property
-    def words_and_unit(self) -> str:
-        """The title and the unit in one line."""
-        return ", ".join(filter(None, (self.words, self.unit)))
-
-    @property
     def factor(self) -> float:
         """The conversion factor from SI units to the unit of the heading."""
         return _FACTORS.get(self.unit.partition(" ")[0], 1.0)
@@ -189,12 +184,9 @@ class Table:
         return self.frame.rename(columns=lambda heading: heading.replace("\n", ", "))
 
     @property
-    def data(self) -> list[dict[str, Plain]]:
+    def data(self) -> list[dict[Any, Plain]]:
         """The rows of :attr:`frame` as JSON values."""
-        return [
-            {str(heading): cell for heading, cell in row.items()}
-            for row in self.frame.to_dict("records")
-        ]
+        return list(self.frame.to_dict("records"))
 
     @property
     def anchor(self) -> str:
