@@ -99,9 +99,7 @@ def boom(run: FigureContext) -> list[Figure]:
 def draw_boom_of(case: Case, path: Path) -> None:
     """Draw the boom of a case twice, to scale and with exaggerated heights, and its sections.
 
-    Args:
-        case: case with the boom.
-        path: path of the PNG file.
+    The path is that of a PNG file.
     """
     with rc_context(theme.RC):
         boom_sheet(case, build_boom(case)).savefig(path, format="png")
@@ -110,10 +108,7 @@ def draw_boom_of(case: Case, path: Path) -> None:
 def save_drawing(case: Case, file: str, picture: str) -> None:
     """Draw the boom of a case into a file, atomically.
 
-    Args:
-        case: case with the boom.
-        file: name of the case in messages.
-        picture: path of the drawing as the user gave it.
+    The name ``file`` of the case is for messages.
 
     Raises:
         BadInput: the path does not end with ``.png``.

@@ -127,12 +127,8 @@ def draw_boom(
 ) -> Iterator[Image.Image]:
     """Yield pictures of the deformed boom, each above the tip deflection over time.
 
-    Args:
-        view: view of the boom.
-        instants: instants of the pictures.
-        until: last time in s of the curve of the tip.
-        pace: speed of an animation relative to real time, as text.
-        part: size factor of the sheet.
+    The curve of the tip ends at ``until`` in s. ``pace`` is the speed of an animation relative to
+    real time, as text; ``part`` is the size factor of the sheet.
     """
     scene, camera = view.scene, view.camera
     time, tip = scene.motion["time"].values, 1.0e3 * scene.motion["tip"].values
@@ -188,10 +184,7 @@ def render_buckling(
 ) -> list[Path]:
     """Draw the first buckling mode of each segment: ``buckling-NUMBER.png``, from 1 on.
 
-    Args:
-        views: scenes of a shell, see :meth:`Scene.views`.
-        folder: folder of the pictures.
-        times: requested times; if there are any, no modes are drawn, since they have no time.
+    If there are requested times, no modes are drawn, since they have no time.
     """
     scene = views[0]
     if scene.buckling is None or times is not None:

@@ -61,12 +61,9 @@ def deck(
 ) -> str:
     """Return the input deck of shells, whose data must be on one process.
 
-    Args:
-        title: heading.
-        shells: shells of the segments, including springs of elastic supports.
-        springs: further springs, whose displacements CalculiX prints.
-        loads: load (num_owned,) of each segment in N.
-        step: lines of the analysis step.
+    The shells include springs of elastic supports. CalculiX prints the displacements of further
+    springs. Loads (num_owned,) of each segment are in N, ``step`` has the lines of the analysis
+    step.
     """
     *first, spring_nodes = np.cumsum([1, *(len(shell.nodes) for shell in shells)]).tolist()
     meshes = [shell.mesh for shell in shells if shell.mesh is not None]
@@ -168,12 +165,7 @@ def select_model(case: Case, file: str, name: str | None = None) -> Shell:
 def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache | None) -> None:
     """Write the deck of the shell of :func:`select_model` under the loads at t = 0.
 
-    Args:
-        case: a checked case.
-        file: name of the case in messages.
-        comm: communicator of one process.
-        path: path of the deck.
-        cache: cache of reduced shells.
+    The name ``file`` of the case is for messages, and ``cache`` has reduced shells.
 
     Raises:
         BadInput: the case has a feature that the deck does not support, or the ranks are several.

@@ -48,14 +48,8 @@ def render(
 ) -> str:
     """Return the report as one HTML text, which includes all pictures and scripts.
 
-    It has interactive charts only if plotly is installed.
-
-    Args:
-        results: results of the run.
-        addition: content that the calling program adds.
-        figures: figures with existing files.
-        snapshots: snapshots with existing files.
-        viewer: file name of the interactive viewer; empty for none.
+    It has interactive charts only if plotly is installed. Figures and snapshots have existing
+    files; ``viewer`` is the file name of the interactive viewer, empty for none.
     """
     texts, proofs = tables_by_part(results), results.summary.design.proofs
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}

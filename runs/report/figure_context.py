@@ -140,11 +140,8 @@ class FigureContext:
     ) -> tuple[Sheet, list[Axes]]:
         """Return a sheet with panels over time, in which a second axis has extensions of drives.
 
-        Args:
-            panels: number of panels.
-            height: height of the sheet in inches.
-            end: end of the time axis in s; the end of the run unless given.
-            share_y: True for a common vertical scale.
+        The height of the sheet is in inches. The time axis ends at ``end`` in s, by default at the
+        end of the run. With ``share_y`` the panels have a common vertical scale.
         """
         sheet, column = new_sheet(panels, height, share_y)
         column[-1].set(xlabel="time (s)", xlim=(0.0, self.time[-1] if end is None else end))
@@ -223,10 +220,7 @@ def tip_directions(trajectories: xr.Dataset) -> list[str]:
 def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:
     """Return a sheet with panels above one another, which share the time axis.
 
-    Args:
-        panels: number of panels.
-        height: height of the sheet in inches.
-        share_y: True for a common vertical scale.
+    The height is in inches; with ``share_y`` the panels have a common vertical scale.
     """
     sheet = Sheet(figsize=(theme.WIDTH, height))
     theme.Canvas(sheet)

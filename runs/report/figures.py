@@ -51,10 +51,8 @@ FIGURES: Sequence[Draw] = (
 def draw(results: Results, folder: Path, helper: Executor | None = None) -> list[Figure]:
     """Draw all figures for which a run has data.
 
-    Args:
-        results: results of the run.
-        folder: folder of the PNG files; it must exist. Existing files are kept.
-        helper: second process, which draws figures from the last one backwards.
+    The folder of the PNG files must exist, and existing files are kept. The helper, a second
+    process, draws figures from the last one backwards.
     """
     futures = {}
     with suppress(BrokenExecutor):

@@ -68,11 +68,7 @@ def script(
 ) -> str:
     """Return the OpenSeesPy script of a model.
 
-    Args:
-        case: a checked case.
-        model_boom: planar boom with the contact laws of the model.
-        model: model of the case.
-        calibration: calibration of the model; None without one.
+    The boom is planar, with the contact laws of the model; ``calibration`` is that of the model.
 
     Raises:
         BoomError: the boom has a feature that the script does not support.
@@ -272,10 +268,7 @@ def _ends(pad: Pad, parts: Sequence[Part]) -> list[list[int]]:
 def select_model(case: Case, file: str, name: str | None = None) -> BeamElements:
     """Return the model with a name, by default the last beam-element model with play.
 
-    Args:
-        case: a checked case.
-        file: name of the case in messages.
-        name: name of the model.
+    The name ``file`` of the case is for messages.
 
     Raises:
         BadInput: the model does not exist.
@@ -294,12 +287,8 @@ def write(
 ) -> None:
     """Write the script of the model of :func:`select_model`.
 
-    Args:
-        case: a checked case.
-        file: name of the case in messages.
-        comm: communicator, for a model that a shell calibrates.
-        path: path of the script.
-        cache: cache of reduced shells.
+    The name ``file`` of the case is for messages, and ``cache`` has reduced shells. A model that a
+    shell calibrates needs a communicator.
 
     Raises:
         BadInput: the model does not exist, or has a feature that the script does not support.

@@ -42,11 +42,8 @@ def rerender_report(
 ) -> Iterator[tuple[Results, Addition, Path]]:
     """Yield results, additions of the client, and a copy of the folder of a run.
 
-    Afterwards the report is rendered in the copy, and the copy replaces the folder.
-
-    Args:
-        folder: folder of a run.
-        excel: name of the option in messages if a workbook is written, too.
+    Afterwards the report is rendered in the copy, and the copy replaces the folder. With ``excel``,
+    the name of the option in messages, a workbook is written, too.
     """
     path = Path(folder)
     with folder_lock(path):
@@ -66,13 +63,8 @@ def write_in_two_steps(
 ) -> Iterator[Callable[[Addition], None]]:
     """Write the motion of a run, and yield a function that writes all other files.
 
-    Another process draws snapshots while the caller evaluates the run.
-
-    Args:
-        run: a run.
-        folder: an empty folder.
-        snapshots_now: False to draw no snapshots.
-        helper: process for snapshots and figures; None for a new process for snapshots.
+    The folder must be empty. While the caller evaluates the run, another process draws snapshots,
+    unless ``snapshots_now`` is False: the helper, which also draws figures, or else a new one.
     """
     results = run.results
     results.write(folder)
@@ -112,14 +104,7 @@ def write(run: Run, addition: Addition, folder: Path) -> None:
 def write_report(
     results: Results, addition: Addition, folder: Path, figures: Sequence[Figure] | None = None
 ) -> None:
-    """Write summary, tables and report, and the figures unless they are given.
-
-    Args:
-        results: results of the run.
-        addition: additions of the client.
-        folder: folder of the files.
-        figures: figures with existing files.
-    """
+    """Write summary, tables and report, and the figures unless they are given."""
     if figures is None:
         figures = draw_in_folder(results, folder)
     pictures = snapshots.describe(results, folder)
@@ -163,11 +148,8 @@ def write_csv(trajectories: xr.Dataset, path: Path) -> None:
 def write_workbook(results: Results, folder: Path, name: str, option: str) -> None:
     """Write a sheet of quantities in SI units, and a sheet for each table of the report.
 
-    Args:
-        results: results of a run.
-        folder: folder of the file, which is written atomically.
-        name: folder in messages, as the user gave it.
-        option: option in messages, as the user gave it.
+    The file is written atomically. ``name`` is the folder and ``option`` the option as the user
+    gave them, for messages.
 
     Raises:
         BadInput: openpyxl is not installed.

@@ -181,14 +181,10 @@ class OverlapView:
     ) -> str:
         """Draw both segments and the forces between them, and return a sentence on the forces.
 
-        Args:
-            plotter: stage of the size of the view.
-            sheet: sheet of the picture.
-            time: time in s.
-            places: displayed points at that time.
-            cuts: colours of the cut walls of the outer and the inner segment, which are also those
-                of the other walls unless these show stresses.
-            stress: stresses (num_triangles, 3) at corners in Pa, and their scale.
+        The plotter has the size of the view, and ``places`` are the displayed points at a time in
+        s. The colours ``cuts`` are those of the cut walls of the outer and the inner segment, and
+        of the other walls unless these show stresses (num_triangles, 3) at corners in Pa on a
+        scale.
         """
         camera, wall = self.camera(places), self.scene.wall(self.overlap)
         plotter.clear_actors()
@@ -343,10 +339,8 @@ def draw_stress(
 def _surface_with_values(points: Array, triangles: Numbers, values: Array) -> Any:
     """Return a surface of separate triangles with stresses, so that colours may jump at edges.
 
-    Args:
-        points: (num_points, 3) in m.
-        triangles: (num_triangles, 3) point numbers.
-        values: stresses (num_triangles, 3) at the corners in Pa.
+    Points (num_points, 3) are in m. Stresses (num_triangles, 3) in Pa are those at the corners of
+    the triangles.
     """
     corner_numbers = np.arange(triangles.size, dtype=np.int32).reshape(triangles.shape)
     mesh = surface(points[triangles].reshape(-1, 3), corner_numbers)

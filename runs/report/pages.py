@@ -39,10 +39,8 @@ class Addition:
 def page(template: str | Path, pictures: Sequence[Path] = (), **content: Any) -> str:
     """Return a page as HTML, with escaped content.
 
-    Args:
-        template: name of a template of this package, or path of one that extends it.
-        pictures: files of the pictures in the page.
-        content: variables of the template.
+    The template is a name of this package, or the path of one that extends it; ``content`` has its
+    variables. The pictures are the files of all pictures in the page.
     """
     path = TEMPLATES / template
     environment = Environment(

@@ -162,8 +162,7 @@ def _draw_panels(
 def chart_along(curves: Sequence[Curve]) -> Chart:
     """Return the chart of curves along the boom, with a panel for each quantity that is not zero.
 
-    Args:
-        curves: curves as of :func:`rest_curves`; their panel is the number of their quantity.
+    The panel of a curve is the number of its quantity, as in :func:`rest_curves`.
     """
     kept = sorted({curve.panel for curve in curves if curve.values.any()})
     shown = [

@@ -101,12 +101,9 @@ class Scene:
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
         """Return the scenes of a shell: from the side, and for a boom in space also from above.
 
-        For the view from above, the boom is rotated about x, so that y points up.
-
-        Args:
-            fields: dataset of ``shell_model.stress.fields``, with ``state`` (time, mode).
-            motion: trajectories of the shell.
-            case: case of the run.
+        For the view from above, the boom is rotated about x, so that y points up. The fields are
+        those of ``shell_model.stress.fields``, with ``state`` (time, mode); ``motion`` has the
+        trajectories of the shell.
         """
         boom = build_boom(case)
         side = cls(
@@ -142,13 +139,7 @@ class Scene:
 
         Sections stay plane and keep their shape: a point at (y, z) moves along x by −z w′ − y v′,
         and with the section's twist. Stresses (num_frames, num_points) apply at the mid-lines of
-        the plates.
-
-        Args:
-            case: case of the run.
-            boom: boom of the model.
-            output: deflections and section forces of the beam.
-            motion: trajectories of the model.
+        the plates. ``motion`` has the trajectories of the model.
         """
         tubes = map(_tube, repeat(boom), boom.segments, output.segments)
         points, triangles, displacements, stresses = zip(*tubes, strict=True)
@@ -253,12 +244,7 @@ class Scene:
         """Return the displayed position (3,) in m of a point in the plane of symmetry.
 
         The second result is the number of the lowest mesh point in the nearest cross-section.
-
-        Args:
-            places: (num_points, 3) displayed points in m.
-            segment: number of the segment.
-            x: x of the point in m.
-            z: z of the point in m.
+        Displayed points (num_points, 3) and coordinates are in m.
         """
         mine = np.flatnonzero(self.owner == segment)
         off = np.abs(self.points[mine, 0] - x)
@@ -313,13 +299,9 @@ class Scene:
     def magnify(self, displacement: Array, scale: float, section: float = SECTION_DRAWN) -> Array:
         """Return the displayed points (num_points, 3) in m.
 
-        The rotation of a section moves its points in proportion to the magnified height.
-        Displacements along the line of sight are not magnified.
-
-        Args:
-            displacement: (num_points, 3) displacements in m.
-            scale: magnification of displacements and play.
-            section: magnification of the outermost section.
+        The rotation of a section moves its points in proportion to the magnified height. The
+        displacements (num_points, 3) in m are magnified by ``scale`` like play, except those along
+        the line of sight; ``section`` is the magnification of the outermost section.
         """
         factor = self._section_factors(scale, section)[self.owner]
         midpoints = [np.mean(self.edges(k, s.start)) for k, s in enumerate(self.boom.segments)]
@@ -400,10 +382,8 @@ def rigid_motion(places: Array, displacement: Array) -> Array:
 def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
     """Return area-weighted means (num_groups,) over the triangles at each point.
 
-    Args:
-        groups: (num_triangles, 3) group of each corner, usually its point.
-        areas: (num_triangles,) areas.
-        values: (num_triangles,) values.
+    Each corner of a triangle belongs to a group (num_triangles, 3), usually its point. Areas and
+    values are (num_triangles,).
     """
     weights, around = np.repeat(areas, 3), groups.ravel()
     total = np.bincount(around, weights * np.repeat(np.asarray(values, dtype=float), 3))

@@ -134,12 +134,8 @@ class Sheet:
     """Sheet with heading, picture, x axis at the lower edge of the picture, and space below.
 
     The coordinates of ``picture`` are the pixels of :meth:`Camera.project`. Temporary artists
-    appear in one image, all others in all images.
-
-    Args:
-        pixels: width and height of the picture.
-        floor: height of the lower edge of the picture in pixels.
-        part: size factor of the sheet.
+    appear in one image, all others in all images. The size of the picture and the height ``floor``
+    of its lower edge are in pixels; ``part`` is the size factor of the sheet.
     """
 
     def __init__(self, pixels: tuple[int, int], floor: int, part: float = 1.0) -> None:

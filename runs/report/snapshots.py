@@ -252,15 +252,9 @@ def start_rendering(
     """Start rendering in another process, and yield a function that collects the pictures.
 
     The function waits for the pictures, adds them to the summary, and returns their names. It
-    raises RenderingUnavailable if rendering is impossible.
-
-    Args:
-        results: results of the run.
-        shells: files of the fields of shells.
-        trajectories: file of all trajectories.
-        folder: folder of the run; pictures of other times stay in it.
-        times: times in s; the characteristic times unless given.
-        helper: process that renders; a new one unless given.
+    raises RenderingUnavailable if rendering is impossible. Pictures of other times stay in the
+    folder of the run; times are in s, by default the characteristic ones. The helper is the process
+    that renders, by default a new one.
     """
     if not shells:
         yield list
@@ -324,9 +318,7 @@ def describe(results: Results, folder: Path) -> list[Figure]:
 def describe_one(results: Results, path: Path) -> Figure:
     """Return a snapshot with a title and a caption.
 
-    Args:
-        results: results of the run.
-        path: path of the picture; the file name tells shell, kind and time.
+    The file name of the picture tells shell, kind and time.
     """
     lines = {m.name: m.contact_line for m in select_kind(Shell, results.case.models)}
     shells = list(lines)
@@ -389,10 +381,8 @@ def describe_one(results: Results, path: Path) -> Figure:
 def _instant(name: str, motion: xr.Dataset, tip_name: str) -> tuple[str, str]:
     """Return two texts on the instant of a picture: for its title, and with the tip's deflection.
 
-    Args:
-        name: name of the instant in the file name.
-        motion: trajectories of the model; ``tip`` is the displayed deflection.
-        tip_name: name of this deflection.
+    The name is that in the file name. The trajectory ``tip`` of the motion is the displayed
+    deflection, whose name is ``tip_name``.
     """
     event = TITLES.get(name, name.replace("-", " "))
     instants = characteristic_instants(motion)

@@ -266,12 +266,8 @@ def write(
 ) -> None:
     """Write NAME.json and NAME.md atomically.
 
-    Args:
-        folder: folder of the files, which is created if it is missing.
-        name: name of the files.
-        title: heading of the Markdown file.
-        data: data of the JSON file.
-        tables: tables of the Markdown file.
+    The folder is created if it is missing. The JSON file has the data, the Markdown file the title
+    and the tables.
     """
     folder.mkdir(parents=True, exist_ok=True)
     texts = {

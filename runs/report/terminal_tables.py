@@ -51,9 +51,7 @@ _GOVERNING = {"plate": "plate", "outer fibre": "bending", "pad": "pad", "detail"
 def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
     """Print models, numerics, output of the client and results; return the exit status.
 
-    Args:
-        runs: runs by their names in messages.
-        judged: additions of the client by the same names.
+    Runs, and the additions of the client, have their names in messages as keys.
     """
     console = Terminal()
     for results in runs.values():
@@ -177,11 +175,8 @@ def print_proofs(
 ) -> int:
     """Print the proofs of a checked case; return 1 if a proof fails, otherwise 0.
 
-    Args:
-        case: the case.
-        file: its file, for messages.
-        console: console for the tables; lines on proofs that fail go to stderr.
-        shell: shell to use in place of beam elements, and its build context; all ranks must call.
+    Lines on proofs that fail go to stderr. With a shell and its build context, all ranks must call,
+    and the shell replaces beam elements.
 
     Raises:
         NumericsError: a combination has no equilibrium.

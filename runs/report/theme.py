@@ -107,9 +107,8 @@ class Stroke:
 def strokes(models: Sequence[str], bonded: Sequence[str]) -> dict[str, Stroke]:
     """Return colour and dashes of each model, the same in all figures.
 
-    Args:
-        models: names in the order of the case.
-        bonded: names of models without play, whose curves are grey and dashed.
+    Names are in the order of the case. The curves of ``bonded`` models, without play, are grey and
+    dashed.
     """
     # If the palette is too short, its colours are repeated with dashes.
     looks = cycle(Stroke(color, dashes) for dashes in ("-", "-.", ":") for color in PALETTE)

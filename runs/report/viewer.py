@@ -172,12 +172,8 @@ def symbol_lines(
 ) -> list[Lines]:
     """Return the lines of cylinders, and of symbols of supports and loads.
 
-    Args:
-        scene: scene of the boom.
-        rest: (num_points, 3) displayed points of the undeformed boom in m.
-        rotation: rotation matrix (3, 3) of the angle.
-        angle: angle of the boom in degrees.
-        scale: magnification of displacements and play.
+    The boom at rest has displayed points (num_points, 3) in m. The rotation matrix (3, 3) belongs
+    to the angle in degrees; ``scale`` magnifies displacements and play.
     """
     lines: dict[tuple[str, float], list[tuple[Array, Array]]] = {}
     gap = np.full((1, 3), np.nan)
@@ -287,11 +283,9 @@ def extensions(scene: Scene, time: Array) -> Mapping[str, tuple[Array, Array]]:
 def few_shapes(displacement: Array) -> tuple[Array, Array]:
     """Return a motion as factors (num_frames, num_shapes) and shapes (num_shapes, num_values).
 
-    This is a truncated singular value decomposition (Eckart and Young 1936), by eigenvectors of the
-    Gram matrix of the frames. The truncation error is at most 0.2 % of the largest value.
-
-    Args:
-        displacement: displacements (num_frames, num_values).
+    This is a truncated singular value decomposition of displacements (num_frames, num_values)
+    (Eckart and Young 1936), by eigenvectors of the Gram matrix of the frames. The truncation error
+    is at most 0.2 % of the largest value.
     """
     _, parts = np.linalg.eigh(displacement @ displacement.T)
     parts = parts[:, ::-1]
