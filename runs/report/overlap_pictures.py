@@ -100,7 +100,7 @@ class OverlapView:
     @property
     def midpoint(self) -> float:
         """The x in m of the centre between the stations."""
-        return float(0.5 * (self.overlap.centres.min() + self.overlap.centres.max()))
+        return 0.5 * (min(self.overlap.centres) + max(self.overlap.centres))
 
     @cached_property
     def scale(self) -> float:
@@ -146,7 +146,7 @@ class OverlapView:
 
     def _relative_displacements(self, time: float) -> Array:
         """Return the displacements (num_points, 3) in m relative to the outer segment."""
-        between = (float(self.overlap.centres.min()), float(self.overlap.centres.max()))
+        between = min(self.overlap.centres), max(self.overlap.centres)
         return self.scene.relative_displacements(time, self.overlap.outer, between)
 
     def flange(self, places: Array, segment: int, side: int) -> Array:

@@ -57,7 +57,7 @@ class Overlap(NamedTuple):
     outer: int  #: index of the outer segment
     inner: int  #: index of the inner segment
     stations: list[int]  #: indices of the stations in the trajectories
-    centres: Array  #: (num_stations,) x in m of the pad centres of the stations
+    centres: list[float]  #: x in m of the pad centres of the stations
     clearance: float  #: clearance Δ in m
 
 
@@ -183,7 +183,7 @@ class Scene:
         for number, stations in midpoints.items():
             joint = self.boom.joints[number]
             clearance = 0.5 * ((joint.lateral_play or 0.0) if self.from_above else joint.play)
-            centres = np.array([np.mean(several) for several in stations.values()])
+            centres = [float(np.mean(several)) for several in stations.values()]
             overlaps.append(Overlap(joint.outer, joint.inner, [*stations], centres, clearance))
         return overlaps
 
