@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from dynamics.arrays import Array
-from dynamics.contact import ContactLaw
+from dynamics.contact import ContactLaw, PowerContact
 from dynamics.gap_system import GapSystem, Observer
 
 
@@ -48,3 +48,20 @@ def damping_matrix(system: GapSystem) -> Array:
 def oscillator() -> GapSystem:
     """Return 1 kg on a spring of 1 N/m."""
     return modal_system([1.0], [0.0], tip=[1.0])
+
+
+def one_mass(
+    mass: float,
+    law: PowerContact | None = None,
+    spring: float = 0.0,
+    force: float = 0.0,
+    dashpot: float = 0.0,
+) -> GapSystem:
+    """Return a mass in kg on a spring in N/m and a dashpot in N·s/m, before a stop.
+
+    Its only modal coordinate is √m times the position; ``tip`` is the position.
+    """
+    row = np.array([1.0 / np.sqrt(mass)])
+    laws = [] if law is None else [law]
+    rows, damping = row[: len(laws)], np.array([dashpot / mass])
+    return modal_system([spring / mass], force * row, rows, laws, tip=row, damping=damping)

@@ -3,7 +3,6 @@
 
 import pickle
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -12,14 +11,12 @@ import pytest
 
 from dynamics.contact import PowerContact
 from dynamics.excitation import Excitation, Sine
-from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep, FixedStep, Integrator, StepSchedule, simulate
 from dynamics.motion import MOST_STEPS, Motion
 from tests.dynamics.reference import two_modes
 from tests.dynamics.test_time_step import driven, lossy_press, pressed, sliding, telescoping
 from tests.dynamics.two_stops import CHAOTIC, LINEAR, RATTLING
-
-OneMass = Callable[..., GapSystem]
+from tests.modal import one_mass
 
 MOTION = Motion(CHAOTIC, 2.0, 1e-2, np.array([0.01, 0.0]), np.array([0.5, -1.0]))
 EVERY: list[Integrator] = [FixedStep(1e-3), AdaptiveStep(1e-2), StepSchedule((4, 16, 2), 30)]
@@ -56,7 +53,7 @@ def test_a_schedule_makes_its_steps() -> None:
     assert AdaptiveStep().like(run) == StepSchedule((4, 16, 2), 30)
 
 
-def test_the_step_fits_the_output(one_mass: OneMass) -> None:
+def test_the_step_fits_the_output() -> None:
     """Reference: by hand. 0.1 s has four steps; the duration is a whole number of outputs."""
     motion = Motion(one_mass(1.0, spring=1.0), 1.04, output_step=0.1)
     run = FixedStep(0.03)(unjoined(motion))
@@ -130,7 +127,7 @@ def test_chaos_ends_the_refinement(motion: Motion, fraction: float) -> None:
     assert run.energy_residual < 1e-9
 
 
-def test_fast_loads_are_sampled(one_mass: OneMass) -> None:
+def test_fast_loads_are_sampled() -> None:
     """Reference: analytic. h times 2π · 300 Hz is at most ½, although the tip hardly reacts."""
     push = Excitation(np.array([1.0]), Sine(300.0))
     system = replace(one_mass(1.0, spring=4.0, force=3.0), excitations=[push])
@@ -138,7 +135,7 @@ def test_fast_loads_are_sampled(one_mass: OneMass) -> None:
     assert run.data.attrs["step"] * 2.0 * np.pi * 300.0 < 0.5
 
 
-def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
+def test_mean_forces_of_two_steps_do_not_alternate() -> None:
     """Reference: analytic, the weight. With 32 rad per step on a stiff floor, forces of single
     steps oscillate about their mean, and means of pairs do not.
     """
@@ -154,9 +151,7 @@ def test_mean_forces_of_two_steps_do_not_alternate(one_mass: OneMass) -> None:
 @pytest.mark.parametrize(
     ("stiffness", "exponent"), [(1e8, 1.0), (1e10, 1.5), (1e12, 2.0), (1e15, 3.0)]
 )
-def test_unresolved_peak_is_marked(
-    one_mass: OneMass, stiffness: float, exponent: float, speed: float
-) -> None:
+def test_unresolved_peak_is_marked(stiffness: float, exponent: float, speed: float) -> None:
     """Reference: analytic, k pⁿ with ½ m v² = k pⁿ⁺¹/(n + 1), and a step of ½ √(m/F′(p))."""
     depth = ((exponent + 1.0) * 0.5 * speed**2 / stiffness) ** (1.0 / (exponent + 1.0))
     force, slope = stiffness * depth**exponent, exponent * stiffness * depth ** (exponent - 1.0)

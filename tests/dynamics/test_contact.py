@@ -2,7 +2,6 @@
 """Contact laws: powers, two sides, Hunt-Crossley damping, tables."""
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,9 +10,9 @@ from scipy.integrate import trapezoid
 
 from dynamics.contact import PowerContact, contact_limits, restitution_damping
 from dynamics.contact_table import TableContact
-from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
+from tests.modal import one_mass
 
 POWER = PowerContact(stiffness=1.0e13, exponent=2.0, stiffness_below=4.0e12)
 LAW = POWER.with_clearance(7.0e-3)
@@ -108,8 +107,6 @@ def test_a_linear_law_has_its_slope_at_no_force_and_at_any(force: float) -> None
     assert PowerContact(1.0e9, 1.0).slope_at(force) == pytest.approx(1.0e9)
 
 
-OneMass = Callable[..., GapSystem]
-
 SOFT_ABOVE = PowerContact(1.0e6, 2.0, stiffness_below=2.0e9)
 UNEQUAL = SOFT_ABOVE.with_clearance(4.0e-3, 10.0e-3)
 
@@ -150,7 +147,7 @@ def test_bad_gaps_are_refused(clearance: float, message: str) -> None:
         SOFT_ABOVE.with_clearance(clearance)
 
 
-def test_preloaded_mass_leaves_one_contact_side(one_mass: OneMass) -> None:
+def test_preloaded_mass_leaves_one_contact_side() -> None:
     """Reference: analytic. √(2 k/m) up to the interference, then √(k/m) about F/k − δ."""
     k, pressed, load = 1.0e4, 2.0e-3, 60.0
     both, one = np.sqrt([2.0 * k, k])
@@ -191,9 +188,7 @@ def test_a_full_rebound_needs_no_damping_and_speed_divides_it() -> None:
 
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
 @pytest.mark.parametrize("restitution", [0.3, 0.8])
-def test_a_mass_rebounds_as_it_should(
-    one_mass: OneMass, exponent: float, restitution: float
-) -> None:
+def test_a_mass_rebounds_as_it_should(exponent: float, restitution: float) -> None:
     """Reference: analytic, the same e for every exponent. The error decreases with the step."""
     mass, speed = 3.0, 2.0
     damping = restitution_damping(restitution, speed)
@@ -213,7 +208,7 @@ def test_a_mass_rebounds_as_it_should(
     assert errors[1] < errors[0] / 8.0
 
 
-def test_contact_never_pulls(one_mass: OneMass) -> None:
+def test_contact_never_pulls() -> None:
     """A load pulls a mass off a stop faster than 1/d; the contact opens and loses its energy."""
     stop = PowerContact(stiffness=1.0e4, exponent=1.0, damping=5.0).upper()
     system = one_mass(1.0, stop, force=-2.0e3)
@@ -282,7 +277,7 @@ def test_one_line_is_a_linear_stop() -> None:
     assert table.slope_at(3.0) == pytest.approx(power.slope_at(3.0), rel=1e-12)
 
 
-def test_a_mass_on_a_table_swings_on_its_lines(one_mass: Callable[..., GapSystem]) -> None:
+def test_a_mass_on_a_table_swings_on_its_lines() -> None:
     """Reference: analytic. ½ m v² equals the area under the table up to the largest penetration."""
     motion = Motion(one_mass(100.0, TABLE), 0.5, 1e-2, velocity=np.array([4.0]))
     run = FixedStep(1e-5)(motion)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Equilibria, and second-order effects of axial forces."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -15,7 +14,7 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from dynamics.second_order import buckling_factor, soften_modes
-from tests.modal import modal_system
+from tests.modal import modal_system, one_mass
 
 
 def mass_over_stop(exponent: float, omega2: float) -> GapSystem:
@@ -71,7 +70,7 @@ STOPS = PowerContact(STIFFNESS, 1.0).with_clearance(CLEARANCE)
 
 
 @pytest.fixture(name="tipping")
-def _tipping(one_mass: Callable[..., GapSystem]) -> GapSystem:
+def _tipping() -> GapSystem:
     """Return a mass on a negative spring between two stops."""
     return one_mass(MASS, STOPS, spring=NEGATIVE)
 

@@ -16,9 +16,7 @@ from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.time_step import line_within
 from tests.dynamics.reference import slopes
-from tests.modal import modal_system
-
-OneMass = Callable[..., GapSystem]
+from tests.modal import modal_system, one_mass
 
 # ω in rad/s of 1 kg on a spring: free, as slow as a boom, as fast as the plates of a shell.
 OMEGAS = (0.0, 2.0, 19.0, 300.0, 5.0e3)
@@ -93,7 +91,7 @@ def test_histories_by_hand() -> None:
     assert list(table.kinks) == [0.0, 1.0, 2.0]
 
 
-def test_a_step_is_a_load(one_mass: OneMass) -> None:
+def test_a_step_is_a_load() -> None:
     """Reference: other code path, the same load as a constant."""
     plain = one_mass(
         3.0, PowerContact(1.0e4, 2.0).with_clearance(0.02), spring=40.0, force=7.0, dashpot=0.8
@@ -139,7 +137,7 @@ def test_linear_fit_of_a_history_keeps_its_moments() -> None:
     assert change == pytest.approx([12.0 * 0.75 * 0.125, 0.0], abs=1e-9)
 
 
-def test_a_half_sine_leaves_its_swing(one_mass: OneMass) -> None:
+def test_a_half_sine_leaves_its_swing() -> None:
     """Reference: analytic, the residual amplitude after a pulse (Clough and Penzien 1975, 5-2)."""
     natural, duration, force, spring = 9.0, 0.5, 5.0, 81.0
     system = one_mass(1.0, PowerContact(1.0e4, 1.0).with_clearance(1.0e3), spring=spring, force=0.0)
@@ -164,7 +162,7 @@ def forced(time: Array, spring: float, dashpot: float, frequency: float, phase: 
 
 
 @pytest.mark.parametrize("dashpot", [0.0, 0.5, 20.0])
-def test_a_sine_against_its_closed_form(one_mass: OneMass, dashpot: float) -> None:
+def test_a_sine_against_its_closed_form(dashpot: float) -> None:
     """Reference: analytic. Steps replace the sine by lines with its moments: order 4."""
     system = driven(one_mass(1.0, spring=30.0, dashpot=dashpot), 1.0, Sine(0.6, 0.4))
     errors = []

@@ -16,9 +16,7 @@ from dynamics.excitation import Excitation, Sine
 from dynamics.gap_system import GapSystem, Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
-from tests.modal import modal_system
-
-OneMass = Callable[..., GapSystem]
+from tests.modal import modal_system, one_mass
 
 
 def rubbing(system: GapSystem, *frictions: DryFriction, rows: Array | None = None) -> GapSystem:
@@ -37,7 +35,7 @@ def modes(omega: Array, load: Array, rows: Array, limits: Array, **more: Any) ->
     return modal_system(omega**2, load, friction_rows=rows, frictions=frictions, **more)
 
 
-def test_a_mass_on_a_spring_comes_to_rest(one_mass: OneMass) -> None:
+def test_a_mass_on_a_spring_comes_to_rest() -> None:
     """Reference: analytic. Each half cycle lasts π √(m/k) and reduces the amplitude by 2 μN/k,
     until a turning point is within μN/k. Then the mass stays at rest.
     """
@@ -62,7 +60,7 @@ def test_a_mass_on_a_spring_comes_to_rest(one_mass: OneMass) -> None:
     assert force[101:200] == pytest.approx(-limit, rel=1e-12)
 
 
-def test_a_force_below_the_limit_moves_nothing(one_mass: OneMass) -> None:
+def test_a_force_below_the_limit_moves_nothing() -> None:
     """Reference: analytic. Only a force above μ N causes sliding, with (F − μ N)/m."""
     for force in (4.999, -4.999, 5.001):
         system = rubbing(one_mass(2.0, force=force), DryFriction(0.5, 0, 10.0))
@@ -243,7 +241,7 @@ def test_a_bounce_takes_its_impulse_times_friction() -> None:
     assert impulse == pytest.approx(-0.3 * 0.01 * float(np.abs(run.data["contact_force"]).sum()))
 
 
-def test_no_friction_is_no_friction(one_mass: OneMass) -> None:
+def test_no_friction_is_no_friction() -> None:
     """Reference: the same system without friction rows. μ = 0 changes only round-off."""
     plain = one_mass(4.0, PowerContact(1.0e4, 1.0).with_clearance(0.05), spring=100.0, force=30.0)
     one, two = (

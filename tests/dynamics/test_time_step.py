@@ -2,7 +2,6 @@
 """The time step against closed forms of impacts and free motion."""
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
@@ -32,9 +31,7 @@ from tests.dynamics.reference import (
 )
 from tests.dynamics.test_moving_thrust import pressed_along
 from tests.dynamics.test_telescoping import lossy, rider
-from tests.modal import modal_system
-
-OneMass = Callable[..., GapSystem]
+from tests.modal import modal_system, one_mass
 
 THROWN = np.array([0.8, -0.5, 0.3, 0.4])
 POWER = PowerContact(1.0e6, 1.0).with_clearance(1.0e-3)
@@ -211,7 +208,7 @@ def test_motion_runs_back_through_its_contacts(exponent: float) -> None:
     assert np.abs(end_of(back)[1]).max() < 1e-9 * np.abs(speed).max()
 
 
-def test_mass_on_a_spring_against_a_spring_stop(one_mass: OneMass) -> None:
+def test_mass_on_a_spring_against_a_spring_stop() -> None:
     """Reference: external, SDND101 of the Code_Aster validation manual; analytic, the impulse."""
     stop = PowerContact(stiffness=1.0e6, exponent=1.0).upper()
     system = one_mass(100.0, stop, spring=1.0e4)
@@ -228,7 +225,7 @@ def crossings(time: Array, y: Array, level: float) -> Array:
     return np.asarray(time[before] + part * (time[before + 1] - time[before]))
 
 
-def test_falling_mass(one_mass: OneMass) -> None:
+def test_falling_mass() -> None:
     """Reference: external, SDND108 of the Code_Aster validation manual."""
     stop = PowerContact(stiffness=100.0, exponent=1.0).lower().with_clearance(2.0)
     system = one_mass(1.0, stop, force=-10.0)
@@ -240,7 +237,7 @@ def test_falling_mass(one_mass: OneMass) -> None:
     assert float(run.data["contact_force"].max()) == 0.0
 
 
-def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
+def test_mass_between_two_stops_of_unlike_stiffness() -> None:
     """Reference: analytic. Flights last 2Δ/v, contacts π √(m/k) of each side."""
     law = PowerContact(stiffness=4.0e4, exponent=1.0, stiffness_below=9.0e4).with_clearance(0.1)
     period = 2.0 * 0.2 / 2.0 + np.pi / 200.0 + np.pi / 300.0
@@ -257,7 +254,7 @@ def test_mass_between_two_stops_of_unlike_stiffness(one_mass: OneMass) -> None:
     assert impulse == pytest.approx(3 * 4.0, rel=1e-6)
 
 
-def test_quadratic_stop_at_its_deepest(one_mass: OneMass) -> None:
+def test_quadratic_stop_at_its_deepest() -> None:
     """Reference: analytic. A mass m with the speed v penetrates by p = (3 m v² / 2 k)^⅓ under
     F = k p², by energy, after the time Γ(⅓) Γ(½) / (3 Γ(⅚)) p/v, by a Beta integral.
     """
@@ -273,9 +270,7 @@ def test_quadratic_stop_at_its_deepest(one_mass: OneMass) -> None:
 
 @pytest.mark.parametrize("step", [1e-2, 1e-3, 1e-5])
 @pytest.mark.parametrize(("stiffness", "exponent"), [(1e8, 1.0), (1e10, 1.5), (1e13, 2.0)])
-def test_bouncing_ball_keeps_its_height(
-    one_mass: OneMass, stiffness: float, exponent: float, step: float
-) -> None:
+def test_bouncing_ball_keeps_its_height(stiffness: float, exponent: float, step: float) -> None:
     """Reference: analytic. 1 kg falls 1 mm on a stiff floor repeatedly, and returns to the initial
     height, even if the step does not resolve the impact of 10 to 100 µs.
     """
@@ -291,7 +286,7 @@ def test_bouncing_ball_keeps_its_height(
 
 
 @pytest.mark.parametrize("step", [2.0e-2, 1.0e-2, 1.0e-3, 1.0e-4])
-def test_first_contact_does_not_depend_on_the_step(one_mass: OneMass, step: float) -> None:
+def test_first_contact_does_not_depend_on_the_step(step: float) -> None:
     """Reference: analytic. Linear interpolation of a fall has an error of at most g h²/8."""
     stop = PowerContact(stiffness=100.0, exponent=1.0).lower().with_clearance(2.0)
     motion = Motion(one_mass(1.0, stop, force=-10.0), 1.0, 2.0e-2, velocity=np.array([-1.0]))
@@ -313,9 +308,7 @@ def test_first_contact_is_the_earliest_of_all_rows() -> None:
 @pytest.mark.parametrize(
     ("place", "speed", "first"), [(-0.1003, 1.0, 0.2003), (0.11, -0.1, 0.0), (0.0, 0.1, np.nan)]
 )
-def test_first_contact_late_at_once_or_never(
-    one_mass: OneMass, place: float, speed: float, first: float
-) -> None:
+def test_first_contact_late_at_once_or_never(place: float, speed: float, first: float) -> None:
     """Reference: analytic. A mass reaches a stop at 0.1 m, begins in contact, or never touches."""
     system = one_mass(1.0, PowerContact(stiffness=1.0, exponent=1.0).upper().with_clearance(0.1))
     run = FixedStep(3e-4)(Motion(system, 0.5, 0.01, np.array([place]), np.array([speed])))
@@ -367,7 +360,7 @@ def test_energy_residual_gives_a_warning() -> None:
         check_energy(energies + np.inf)
 
 
-def test_unloaded_segments_stay_at_rest(one_mass: OneMass) -> None:
+def test_unloaded_segments_stay_at_rest() -> None:
     """Reference: analytic. Segments without load stay at rest."""
     run = AdaptiveStep()(Motion(one_mass(1.0, PowerContact(1.0e6, 2.0).with_clearance(0.1)), 0.1))
     assert not run.states.any()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Labels and measures of trajectories."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -12,11 +11,11 @@ from scipy.signal import find_peaks
 from dynamics.arrays import Array
 from dynamics.contact import DryFriction, PowerContact
 from dynamics.energy import energy_residual
-from dynamics.gap_system import GapSystem, Observer
+from dynamics.gap_system import Observer
 from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory, prominent_peaks
-from tests.modal import modal_system
+from tests.modal import modal_system, one_mass
 
 STOP = PowerContact(stiffness=1.0e4, exponent=1.0).with_clearance(1.0e-2)
 
@@ -27,7 +26,7 @@ def deflections(tip: Array, end: float) -> Trajectory:
     return Trajectory(data, np.zeros((tip.size, 0)))
 
 
-def test_observers_are_read_at_output_times(one_mass: Callable[..., GapSystem]) -> None:
+def test_observers_are_read_at_output_times() -> None:
     system = one_mass(2.0, STOP, force=3.0)
     system = replace(
         system, observers={**system.observers, "stress": Observer(np.array([5.0]), "Pa")}
@@ -40,7 +39,7 @@ def test_observers_are_read_at_output_times(one_mass: Callable[..., GapSystem]) 
     assert run.data["stress"].attrs["units"] == "Pa"
 
 
-def test_rows_are_gathered_by_station(one_mass: Callable[..., GapSystem]) -> None:
+def test_rows_are_gathered_by_station() -> None:
     """Reference: other code path. Three rows at two stops give the forces of two rows."""
     row = np.array([[0.8], [-0.5]])
     laws = [STOP, STOP.law.with_clearance(5.0e-3)]
@@ -128,7 +127,7 @@ def test_first_peak_of_a_slow_motion(
     assert found[1] == pytest.approx(side * height, abs=within[1], nan_ok=True)
 
 
-def test_rates_are_those_of_the_motion(one_mass: Callable[..., GapSystem]) -> None:
+def test_rates_are_those_of_the_motion() -> None:
     """Reference: analytic, −a ω sin ω t, and its difference quotients between outputs."""
     system = one_mass(2.0, spring=800.0)
     row = system.observers["tip"].row
@@ -142,9 +141,7 @@ def test_rates_are_those_of_the_motion(one_mass: Callable[..., GapSystem]) -> No
     assert float(data["push"][0]) == 0.0
 
 
-def test_blows_from_both_sides_within_an_output_interval_do_not_cancel(
-    one_mass: Callable[..., GapSystem],
-) -> None:
+def test_blows_from_both_sides_within_an_output_interval_do_not_cancel() -> None:
     """Reference: analytic, v √(k m) of a mass between two stops, with two rows and one."""
     both = one_mass(2.0, STOP)
     apart = replace(
