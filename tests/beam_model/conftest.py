@@ -1,35 +1,14 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Plain beams, and the paper's boom as each kind of model."""
+"""The paper's boom as each kind of model."""
 
-from collections.abc import Callable, Sequence
-from typing import Any
+from collections.abc import Callable
 
 import pytest
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import Theory, finite_element_segment
 from beam_model.kantorovich import Base, kantorovich_segments
-from geometry.boom import Boom, Material, Segment, Support
-from geometry.section import BoxSection
-
-BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
-
-
-@pytest.fixture(scope="session")
-def beam(steel: Material) -> Callable[..., Segment]:
-    """Return a factory of beams of BOX on [3, 8] m; numbers in ``supports`` are pinned supports."""
-
-    def make(*, supports: Sequence[float | Support] = (), **changes: Any) -> Segment:
-        numbers: dict[str, Any] = {
-            "name": "beam", "start": 3.0, "end": 8.0, "material": steel,
-            "mass_per_length": BOX.mass_per_length(steel.density),
-            "second_moment_of_area": BOX.second_moment_of_area,
-            "rotary_inertia": steel.density * BOX.second_moment_of_area, "section": BOX,
-            "supports": tuple(x if isinstance(x, Support) else Support(x) for x in supports),
-        }  # fmt: skip
-        return Segment(**numbers | changes)
-
-    return make
+from geometry.boom import Boom
 
 
 @pytest.fixture(scope="session")

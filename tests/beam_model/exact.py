@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Closed-form solutions of beams, independent of the program.
+"""Plain beams, and their closed-form solutions, independent of the program.
 
 Statics follows from Macaulay's brackets, frequencies follow from determinants.
 """
@@ -8,13 +8,31 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 from scipy.optimize import brentq
 
 from beam_model.component import Component, natural_modes
 from geometry.arrays import Array
-from geometry.boom import Boom, Segment, Support
+from geometry.boom import Boom, Material, Segment, Support
+from geometry.section import BoxSection
+
+STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
+BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
+
+
+def beam(*, supports: Sequence[float | Support] = (), **changes: Any) -> Segment:
+    """Return a beam of BOX on [3, 8] m; numbers in ``supports`` are pinned supports."""
+    numbers: dict[str, Any] = {
+        "name": "beam", "start": 3.0, "end": 8.0, "material": STEEL,
+        "mass_per_length": BOX.mass_per_length(STEEL.density),
+        "second_moment_of_area": BOX.second_moment_of_area,
+        "rotary_inertia": STEEL.density * BOX.second_moment_of_area, "section": BOX,
+        "supports": tuple(x if isinstance(x, Support) else Support(x) for x in supports),
+    }  # fmt: skip
+    return Segment(**numbers | changes)
+
 
 # βL of a beam of length L with a free, a clamped or a pinned end on either side (Blevins 1979).
 FREE_FREE = (4.730040744862704, 7.853204624095838, 10.995607838001671)

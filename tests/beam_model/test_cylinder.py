@@ -19,10 +19,9 @@ from dynamics.excitation import Step
 from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, BoomError, Cylinder, Joint, Load, Material, Segment, Stop, Support
 from geometry.section import BoxSection
+from tests.beam_model.exact import beam
 from tests.lowered_pin import level, raised
 from tests.space import in_space
-
-Beam = Callable[..., Segment]
 
 SMALL = BoxSection(height=0.4, width=0.3, flange=0.01, web=0.01)
 UNIFORM, TIP = -2.0e3, -1.5e4
@@ -79,7 +78,7 @@ def shear_deflection(segment: Segment, arm: float, force: float) -> float:
     return (unit * inner - outer) / (segment.material.shear_modulus * segment.section.shear_area)
 
 
-def luffed(beam: Beam, cylinder: Cylinder = CYLINDER) -> Boom:
+def luffed(cylinder: Cylinder = CYLINDER) -> Boom:
     segment = beam(supports=(HINGE,), load=UNIFORM)
     return Boom((segment,), (), (Load(0, "z", TIP, 8.0, Step()),), cylinders=(cylinder,))
 
@@ -92,11 +91,11 @@ def rest(system: GapSystem) -> tuple[float, float]:
 
 
 @pytest.mark.parametrize("stiffness", [3.0e7, 1.0e10], ids=["elastic", "stiff"])
-def test_statics_of_a_luffed_beam(beam: Beam, stiffness: float) -> None:
+def test_statics_of_a_luffed_beam(stiffness: float) -> None:
     """Reference: by hand, as above. Elements are exact at nodes. In every model the force follows
     from the lever arm.
     """
-    boom = luffed(beam, replace(CYLINDER, stiffness=stiffness))
+    boom = luffed(replace(CYLINDER, stiffness=stiffness))
     (segment,) = boom.segments
     expected = by_hand(segment, boom.cylinders[0])
     arm = float(np.linalg.det([[2.0, -0.45 + 0.15], CYLINDER.direction]))
@@ -146,7 +145,7 @@ def test_a_lowered_pin_needs_no_cylinder() -> None:
 
 
 @pytest.mark.parametrize("bonded", [False, True], ids=["one", "of two bonded"])
-def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, bonded: bool) -> None:
+def test_frequency_of_a_stiff_boom_on_its_cylinder(bonded: bool) -> None:
     """Reference: analytic, r √(k / I) about the hinge, within 2e-4; rigid beams to round-off."""
     stiff = Material(youngs_modulus=2.1e15, poissons_ratio=0.3, density=7850.0)
     whole = beam(supports=(HINGE,), material=stiff)
@@ -174,7 +173,7 @@ def test_frequency_of_a_stiff_boom_on_its_cylinder(beam: Beam, bonded: bool) -> 
         assert first == pytest.approx(expected, rel=2e-4)
 
 
-def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
+def test_two_inclined_cylinders_hold_the_twist_by_the_slope() -> None:
     """Reference: analytic, Bredt's shaft and Bernoulli's beam from a hinge that fixes twist and
     lateral slope. The cylinders have the elongations ±q, q = b (s_z φ − s_x v′), and the forces
     ∓k q.
@@ -212,7 +211,7 @@ def test_two_inclined_cylinders_hold_the_twist_by_the_slope(beam: Beam) -> None:
     assert twist < 0.96 * free
 
 
-def test_a_boom_rests_on_a_hinge_and_a_stop(beam: Beam) -> None:
+def test_a_boom_rests_on_a_hinge_and_a_stop() -> None:
     """Reference: analytic, the lever rule. The weight presses the boom on the stop."""
     segment = beam(supports=(Support(3.0),), load=UNIFORM)
     stop = Stop(0, 6.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1e7))
@@ -224,10 +223,10 @@ def test_a_boom_rests_on_a_hinge_and_a_stop(beam: Beam) -> None:
 
 
 @pytest.mark.parametrize("base", ["as printed", "pinned"])
-def test_the_printed_functions_take_no_cylinder(beam: Beam, base: Base) -> None:
+def test_the_printed_functions_take_no_cylinder(base: Base) -> None:
     message = (
         f"segment: 'beam' has a cylinder, for which the functions {base!r} have no form; use "
         "base = 'complete'"
     )
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
-        kantorovich_segments(luffed(beam), [5], base, rotary_inertia=False)
+        kantorovich_segments(luffed(), [5], base, rotary_inertia=False)

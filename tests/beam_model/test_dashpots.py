@@ -21,7 +21,8 @@ from dynamics.gap_system import GapSystem
 from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Cylinder, Joint, Material, PadSize, Segment, Support
+from geometry.boom import Boom, BoomError, Cylinder, Joint, Material, PadSize, Support
+from tests.beam_model.exact import beam
 from tests.touching import touching
 
 Models = Callable[..., list[SegmentModel]]
@@ -42,7 +43,7 @@ def decrements(system: GapSystem, position: Array, duration: float, name: str) -
     return -np.diff(np.log(heights))
 
 
-def test_a_rigid_segment_on_two_stations_loses_its_swing(beam: Callable[..., Segment]) -> None:
+def test_a_rigid_segment_on_two_stations_loses_its_swing() -> None:
     """Reference: analytic. On two springs and two dashpots ζ = c/√(2km), δ = 2πζ/√(1 − ζ²)."""
     outer = beam(name="outer", start=0.0, end=4.0, supports=(Support(0.0, "clamped"),))
     inner = beam(name="inner", start=3.0, end=4.0, section=None)
@@ -60,9 +61,7 @@ def test_a_rigid_segment_on_two_stations_loses_its_swing(beam: Callable[..., Seg
 
 
 @pytest.mark.parametrize("held", ["support", "cylinder"])
-def test_a_rigid_segment_on_its_hinge_loses_its_swing(
-    beam: Callable[..., Segment], held: str
-) -> None:
+def test_a_rigid_segment_on_its_hinge_loses_its_swing(held: str) -> None:
     """Reference: analytic, ζ = c r / 2√(k I) and δ = 2πζ/√(1 − ζ²) with the lever arm r about the
     hinge at (3, −0.25) m. The cylinder is between (1.4, −2) and (6, −0.5) m.
     """
@@ -93,7 +92,7 @@ def test_a_rigid_segment_on_its_hinge_loses_its_swing(
     assert (hertz, ratios) == (pytest.approx([omega / (2.0 * np.pi)]), pytest.approx([ratio]))
 
 
-def test_a_nearly_rigid_bar_on_a_dashpot_loses_its_swing(beam: Callable[..., Segment]) -> None:
+def test_a_nearly_rigid_bar_on_a_dashpot_loses_its_swing() -> None:
     """Reference: analytic, the rigid bar: ζ = c r / 2√(k I). Bending has much higher frequencies;
     the default step must not cause damping by them.
     """

@@ -2,7 +2,7 @@
 """Beam elements: exact statics at any mesh, frequencies of order four, rows that read anywhere."""
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 import pytest
@@ -17,10 +17,9 @@ from tests.beam_model.exact import (
     PINNED_PINNED,
     OverhangingBeam,
     angular_frequencies,
+    beam,
     frequencies,
 )
-
-Beam = Callable[..., Segment]
 
 THEORIES: tuple[Theory, ...] = ("euler-bernoulli", "timoshenko")
 
@@ -39,7 +38,7 @@ def shear_stiffness(segment: Segment, theory: Theory) -> float:
     return 2.0 * segment.section.height * segment.section.web * 2.1e11 / 2.6
 
 
-def test_mass_beside_a_node_costs_no_digits(beam: Beam) -> None:
+def test_mass_beside_a_node_costs_no_digits() -> None:
     """Reference: other mesh, without the node at 1 mm from the mass. Rigid modes have ω = 0."""
     segment = beam(masses=(PointMass(5.001, 20.0),))
     alone, beside = (bending(segment, 0.3, x, "euler-bernoulli", False) for x in ((), (5.0,)))
@@ -54,7 +53,7 @@ def test_mass_beside_a_node_costs_no_digits(beam: Beam) -> None:
     ids=["free-free", "pinned-pinned", "pinned-free"],
 )
 def test_frequencies_converge_at_order_four(
-    beam: Beam, supports: tuple[float, ...], numbers: tuple[float, ...]
+    supports: tuple[float, ...], numbers: tuple[float, ...]
 ) -> None:
     """Reference: analytic βL. Order of convergence and error."""
     segment = beam(supports=supports)
@@ -71,7 +70,7 @@ def test_frequencies_converge_at_order_four(
 
 
 @pytest.mark.parametrize("rotary_inertia", [False, True])
-def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inertia: bool) -> None:
+def test_shear_flexible_frequencies_of_two_pinned_ends(rotary_inertia: bool) -> None:
     """Reference: analytic. With w = W sin kx and θ = Θ cos kx, Timoshenko's equations are
     GA k² W − GA k Θ = m̄ ω² W and (E J k² + GA) Θ − GA k W = I_p ω² Θ.
     """
@@ -97,7 +96,7 @@ def test_shear_flexible_frequencies_of_two_pinned_ends(beam: Beam, rotary_inerti
 
 @pytest.mark.parametrize("theory", THEORIES)
 @pytest.mark.parametrize("length", [20.0, 1.3, 0.4])
-def test_statics_are_exact_at_nodes_of_any_mesh(beam: Beam, theory: Theory, length: float) -> None:
+def test_statics_are_exact_at_nodes_of_any_mesh(theory: Theory, length: float) -> None:
     """Reference: analytic, an overhanging beam under its load, and forces at breaks and tip."""
     segment = beam(supports=(3.0, 4.2), load=-4000.0)
     forces = [(6.1, 3.0e4), (8.0, -1.0e4)]
@@ -113,7 +112,7 @@ def test_statics_are_exact_at_nodes_of_any_mesh(beam: Beam, theory: Theory, leng
 
 @pytest.mark.parametrize("theory", THEORIES)
 @pytest.mark.parametrize("apart", [1.0e-4, 1.0e-5, 1.0e-7])
-def test_places_too_near_for_element_share_node(beam: Beam, theory: Theory, apart: float) -> None:
+def test_places_too_near_for_element_share_node(theory: Theory, apart: float) -> None:
     """Reference: analytic, an overhanging beam under a force at one of two close positions."""
     segment = beam(supports=(3.0, 4.2), masses=(PointMass(8.0 - apart, 1.0),))
     exact = OverhangingBeam(segment, [(6.1 + apart, 3.0e4)], 0.0, shear_stiffness(segment, theory))
@@ -124,7 +123,7 @@ def test_places_too_near_for_element_share_node(beam: Beam, theory: Theory, apar
 
 
 @pytest.mark.parametrize("theory", THEORIES)
-def test_deflection_is_read_between_nodes(beam: Beam, theory: Theory) -> None:
+def test_deflection_is_read_between_nodes(theory: Theory) -> None:
     """Reference: analytic. Without a distributed load the shape functions are the solution."""
     segment = beam(supports=(3.0, 4.2))
     exact = OverhangingBeam(segment, [(8.0, 1.0e4)], 0.0, shear_stiffness(segment, theory))
@@ -136,7 +135,7 @@ def test_deflection_is_read_between_nodes(beam: Beam, theory: Theory) -> None:
 
 @pytest.mark.parametrize("theory", THEORIES)
 @pytest.mark.parametrize("rotary_inertia", [False, True])
-def test_rigid_motions(beam: Beam, theory: Theory, rotary_inertia: bool) -> None:
+def test_rigid_motions(theory: Theory, rotary_inertia: bool) -> None:
     """Reference: analytic. Rigid motions have no strain, the mass m̄ L and the inertia
     m̄ L³/12 + I_p L about the midpoint.
     """
@@ -170,13 +169,13 @@ def test_rigid_motions(beam: Beam, theory: Theory, rotary_inertia: bool) -> None
     ],
 )
 def test_elements_are_no_longer_than_asked(
-    beam: Beam, length: float, breaks: tuple[float, ...], nodes: int
+    length: float, breaks: tuple[float, ...], nodes: int
 ) -> None:
     model = bending(beam(supports=(4.0,)), length, breaks, "euler-bernoulli", True)
     assert len(model.load) == 2 * nodes - 1
 
 
-def test_shear_needs_a_section(beam: Beam) -> None:
+def test_shear_needs_a_section() -> None:
     message = (
         "segment: 'beam' has no box section, which a Timoshenko beam needs for its shear area; "
         "give height_to_width or section"

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Kantorovich series: spaces of the paper, conditioning, and convergence to the beam."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,17 +10,16 @@ from beam_model.component import Component, natural_modes
 from beam_model.finite_element import finite_element_segment
 from beam_model.kantorovich import Base, kantorovich_bending
 from geometry.arrays import Array
-from geometry.boom import Boom, Segment, Support
+from geometry.boom import Boom, Support
 from tests.beam_model.exact import (
     CLAMPED_FREE,
     FREE_FREE,
     PINNED_FREE,
     PINNED_PINNED,
     angular_frequencies,
+    beam,
     frequencies,
 )
-
-Beam = Callable[..., Segment]
 
 
 def outside_of_span(model: Component, function: Array, x: Array) -> float:
@@ -102,7 +100,7 @@ def test_complete_and_pinned_are_one_space_on_pinned_supports(paper_boom: Boom, 
     ],
 )
 def test_frequencies_of_plain_beams(
-    beam: Beam, base: Base, supports: tuple[float, ...], numbers: tuple[float, ...]
+    base: Base, supports: tuple[float, ...], numbers: tuple[float, ...]
 ) -> None:
     """Reference: analytic βL."""
     segment = beam(supports=supports)
@@ -175,7 +173,7 @@ def test_place_of_the_origin_does_not_matter(paper_boom: Boom) -> None:
         np.testing.assert_allclose(frequencies(there), frequencies(here), rtol=1e-10)
 
 
-def test_load_is_the_work_of_a_uniform_force(beam: Beam) -> None:
+def test_load_is_the_work_of_a_uniform_force() -> None:
     """Reference: analytic, the work on x² (x − 2), and on 1 and x − x2 of the paper's spaces."""
     inner = kantorovich_bending(beam(load=11.0), 2, "as printed", rotary_inertia=False)
     for function, work in ((np.ones(2), 55.0), (np.array([0.0, 5.0]), 11.0 * 12.5)):

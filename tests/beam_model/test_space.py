@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Booms in space: two planes and a twist, pads in the corners, friction across planes."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -19,11 +18,9 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom, Joint, Segment, Stop, Support
 from geometry.section import BoxSection
-from tests.beam_model.exact import frequencies
+from tests.beam_model.exact import beam, frequencies
 from tests.space import in_space
 from tests.touching import touching
-
-Beam = Callable[..., Segment]
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
 LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0).with_clearance(5.0e-3)
@@ -59,7 +56,7 @@ def rolled(boom: Boom) -> Boom:
     ids=["held and free", "free", "held at both ends"],
 )
 def test_twisting_frequencies(
-    beam: Beam, supports: tuple[Support, ...], numbers: tuple[float, ...], rigid: int
+    supports: tuple[Support, ...], numbers: tuple[float, ...], rigid: int
 ) -> None:
     """Reference: analytic, ω = κ π/L √(G J_t / I), κ = ½, 3/2, …, and (κπh/L)²/24 above."""
     segment = in_space(beam(supports=supports))
@@ -81,7 +78,7 @@ def test_twisting_frequencies(
     np.testing.assert_allclose(np.log2(errors[0] / errors[1]), 2.0, atol=0.03)
 
 
-def test_a_torque_twists_in_proportion_to_its_arm(beam: Beam) -> None:
+def test_a_torque_twists_in_proportion_to_its_arm() -> None:
     """Reference: analytic, T x/(G J_t) up to the torque and constant beyond; exact at nodes."""
     segment = in_space(beam(supports=(Support(3.0),)))
     stiffness = segment.material.shear_modulus * segment.lateral.torsion_constant
@@ -92,7 +89,7 @@ def test_a_torque_twists_in_proportion_to_its_arm(beam: Beam) -> None:
 
 
 @pytest.mark.parametrize("kind", ["series", "euler-bernoulli", "timoshenko"])
-def test_lateral_bending_equals_bending_of_the_turned_box(beam: Beam, kind: str) -> None:
+def test_lateral_bending_equals_bending_of_the_turned_box(kind: str) -> None:
     """Reference: the flat model of a segment with a turned box."""
     box = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
     side = BoxSection(height=0.40, width=0.60, flange=0.01, web=0.04)

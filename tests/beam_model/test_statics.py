@@ -17,9 +17,10 @@ from dynamics.contact import PowerContact
 from dynamics.equilibrium import equilibrium
 from dynamics.excitation import Ramp, Step
 from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Cylinder, Load, PointMass, Segment, Support
+from geometry.boom import Boom, Cylinder, Load, PointMass, Support
 from geometry.load import Moment, PartialLoad
 from studies.reference_models.statics import static_response
+from tests.beam_model.exact import beam
 from tests.touching import touching
 
 LAW = PowerContact(1.0e9, 1.0).with_clearance(7.0e-3)
@@ -78,7 +79,7 @@ def test_the_tip_turns_by_the_play(paper_boom: Boom) -> None:
     assert found.tip == pytest.approx(0.007 + 0.014 * 9.0, rel=1e-3)
 
 
-def test_a_clamp_bears_force_and_moment(beam: Callable[..., Segment]) -> None:
+def test_a_clamp_bears_force_and_moment() -> None:
     """Reference: by hand, all kinds of loads on a cantilever from 3 to 8 m."""
     segment = beam(supports=[Support(3.0, "clamped")], load=-100.0, masses=(PointMass(8.0, 50.0),))
     loads = (
@@ -92,7 +93,7 @@ def test_a_clamp_bears_force_and_moment(beam: Callable[..., Segment]) -> None:
     assert reaction.moment == pytest.approx(500.0 * 2.5 + 2000.0 * 5.0 + 600.0 * 3.0 - 400.0)
 
 
-def test_three_supports_bear_by_their_stiffness(beam: Callable[..., Segment]) -> None:
+def test_three_supports_bear_by_their_stiffness() -> None:
     """Reference: analytic. The middle support of two equal slender spans carries 5/4 q L."""
     segment = replace(beam(supports=[3.0, 5.5, 8.0], load=-100.0), section=None)
     forces = [reaction.force for reaction in static_state(Boom((segment,), ())).reactions]
@@ -100,7 +101,7 @@ def test_three_supports_bear_by_their_stiffness(beam: Callable[..., Segment]) ->
     assert forces == pytest.approx([0.375 * span, 1.25 * span, 0.375 * span])
 
 
-def test_cylinder_carries_the_moment_about_the_hinge(beam: Callable[..., Segment]) -> None:
+def test_cylinder_carries_the_moment_about_the_hinge() -> None:
     """Reference: by hand, 500 N at 2.5 m from the hinge, and an upright cylinder at 2 m."""
     segment = beam(supports=[3.0], load=-100.0)
     jack = Cylinder(0, 5.0, depth=0.3, ground=(5.0, -2.0), stiffness=1.0e7)
@@ -118,7 +119,7 @@ MODELS: dict[str, Callable[[Boom], list[SegmentModel]]] = {
 
 
 @pytest.mark.parametrize("kind", MODELS)
-def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind: str) -> None:
+def test_a_cantilever_bends_as_its_loads_ask(kind: str) -> None:
     """Reference: by hand. −100 N/m and −2000 N: M = 2000 s + 50 s², V = −2000 − 100 s."""
     segment = beam(supports=[Support(3.0, "clamped")], load=-100.0)
     boom = Boom((segment,), (), (Load(0, "z", -2000.0, 8.0, Step()),))
@@ -135,9 +136,7 @@ def test_a_cantilever_bends_as_its_loads_ask(beam: Callable[..., Segment], kind:
 
 
 @pytest.mark.parametrize("kind", MODELS)
-def test_section_forces_of_a_column_refer_to_the_straight_axis(
-    beam: Callable[..., Segment], kind: str
-) -> None:
+def test_section_forces_of_a_column_refer_to_the_straight_axis(kind: str) -> None:
     """Reference: by hand. A column of 5 m has −500 N/m, −44,049 N and half of Euler's force P,
     which adds P w to M. The mean slope of M is 5 to 9 % above V at the clamp, and twice the load at
     the tip.
@@ -185,7 +184,7 @@ def test_a_boom_in_space_bends_sideways_and_twists(spatial_boom: Boom) -> None:
     np.testing.assert_allclose(found["torque"], 0.0, atol=1e-6)
 
 
-def test_rigid_segments_have_no_section_forces(beam: Callable[..., Segment]) -> None:
+def test_rigid_segments_have_no_section_forces() -> None:
     segment = beam(supports=[Support(3.0, stiffness=1e6), Support(6.0, stiffness=1e6)])
     boom = Boom((segment,), ())
     (line,) = lines(boom, [rigid_segment(segment)])

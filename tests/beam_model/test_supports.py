@@ -25,12 +25,12 @@ from tests.beam_model.exact import (
     PINNED_PINNED,
     OverhangingBeam,
     angular_frequencies,
+    beam,
     frequencies,
     roots,
 )
 from tests.touching import touching
 
-Beam = Callable[..., Segment]
 Models = Callable[..., list[SegmentModel]]
 
 # The same βL with the ends exchanged, and of free ends.
@@ -60,7 +60,6 @@ KINDS = pytest.mark.parametrize("model_of", [elements, terms])
     ids=["at the start", "at the end", "and pinned", "at both ends"],
 )
 def test_clamped_supports(
-    beam: Beam,
     model_of: Callable[[Segment], Component],
     supports: tuple[Support, ...],
     numbers: tuple[float, ...],
@@ -97,9 +96,7 @@ def tip_frequencies(segment: Segment, hold: Callable[[float], float]) -> Array:
 
 
 @KINDS
-def test_rotary_inertia_of_two_pinned_ends(
-    beam: Beam, model_of: Callable[[Segment, bool], Component]
-) -> None:
+def test_rotary_inertia_of_two_pinned_ends(model_of: Callable[[Segment, bool], Component]) -> None:
     """Reference: analytic, Rayleigh: ω² = (E J k⁴/m̄)/(1 + I_p k²/m̄)."""
     segment = beam(supports=(3.0, 8.0))
     k = np.array(PINNED_PINNED) / 5.0
@@ -112,7 +109,7 @@ def test_rotary_inertia_of_two_pinned_ends(
 @KINDS
 @pytest.mark.parametrize("supports", [(), (3.0, 5.0)])
 def test_viscous_damping_is_its_share_of_the_mass(
-    beam: Beam, model_of: Callable[[Segment], Component], supports: tuple[float, ...]
+    model_of: Callable[[Segment], Component], supports: tuple[float, ...]
 ) -> None:
     """Reference: analytic, (25) against (24): C = (μ̄/m̄) M."""
     segment = beam(supports=supports, viscous_damping=88.0)
@@ -122,9 +119,7 @@ def test_viscous_damping_is_its_share_of_the_mass(
 
 
 @KINDS
-def test_a_spring_under_the_end_of_a_cantilever(
-    beam: Beam, model_of: Callable[[Segment], Component]
-) -> None:
+def test_a_spring_under_the_end_of_a_cantilever(model_of: Callable[[Segment], Component]) -> None:
     """Reference: analytic, the transcendental equation of a clamped beam on an end spring."""
     stiff = 2.0e7
     segment = beam(supports=(Support(3.0, "clamped"), Support(8.0, stiffness=stiff)))
@@ -138,7 +133,7 @@ def test_a_spring_under_the_end_of_a_cantilever(
 @KINDS
 @pytest.mark.parametrize("stiffness", [2.0e6, 2.0e7, 4.0e8])
 def test_frequencies_with_a_rotational_spring_at_the_hinge(
-    beam: Beam, model_of: Callable[[Segment], Component], stiffness: float
+    model_of: Callable[[Segment], Component], stiffness: float
 ) -> None:
     """Reference: analytic, between a pinned and a clamped end (Blevins 1979):
     (kL/EJ) (1 + cos βL cosh βL) = βL (sin βL cosh βL − cos βL sinh βL). On a soft spring the beam
@@ -161,7 +156,7 @@ def test_frequencies_with_a_rotational_spring_at_the_hinge(
 
 
 @KINDS
-def test_a_mass_on_end_of_cantilever(beam: Beam, model_of: Callable[[Segment], Component]) -> None:
+def test_a_mass_on_end_of_cantilever(model_of: Callable[[Segment], Component]) -> None:
     """Reference: analytic, the same equation with −ω² M in place of the spring."""
     mass = 900.0
     segment = beam(supports=(Support(3.0, "clamped"),), masses=(PointMass(8.0, mass),))
@@ -171,7 +166,7 @@ def test_a_mass_on_end_of_cantilever(beam: Beam, model_of: Callable[[Segment], C
 
 
 @KINDS
-def test_rest_on_two_springs(beam: Beam, model_of: Callable[[Segment], Component]) -> None:
+def test_rest_on_two_springs(model_of: Callable[[Segment], Component]) -> None:
     """Reference: analytic, the beam on rigid supports, moved along with the compressed springs."""
     soft, hard = 2.0e6, 7.0e6
     segment = beam(supports=(Support(3.0, stiffness=soft), Support(6.0, stiffness=hard)))
@@ -187,7 +182,7 @@ def test_rest_on_two_springs(beam: Beam, model_of: Callable[[Segment], Component
         assert model.at(x) @ rest == pytest.approx(bent.deflection(x) + given, rel=2e-4)
 
 
-def test_one_spring_leaves_a_rigid_motion(beam: Beam) -> None:
+def test_one_spring_leaves_a_rigid_motion() -> None:
     """Reference: analytic. The beam rotates freely about its spring."""
     segment = beam(supports=(Support(4.0, stiffness=1.0e6),))
     for model in (elements(segment), terms(segment)):
@@ -199,7 +194,7 @@ def test_one_spring_leaves_a_rigid_motion(beam: Beam) -> None:
         np.testing.assert_allclose(turn / turn[0], [1.0, 0.0, -1.0, -4.0], atol=5e-5)
 
 
-def test_complete_functions_converge_on_any_supports(beam: Beam) -> None:
+def test_complete_functions_converge_on_any_supports() -> None:
     """Reference: other code, Hermite elements; order 3 due to the reaction inside the span."""
     supports = (Support(3.0, "clamped"), Support(5.0), Support(8.0, stiffness=4.0e6))
     segment = beam(supports=supports)
@@ -222,9 +217,7 @@ def test_complete_functions_converge_on_any_supports(beam: Beam) -> None:
 @pytest.mark.parametrize(
     "support", [Support(3.0, "clamped"), Support(3.0, stiffness=1.0e6)], ids=["clamped", "elastic"]
 )
-def test_the_printed_functions_know_pinned_supports_alone(
-    beam: Beam, base: Base, support: Support
-) -> None:
+def test_the_printed_functions_know_pinned_supports_alone(base: Base, support: Support) -> None:
     message = (
         f"segment: 'beam' has clamped or elastic supports, for which the functions {base!r} have "
         "no form; use base = 'complete'"

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells of the paper's segments, assembled once."""
 
-from collections.abc import Callable
 from dataclasses import replace
 from functools import cache
 
@@ -38,11 +37,6 @@ def box_shell(
     breaks |= {f"place-{one.x:g}": one.x for one in (*supports, *masses)}
     mesh = add_thickness(segment, mesh_segment(section, breaks, size))
     return assemble_segment(MPI.COMM_WORLD, segment, mesh if MPI.COMM_WORLD.rank == 0 else None)
-
-
-@pytest.fixture(name="box_shell")
-def _box_shell() -> Callable[..., SegmentShell]:
-    return box_shell
 
 
 def compliance(shell: SegmentShell, row: Row) -> float:

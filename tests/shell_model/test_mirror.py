@@ -19,9 +19,7 @@ from shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from shell_model.segment.solver import times
 from studies.reference_models.shell_readings import flange_deflection
 from tests.shell_model.booms import HELD, box_segment
-from tests.shell_model.conftest import BOX, UNEQUAL
-
-Shells = Callable[..., SegmentShell]
+from tests.shell_model.conftest import BOX, UNEQUAL, box_shell
 
 
 def _laden(section: Section) -> SegmentShell:
@@ -55,7 +53,7 @@ def _everything(shell: SegmentShell) -> tuple[SymmetryReduction, list[Job]]:
     ids=["box", "unequal"],
 )
 def test_rigid_motions_belong_to_their_families(
-    box_shell: Shells, section: Section, own: Mapping[SymmetryClass, list[int]]
+    section: Section, own: Mapping[SymmetryClass, list[int]]
 ) -> None:
     """Reference: analytic, translations along x, y and z, then rotations about them."""
     shell = box_shell(0.5, section=section)
@@ -71,7 +69,7 @@ def test_rigid_motions_belong_to_their_families(
 
 
 @pytest.mark.parametrize("kind", ["held", "laden", "unequal"])
-def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind: str) -> None:
+def test_a_quarter_moves_as_its_family_does_in_the_whole(kind: str) -> None:
     """Reference: other code path, the whole shell under the forces of this class."""
     shells = {
         "held": lambda: box_shell(0.5, supports=HELD),
@@ -96,7 +94,7 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(box_shell: Shells, kind
 
 
 @pytest.mark.parametrize("section", [BOX, UNEQUAL], ids=["box", "unequal"])
-def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Section) -> None:
+def test_forces_do_the_same_work_on_the_parts(section: Section) -> None:
     """Reference: analytic. The sum over the classes is the whole force."""
     shell = box_shell(0.5, supports=HELD, section=section)
     symmetry = SymmetryReduction(shell)
@@ -111,7 +109,7 @@ def test_forces_do_the_same_work_on_the_parts(box_shell: Shells, section: Sectio
     assert parts == pytest.approx(total, rel=1.0e-10)
 
 
-def test_a_load_in_the_plane_of_bending_excites_two_families(box_shell: Shells) -> None:
+def test_a_load_in_the_plane_of_bending_excites_two_families() -> None:
     """A load along z excites bending along z; a force on one flange also excites breathing."""
     shell = box_shell(0.5, supports=HELD)
     push = shell.row(flange_deflection(shell.outline(10.0), 1.0, 0.1))

@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,18 +11,15 @@ from scipy.spatial.transform import Rotation
 
 from dynamics.failure import NumericsError
 from geometry.arrays import Array, Indices
-from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.shell import ON_LINE
 from studies.reference_models.benchmarks import PUBLISHED, X, Y, Z, grid, twisted_beam
 from studies.reference_models.plates import STEEL, Field, SupportedPlate, rectangle, rigidities
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold
 from tests.shell_model.booms import HELD, flat_boom
-from tests.shell_model.conftest import BOX
+from tests.shell_model.conftest import BOX, box_shell
 from tests.shell_model.prismatic import ANGLE, Member, PlainBox
 from tests.shell_model.prismatic import BOX as CLOSED
-
-Shells = Callable[..., SegmentShell]
 
 # Lowest natural frequencies in Hz of a box of 10 m on a mesh of 0.5 m: free, and on supports at
 # 0 and 2 m, where the first is the slide along x.
@@ -36,7 +32,7 @@ SUPPORTED = (
 )  # fmt: skip
 
 
-def test_boxes_have_the_same_frequencies_on_every_release(box_shell: Shells) -> None:
+def test_boxes_have_the_same_frequencies_on_every_release() -> None:
     """Reference: non-regression, with DOLFINx 0.5.2. Round-off is some 1e-11."""
     free = natural_frequencies(box_shell(0.5), 6 + len(FREE))
     np.testing.assert_allclose(free[6:], FREE, rtol=1.0e-8)

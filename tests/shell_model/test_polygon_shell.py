@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells of polygons: folds, inclined walls, stations and stiffeners on them."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -29,18 +28,15 @@ from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Row
-from shell_model.segment.segment_shell import SegmentShell
 from studies import sections
 from tests.shell_model.booms import STEEL, flat_boom, two_segments
-from tests.shell_model.conftest import BOX, UNEQUAL
+from tests.shell_model.conftest import BOX, UNEQUAL, box_shell
 from tests.shell_model.models import (
     assert_rests_as_beams,
     frequencies_off,
     reduce_segment,
     reduced,
 )
-
-Shells = Callable[..., SegmentShell]
 
 LINEAR = sections.LAW
 (HEXAGON, INNER_HEXAGON), (OCTAGON, INNER_OCTAGON), (U, INNER_U) = sections.SHAPES.values()
@@ -54,7 +50,7 @@ def _read(row: Row, field: Array) -> float:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SECTIONS)
-def test_rows_read_rigid_motions(box_shell: Shells, name: str) -> None:
+def test_rows_read_rigid_motions(name: str) -> None:
     """Reference: analytic. Translations give their own size, a rotation φ gives the twist φ."""
     section = SECTIONS[name]
     shell = box_shell(0.5, section=section)
@@ -77,7 +73,7 @@ def test_rows_read_rigid_motions(box_shell: Shells, name: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("section", [*SECTIONS.values(), UNEQUAL], ids=[*SECTIONS, "unequal box"])
-def test_contacts_read_the_true_faces(box_shell: Shells, section: Section) -> None:
+def test_contacts_read_the_true_faces(section: Section) -> None:
     """Reference: analytic. Displacements u_z = z and u_y = y give the position of each face."""
     shell = box_shell(0.5, section=section)
     field = np.zeros(shell.num_dofs)
@@ -99,16 +95,14 @@ def test_contacts_read_the_true_faces(box_shell: Shells, section: Section) -> No
     [(HEXAGON, "z"), (HEXAGON, "y"), (OCTAGON, "z"), (OCTAGON, "y"), (U, "z"), (UNEQUAL, "z")],
     ids=["hexagon", "hexagon-y", "octagon", "octagon-y", "u", "unequal box"],
 )
-def test_a_free_segment_vibrates_as_its_beam(
-    box_shell: Shells, section: Section, direction: Direction
-) -> None:
+def test_a_free_segment_vibrates_as_its_beam(section: Section, direction: Direction) -> None:
     """Reference: other code, Timoshenko elements, within 0.3 %. A tenth of J would change 5 %."""
     off = frequencies_off(box_shell(0.25, section=section), direction)
     assert off == pytest.approx(0, abs=6e-3)
 
 
 @pytest.mark.slow
-def test_a_segment_on_its_side_vibrates_along_y_as_upright_along_z(box_shell: Shells) -> None:
+def test_a_segment_on_its_side_vibrates_along_y_as_upright_along_z() -> None:
     """Reference: symmetry. The mesh lies on its side, too: only round-off differs."""
     upright, lying = (box_shell(0.5, section=one) for one in (HEXAGON, HEXAGON.turned()))
     found = []

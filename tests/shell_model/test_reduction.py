@@ -3,7 +3,6 @@
 
 import math
 import os
-from collections.abc import Callable
 from concurrent.futures import BrokenExecutor
 
 import numpy as np
@@ -24,9 +23,8 @@ from shell_model.segment.solver import ShiftedSolver, times
 from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD
+from tests.shell_model.conftest import box_shell
 from tests.shell_model.models import reduce_segment
-
-Shells = Callable[..., SegmentShell]
 
 
 def _inputs(shell: SegmentShell) -> np.ndarray:
@@ -39,7 +37,7 @@ def _inputs(shell: SegmentShell) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_compliance_equals_full_solves_far_from_the_shifts(box_shell: Shells) -> None:
+def test_compliance_equals_full_solves_far_from_the_shifts() -> None:
     """Reference: the full model, in statics and at frequencies other than the shifts."""
     shell = box_shell(0.25, supports=HELD)
     inputs = _inputs(shell)
@@ -49,7 +47,7 @@ def test_compliance_equals_full_solves_far_from_the_shifts(box_shell: Shells) ->
 
 
 @pytest.mark.slow
-def test_modes_below_the_stated_limit_are_the_full_models(box_shell: Shells) -> None:
+def test_modes_below_the_stated_limit_are_the_full_models() -> None:
     """Reference: SLEPc on the full model. Each ω below the limit is a natural one to 1e-6."""
     shell = box_shell(0.25)
     reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())
@@ -62,7 +60,7 @@ def test_modes_below_the_stated_limit_are_the_full_models(box_shell: Shells) -> 
 
 
 @pytest.mark.slow
-def test_a_load_in_plane_of_bending_leaves_two_rigid_modes_exactly_zero(box_shell: Shells) -> None:
+def test_a_load_in_plane_of_bending_leaves_two_rigid_modes_exactly_zero() -> None:
     """The load excites only vertical translation and pitch of the six rigid motions."""
     shell = box_shell(0.25)
     reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())
@@ -70,7 +68,7 @@ def test_a_load_in_plane_of_bending_leaves_two_rigid_modes_exactly_zero(box_shel
 
 
 @pytest.mark.slow
-def test_a_helper_changes_no_bit_and_may_die(box_shell: Shells) -> None:
+def test_a_helper_changes_no_bit_and_may_die() -> None:
     """Reference: one process alone."""
     shell, options = box_shell(0.5), KrylovOptions(moments=1)
     inputs = np.column_stack([_inputs(shell), shell.unit_loads["y"]])
@@ -83,14 +81,14 @@ def test_a_helper_changes_no_bit_and_may_die(box_shell: Shells) -> None:
     assert len({one.omega2.tobytes() + one.shapes.tobytes() for one in found}) == 1
 
 
-def test_shapes_are_mass_orthonormal(box_shell: Shells) -> None:
+def test_shapes_are_mass_orthonormal() -> None:
     shell = box_shell(0.25)
     reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions(moments=2))
     gram = reduced.shapes.T @ times(shell.mass, reduced.shapes)
     assert np.abs(gram - np.eye(len(gram))).max() < 1.0e-9
 
 
-def test_dependent_inputs_add_no_coordinates(box_shell: Shells) -> None:
+def test_dependent_inputs_add_no_coordinates() -> None:
     """The space is the same for any order, and with sums, copies and zeros among the inputs."""
     shell = box_shell(0.5, supports=HELD)
     inputs = _inputs(shell)
@@ -102,7 +100,7 @@ def test_dependent_inputs_add_no_coordinates(box_shell: Shells) -> None:
     assert again.omega2 == pytest.approx(once.omega2, rel=1.0e-9)
 
 
-def test_segment_without_inputs_has_no_coordinates(box_shell: Shells) -> None:
+def test_segment_without_inputs_has_no_coordinates() -> None:
     shell = box_shell(0.5)
     message = "^nothing acts on a segment, and it has no motion: give it a load$"
     with pytest.raises(NumericsError, match=message):
@@ -131,7 +129,7 @@ def _measured(shell: SegmentShell, reduced: ReducedSegment, inputs: Array, rows:
 
 
 @pytest.mark.slow
-def test_a_basis_grows_until_it_meets_the_tolerance(box_shell: Shells) -> None:
+def test_a_basis_grows_until_it_meets_the_tolerance() -> None:
     """Reference: full solves at other frequencies, below twice the tolerance."""
     shell = box_shell(0.25, supports=HELD)
     inputs, end = _inputs(shell), shell.outline(10.0)
@@ -147,7 +145,7 @@ def test_a_basis_grows_until_it_meets_the_tolerance(box_shell: Shells) -> None:
     assert sizes[0] < sizes[1] < sizes[2]
 
 
-def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
+def test_no_more_coordinates_than_are_allowed() -> None:
     """The measured errors are larger with fewer coordinates."""
     shell = box_shell(0.5, supports=HELD)
     inputs = _inputs(shell)
@@ -159,7 +157,7 @@ def test_no_more_coordinates_than_are_allowed(box_shell: Shells) -> None:
 
 
 @pytest.mark.parametrize("options", [KrylovOptions(), KrylovOptions(tolerance=1e-2)], ids=str)
-def test_probes_excite_more_classes_than_inputs(box_shell: Shells, options: KrylovOptions) -> None:
+def test_probes_excite_more_classes_than_inputs(options: KrylovOptions) -> None:
     """Reference: other code path, a solver for the probes alone. No input acts along y."""
     shell = box_shell(0.5, supports=HELD)
     symmetry = SymmetryReduction(shell)
@@ -172,7 +170,7 @@ def test_probes_excite_more_classes_than_inputs(box_shell: Shells, options: Kryl
     assert np.abs(found.shapes.T @ aside).max() < 1e-9 * np.abs(found.shapes.T @ up).max()
 
 
-def test_missed_tolerance_is_reported(box_shell: Shells) -> None:
+def test_missed_tolerance_is_reported() -> None:
     shell = box_shell(0.5, supports=HELD)
     message = (
         r"^a segment's reduction errs by \d\.\de-0\d with \d+ coordinates in one of its planes, "

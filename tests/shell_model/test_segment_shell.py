@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """The shell of a segment, and its supports."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -14,19 +13,16 @@ from geometry.section import BoxSection
 from shell_model.contact.wall_rows import CornerLines
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.solver import times
 from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.beam_model.exact import frequencies
 from tests.shell_model.booms import HELD, STEEL, box_segment
-from tests.shell_model.conftest import BOX, compliance
+from tests.shell_model.conftest import BOX, box_shell, compliance
 from tests.shell_model.models import reduce_segment
 
-Shells = Callable[..., SegmentShell]
 
-
-def test_rigid_motions_carry_the_mass_of_the_box(box_shell: Shells) -> None:
+def test_rigid_motions_carry_the_mass_of_the_box() -> None:
     """Reference: analytic, ρ A L and ρ (J_y + J_z) L, except for the effect (t/h)² of corners."""
     shell = box_shell(0.25)
     motions = shell.rigid_motions()
@@ -38,7 +34,7 @@ def test_rigid_motions_carry_the_mass_of_the_box(box_shell: Shells) -> None:
 
 
 @pytest.mark.slow
-def test_free_box_vibrates_as_a_timoshenko_beam_at_long_wavelength(box_shell: Shells) -> None:
+def test_free_box_vibrates_as_a_timoshenko_beam_at_long_wavelength() -> None:
     """Reference: other code, Timoshenko elements; errors fall with the square of the wavelength."""
     differences = []
     for length in (10.0, 20.0):
@@ -61,26 +57,26 @@ def _free_beam_frequency(length: float, theory: Theory) -> float:
     return float(frequencies(segment.components["z"])[0] / (2.0 * np.pi))
 
 
-def _overhang_compliance(box_shell: Shells, size: float) -> float:
+def _overhang_compliance(size: float) -> float:
     shell = box_shell(size, supports=HELD)
     return compliance(shell, shell.outline(10.0).wall_deflection("z"))
 
 
 @pytest.mark.slow
-def test_static_compliance_is_timoshenkos(box_shell: Shells) -> None:
+def test_static_compliance_is_timoshenkos() -> None:
     """Reference: analytic, a² (l + a) / 3EJ + (a + a²/l) / G A_web, l = 2 m, a = 8 m, within 0.1 %,
     a third of the effect of shear in the flanges.
     """
     bending = 64.0 * 10.0 / (3.0 * STEEL.youngs_modulus * BOX.second_moment_of_area)
     shear = (8.0 + 32.0) / (STEEL.shear_modulus * BOX.shear_area)
     assert shear > 0.02 * bending  # the tolerance is smaller than the effect
-    coarse, fine = (_overhang_compliance(box_shell, size) for size in (0.2, 0.1))
+    coarse, fine = (_overhang_compliance(size) for size in (0.2, 0.1))
     assert fine == pytest.approx(bending + shear, rel=2.0e-3)
     assert abs(fine - coarse) < 2.0e-3 * fine
     assert fine > coarse  # refinement softens a conforming displacement model
 
 
-def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
+def test_outline_rows_read_rigid_motions_exactly() -> None:
     """Reference: analytic, vertical translation and pitch; lateral translation, yaw and roll. In
     roll, (y, z) moves by φ (−z, y).
     """
@@ -112,7 +108,7 @@ def test_outline_rows_read_rigid_motions_exactly(box_shell: Shells) -> None:
 
 
 @pytest.mark.slow
-def test_a_length_of_a_corner_gives_way_alike_on_any_mesh(box_shell: Shells) -> None:
+def test_a_length_of_a_corner_gives_way_alike_on_any_mesh() -> None:
     """Reference: analytic. With halved edges, changes decrease to a third for a force along a
     length, and stay equal for a point force.
     """
@@ -137,7 +133,7 @@ YOUNG, SHEAR = STEEL.youngs_modulus, STEEL.shear_modulus
 
 
 @pytest.mark.slow
-def test_a_clamped_box_bends_and_twists_as_a_cantilever(box_shell: Shells) -> None:
+def test_a_clamped_box_bends_and_twists_as_a_cantilever() -> None:
     """Reference: analytic, L³/3EJ + L/GA along z and y, Bredt's L/GJ_t; shear is 0.5 %."""
     shell = box_shell(0.25, supports=(Support(0.0, "clamped"),))
     end = shell.outline(10.0)
@@ -153,9 +149,7 @@ def test_a_clamped_box_bends_and_twists_as_a_cantilever(box_shell: Shells) -> No
 
 @pytest.mark.slow
 @pytest.mark.parametrize("direction", ["z", "y"])
-def test_elastic_supports_give_way_by_their_reactions(
-    box_shell: Shells, direction: Direction
-) -> None:
+def test_elastic_supports_give_way_by_their_reactions(direction: Direction) -> None:
     """Reference: analytic, (4² + 5²) / k beyond rigid supports, from −4 and 5 times the force."""
     springs = tuple(Support(x, stiffness=1.0e6) for x in (0.0, 2.0))
     rigid, elastic = (
@@ -166,7 +160,7 @@ def test_elastic_supports_give_way_by_their_reactions(
 
 
 @pytest.mark.slow
-def test_every_support_holds_the_twist(box_shell: Shells) -> None:
+def test_every_support_holds_the_twist() -> None:
     """Reference: analytic, Bredt, from the support at 2 m to the end."""
     springs = tuple(Support(x, stiffness=1.0e6) for x in (0.0, 2.0))
     for supports in (HELD, springs):
@@ -175,7 +169,7 @@ def test_every_support_holds_the_twist(box_shell: Shells) -> None:
         assert compliance(shell, shell.outline(10.0).twist()) == pytest.approx(expected, rel=2.0e-3)
 
 
-def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
+def test_supports_leave_unheld_rigid_motions_free() -> None:
     """Reference: analytic, sliding along x but for a clamp, both rotations of one pin."""
     left = {
         (): 6, (Support(0.0),): 3, (Support(0.0, stiffness=10.0),): 3, HELD: 1,
@@ -185,7 +179,7 @@ def test_supports_leave_unheld_rigid_motions_free(box_shell: Shells) -> None:
         assert box_shell(0.5, supports=supports).rigid_motions().shape[1] == count
 
 
-def test_point_masses_have_mass_and_no_rotary_inertia(box_shell: Shells) -> None:
+def test_point_masses_have_mass_and_no_rotary_inertia() -> None:
     """Reference: analytic: 100 kg translated, 70·3² + 30·5² kg·m² pitch, yaw; no roll."""
     masses = (PointMass(2.0, 70.0), PointMass(10.0, 30.0))
     bare, loaded = (
@@ -204,7 +198,7 @@ def test_point_masses_have_mass_and_no_rotary_inertia(box_shell: Shells) -> None
 @pytest.mark.parametrize("direction", ["z", "y"])
 @pytest.mark.parametrize("masses", [(), (PointMass(10.0, 200.0),)], ids=["bare", "tip mass"])
 def test_lowest_frequency_is_the_beams_in_each_plane(
-    box_shell: Shells, direction: Direction, masses: tuple[PointMass, ...]
+    direction: Direction, masses: tuple[PointMass, ...]
 ) -> None:
     """Reference: other code, Timoshenko elements; 0.2 %, the second mode 1.3 %."""
     shell = box_shell(0.25, supports=HELD, masses=masses)
@@ -218,7 +212,7 @@ def test_lowest_frequency_is_the_beams_in_each_plane(
 
 
 @pytest.mark.slow
-def test_twisting_frequency_is_bredts(box_shell: Shells) -> None:
+def test_twisting_frequency_is_bredts() -> None:
     """Reference: analytic, √(G J_t / ρ I_p) / 4l for 18 m; 0.3 % of distortion."""
     box = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
     shell = box_shell(0.25, length=20.0, supports=HELD, section=box)

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contact over the whole overlap, pads as patches, and rows that read a wall anywhere."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -22,9 +21,8 @@ from shell_model.contact.wall_rows import Wall, WallPoints
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.segment.cross_section import COMPONENT
-from shell_model.segment.segment_shell import SegmentShell
 from tests.shell_model.booms import LAW, boom_in_space, flat_boom
-from tests.shell_model.conftest import BOX
+from tests.shell_model.conftest import BOX, box_shell
 from tests.shell_model.models import reduced
 from tests.touching import touching
 
@@ -61,9 +59,7 @@ def _forces(system: GapSystem, state: Array) -> Array:
 
 @pytest.mark.parametrize("normal", ["y", "z"])
 @pytest.mark.parametrize("side", [1, -1])
-def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(
-    box_shell: Callable[..., SegmentShell], normal: str, side: int
-) -> None:
+def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(normal: str, side: int) -> None:
     """Reference: analytic, the polynomial at nodes, on edges and between them."""
     shell = box_shell(0.5)
     wall = Wall("z" if normal == "z" else "y", side)
@@ -89,7 +85,7 @@ def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(
             )
 
 
-def test_a_place_beside_a_wall_is_refused(box_shell: Callable[..., SegmentShell]) -> None:
+def test_a_place_beside_a_wall_is_refused() -> None:
     places = np.array([[5.0, 0.2]])
     with pytest.raises(ValueError, match=r"^no wall is at x = 5 m, 0\.2 m across$"):
         WallPoints(box_shell(0.5)).rows(Wall("z", 1), places, "z")
