@@ -13,7 +13,9 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from beam_model.component import Component, natural_modes
+from beam_model.component import Component, SegmentModel, natural_modes
+from beam_model.finite_element import Theory, finite_element_segments
+from beam_model.kantorovich import Base, kantorovich_segments
 from geometry.arrays import Array
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
@@ -32,6 +34,18 @@ def beam(*, supports: Sequence[float | Support] = (), **changes: Any) -> Segment
         "supports": tuple(x if isinstance(x, Support) else Support(x) for x in supports),
     }  # fmt: skip
     return Segment(**numbers | changes)
+
+
+def beam_series(
+    boom: Boom, terms: tuple[int, int], base: Base = "as printed"
+) -> list[SegmentModel]:
+    return kantorovich_segments(boom, terms, base, False)
+
+
+def beam_elements(
+    boom: Boom, length: float, theory: Theory = "euler-bernoulli"
+) -> list[SegmentModel]:
+    return finite_element_segments(boom, length, theory, False)
 
 
 # βL of a beam of length L with a free, a clamped or a pinned end on either side (Blevins 1979).

@@ -2,7 +2,6 @@
 """Linear dashpots at joints, across the play, at supports and along cylinders."""
 
 import re
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +10,6 @@ from pydantic import ValidationError
 from scipy.signal import find_peaks
 
 from beam_model.boom_modes import BoomModes
-from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import rigid_segment
 from beam_model.segment_model import gap_system
@@ -22,10 +20,8 @@ from dynamics.integrator import AdaptiveStep
 from dynamics.motion import Motion
 from geometry.arrays import Array
 from geometry.boom import Boom, BoomError, Cylinder, Joint, Material, PadSize, Support
-from tests.beam_model.exact import beam
+from tests.beam_model.exact import beam, beam_elements
 from tests.touching import touching
-
-Models = Callable[..., list[SegmentModel]]
 
 SPRING, DASHPOT = 2.0e6, 900.0
 # A spring both ways, since no play is between its sides.
@@ -132,13 +128,13 @@ def test_a_dashpot_reads_the_axis(
 
 
 def test_dashpots_and_pads_take_no_part_in_a_bonded_boom(
-    paper_boom: Boom, elements: Models
+    paper_boom: Boom,
 ) -> None:
     """Reference: the same boom without them, to the last bit."""
     (joint,) = paper_boom.joints
     there = replace(joint, dashpot=DASHPOT, pad=PadSize(0.2, 0.06))
     dragged = replace(paper_boom, joints=(there,))
-    models = elements(1.0)
+    models = beam_elements(paper_boom, 1.0)
     bare, bonded = (gap_system(boom.bonded, models) for boom in (paper_boom, dragged))
     np.testing.assert_array_equal(bonded.frequencies, bare.frequencies)
     assert not bonded.damping.any()

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Motion of the paper's boom with and without friction and damping."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.signal import find_peaks
 
-from beam_model.component import SegmentModel
 from beam_model.segment_model import gap_system
 from dynamics.contact import DryFriction, PowerContact
 from dynamics.damping import closed_contact_damping, closed_contact_modes, with_modal_damping
@@ -18,15 +16,14 @@ from dynamics.integrator import AdaptiveStep, FixedStep
 from dynamics.motion import Motion
 from dynamics.trajectory import Trajectory
 from geometry.boom import Boom
+from tests.beam_model.exact import beam_elements, beam_series
 from tests.modal import damping_matrix, modal_system
 from tests.touching import touching
 
-Models = Callable[..., list[SegmentModel]]
-
 
 @pytest.fixture
-def five_terms(paper_boom: Boom, series: Models, paper_law: PowerContact) -> GapSystem:
-    return gap_system(touching(paper_boom, paper_law), series((2, 3)))
+def five_terms(paper_boom: Boom, paper_law: PowerContact) -> GapSystem:
+    return gap_system(touching(paper_boom, paper_law), beam_series(paper_boom, (2, 3)))
 
 
 def test_the_step_of_the_paper_keeps_the_first_peak(five_terms: GapSystem) -> None:
@@ -39,11 +36,13 @@ def test_the_step_of_the_paper_keeps_the_first_peak(five_terms: GapSystem) -> No
 
 
 def test_four_and_five_terms_coincide_until_they_touch(
-    paper_boom: Boom, series: Models, paper_law: PowerContact
+    paper_boom: Boom, paper_law: PowerContact
 ) -> None:
     """Reference: external source, statement 4.1. Until contact, the inner segment is rigid."""
     four, five = (
-        FixedStep(4.0e-6)(Motion(gap_system(touching(paper_boom, paper_law), series(terms)), 0.4))
+        FixedStep(4.0e-6)(
+            Motion(gap_system(touching(paper_boom, paper_law), beam_series(paper_boom, terms)), 0.4)
+        )
         for terms in ((2, 2), (2, 3))
     )
     assert 0.1 < five.first_contact < 0.2
@@ -58,7 +57,7 @@ def test_four_and_five_terms_coincide_until_they_touch(
 
 
 def test_with_friction_the_complete_series_follows_the_elements(
-    paper_boom: Boom, series: Models, elements: Models
+    paper_boom: Boom,
 ) -> None:
     """Reference: other code, Hermite elements. Friction makes the motion regular. Over 10 s and
     with elements of 0.25 m, the difference is 0.11 % of the tip's range.
@@ -69,7 +68,11 @@ def test_with_friction_the_complete_series_follows_the_elements(
     law = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
     beams, complete, printed = (
         FixedStep(4.0e-6)(Motion(gap_system(touching(boom, law), models), 0.6))
-        for models in (elements(1.0), series((12, 12), "complete"), series((2, 3)))
+        for models in (
+            beam_elements(paper_boom, 1.0),
+            beam_series(paper_boom, (12, 12), "complete"),
+            beam_series(paper_boom, (2, 3)),
+        )
     )
     assert 0.3 < beams.first_contact < 0.4
     assert beams.data["friction_loss"].values[-1] > 1.0
@@ -109,9 +112,9 @@ LINEAR = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
 
 
 @pytest.fixture(scope="module")
-def heavy(paper_boom: Boom, series: Callable[..., list[SegmentModel]]) -> GapSystem:
+def heavy(paper_boom: Boom) -> GapSystem:
     """Return a series of 6 + 6 functions under its weight, which closes the joint."""
-    system = gap_system(touching(paper_boom, LINEAR), series((6, 6), "complete"))
+    system = gap_system(touching(paper_boom, LINEAR), beam_series(paper_boom, (6, 6), "complete"))
     return replace(system, load=9.81 * system.load)
 
 
@@ -183,10 +186,10 @@ def test_contact_force_of_round_off_does_not_close_a_contact() -> None:
 
 
 def test_a_bonded_boom_keeps_its_exact_flow(
-    paper_boom: Boom, series: Callable[..., list[SegmentModel]]
+    paper_boom: Boom,
 ) -> None:
     """Reference: analytic. Modes of the bonded boom have the damping 2ζω each, without dashpots."""
-    bonded = gap_system(paper_boom.bonded, series((6, 6), "complete"))
+    bonded = gap_system(paper_boom.bonded, beam_series(paper_boom, (6, 6), "complete"))
     damped = with_modal_damping(bonded, 0.02)
     np.testing.assert_allclose(damped.damping, 0.04 * np.sqrt(bonded.omega2))
     assert not damped.dashpots.size

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Separate and bonded segments: rows, observers, and exact numbers of the bonded boom."""
 
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -17,10 +16,14 @@ from dynamics.integrator import FixedStep
 from dynamics.motion import Motion
 from geometry.boom import Boom, Joint, Material, Segment, Support
 from studies.reference_models.statics import static_response
-from tests.beam_model.exact import OverhangingBeam, bonded_deflections, bonded_frequencies
+from tests.beam_model.exact import (
+    OverhangingBeam,
+    beam_elements,
+    beam_series,
+    bonded_deflections,
+    bonded_frequencies,
+)
 from tests.touching import touching
-
-Models = Callable[..., list[SegmentModel]]
 
 
 def rest(system: GapSystem) -> dict[str, float]:
@@ -29,12 +32,13 @@ def rest(system: GapSystem) -> dict[str, float]:
     return {name: float(seen.row @ position) for name, seen in system.observers.items()}
 
 
-def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Models) -> None:
+def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom) -> None:
     """Reference: analytic, the determinant of the coupled spans. Order 4 in element length."""
     exact = bonded_frequencies(paper_boom, 110.0)
     assert exact.size == 5
     errors = [
-        gap_system(paper_boom.bonded, elements(length)).frequencies[:5] / exact - 1.0
+        gap_system(paper_boom.bonded, beam_elements(paper_boom, length)).frequencies[:5] / exact
+        - 1.0
         for length in (1.0, 0.5, 0.25)
     ]
     assert np.abs(errors[-1]).max() < 2e-6
@@ -43,9 +47,7 @@ def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom, elements: Model
 
 
 @pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
-def test_bonded_boom_has_the_deflections_of_statics(
-    paper_boom: Boom, elements: Models, theory: Theory
-) -> None:
+def test_bonded_boom_has_the_deflections_of_statics(paper_boom: Boom, theory: Theory) -> None:
     """Reference: analytic. The joint is statically determinate."""
     shear = [
         segment.material.shear_modulus * segment.section.shear_area
@@ -55,27 +57,25 @@ def test_bonded_boom_has_the_deflections_of_statics(
     ]
     expected = bonded_deflections(paper_boom, shear)
     for length in (20.0, 0.7):
-        found = rest(gap_system(paper_boom.bonded, elements(length, theory)))
+        found = rest(gap_system(paper_boom.bonded, beam_elements(paper_boom, length, theory)))
         assert found == pytest.approx(expected, rel=1e-7, abs=0.0)
 
 
 def test_bonded_series_converges_to_the_bonded_elements(
-    paper_boom: Boom, series: Models, elements: Models
+    paper_boom: Boom,
 ) -> None:
     """Reference: other code, Hermite elements. Measured with twelve terms a segment: frequencies
     within 6e-4, deflections within 5e-4.
     """
-    beams = gap_system(paper_boom.bonded, elements(0.25))
-    found = gap_system(paper_boom.bonded, series((12, 12), "complete"))
+    beams = gap_system(paper_boom.bonded, beam_elements(paper_boom, 0.25))
+    found = gap_system(paper_boom.bonded, beam_series(paper_boom, (12, 12), "complete"))
     np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
     assert rest(found) == pytest.approx(rest(beams), rel=7e-4, abs=0.0)
 
 
-def test_rows_read_the_inner_less_the_outer(
-    paper_boom: Boom, elements: Models, paper_law: PowerContact
-) -> None:
+def test_rows_read_the_inner_less_the_outer(paper_boom: Boom, paper_law: PowerContact) -> None:
     """Reference: analytic, rigid translation of the inner segment and bending of the outer one."""
-    system = gap_system(touching(paper_boom, paper_law), elements(0.5))
+    system = gap_system(touching(paper_boom, paper_law), beam_elements(paper_boom, 0.5))
     assert system.rows.shape == (2, system.num_modes)
     assert list(system.stations) == [9.0, 10.0]
     assert list(system.station_of_row) == [0, 1]
@@ -177,13 +177,13 @@ def leaves(paper_boom: Boom) -> tuple[Boom, list[SegmentModel]]:
 
 
 def test_bonded_halves_have_the_frequencies_of_the_whole(
-    paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
+    paper_boom: Boom, leaves: tuple[Boom, list[SegmentModel]]
 ) -> None:
     """Reference: analytic. Equal motions of both halves are motions of the whole segment. Opposite
     motions are zero at the bonds.
     """
     law = PowerContact(1e13, 2.0).with_clearance(7e-3)
-    whole = gap_system(touching(paper_boom, law), elements(1.0))
+    whole = gap_system(touching(paper_boom, law), beam_elements(paper_boom, 1.0))
     halves = gap_system(touching(leaves[0], law), leaves[1])
     assert list(halves.stations) == [9.0, 10.0]
     assert len(halves.laws) == 2
@@ -194,17 +194,19 @@ def test_bonded_halves_have_the_frequencies_of_the_whole(
         assert np.abs(others - omega).min() <= 1e-8 * omega
     # A bonded model of three ties the play away as well.
     found = gap_system(leaves[0].bonded, leaves[1]).frequencies
-    for frequency in gap_system(paper_boom.bonded, elements(1.0)).frequencies:
+    for frequency in gap_system(paper_boom.bonded, beam_elements(paper_boom, 1.0)).frequencies:
         assert np.abs(found - frequency).min() <= 1e-8 * frequency
 
 
 def test_bonded_halves_move_as_the_whole(
-    paper_boom: Boom, elements: Models, leaves: tuple[Boom, list[SegmentModel]]
+    paper_boom: Boom, leaves: tuple[Boom, list[SegmentModel]]
 ) -> None:
     """Reference: analytic, until round-off has grown in the first contacts."""
     law = PowerContact(1e9, 1.0).with_clearance(7e-3)
     step = 2.0e-5
-    whole = FixedStep(step)(Motion(gap_system(touching(paper_boom, law), elements(1.0)), 0.2))
+    whole = FixedStep(step)(
+        Motion(gap_system(touching(paper_boom, law), beam_elements(paper_boom, 1.0)), 0.2)
+    )
     halves = FixedStep(step)(Motion(gap_system(touching(leaves[0], law), leaves[1]), 0.2))
     assert 0.1 < whole.first_contact < 0.15
     assert halves.first_contact == pytest.approx(whole.first_contact, rel=1e-9)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.component import Component, SegmentModel, natural_modes
+from beam_model.component import Component, natural_modes
 from beam_model.finite_element import finite_element_segment
 from beam_model.kantorovich import Base, kantorovich_bending
 from beam_model.segment_model import gap_system
@@ -26,12 +26,11 @@ from tests.beam_model.exact import (
     OverhangingBeam,
     angular_frequencies,
     beam,
+    beam_elements,
     frequencies,
     roots,
 )
 from tests.touching import touching
-
-Models = Callable[..., list[SegmentModel]]
 
 # The same βL with the ends exchanged, and of free ends.
 CLAMPED_PINNED, CLAMPED_CLAMPED = PINNED_FREE, FREE_FREE
@@ -226,13 +225,15 @@ def test_the_printed_functions_know_pinned_supports_alone(base: Base, support: S
         kantorovich_bending(beam(supports=(support,)), 5, base, rotary_inertia=False)
 
 
-def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: PowerContact) -> None:
+def test_a_load_with_a_history(paper_boom: Boom, paper_law: PowerContact) -> None:
     """Reference: analytic. A uniform load is that of the segment, a point load a row."""
     loads = (
         Load(1, "z", 55.07, None, Step()),
         Load(0, "z", -2.0e3, 10.0, Step()),
     )
-    system = gap_system(touching(replace(paper_boom, loads=loads), paper_law), elements(0.5))
+    system = gap_system(
+        touching(replace(paper_boom, loads=loads), paper_law), beam_elements(paper_boom, 0.5)
+    )
     uniform, point = system.excitations
     own = np.where(system.observers["tip"].row != 0.0, system.load, 0.0)
     np.testing.assert_allclose(uniform.load, own, atol=1e-12 * np.abs(own).max())
@@ -240,11 +241,11 @@ def test_a_load_with_a_history(paper_boom: Boom, elements: Models, paper_law: Po
     assert uniform.history == Step()
 
 
-def test_a_stop_holds_tip_up(paper_boom: Boom, elements: Models, paper_law: PowerContact) -> None:
+def test_a_stop_holds_tip_up(paper_boom: Boom, paper_law: PowerContact) -> None:
     """Reference: analytic. A stop below the tip pushes upwards, one above down or not."""
     stop = Stop(1, 19.0, 0.01, PowerContact(0.0, 1.0, stiffness_below=2.0e8))
     boom = replace(paper_boom, stops=(stop,))
-    system = gap_system(touching(boom, paper_law), elements(0.5))
+    system = gap_system(touching(boom, paper_law), beam_elements(paper_boom, 0.5))
     assert list(system.stations) == [9.0, 10.0, 19.0]
     assert list(system.station_of_row) == [0, 1, 2]
     np.testing.assert_array_equal(system.rows[2], system.observers["tip"].row)
