@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Segments by length at extensions of their joints, with all attached parts."""
 
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +9,11 @@ import pytest
 import xarray as xr
 
 from protractile.cases import change
-from runs.case import reading, toml
+from runs.case import toml
 from runs.case.build import build_boom
-from runs.case.schema import Case
 from runs.sweep.points import plan
 from tests.beam_model.exact import bonded_frequencies
-from tests.runs.case_texts import COARSE, STEEL, box, edited, elements, refused, table
+from tests.runs.case_texts import COARSE, STEEL, box, edited, elements, read_case, refusal, table
 from tests.system.run_folder import protractile
 
 LAW = {"stations": ["tail", "head"], "play": 0.006, "stiffness": 1e9, "exponent": 1.0}
@@ -59,19 +59,13 @@ BY_HAND = (
 pytestmark = pytest.mark.usefixtures("here")
 
 
-def case_of(text: str) -> Case:
-    Path("crane.toml").write_text(text, encoding="utf-8")
-    return reading.load("crane.toml")
-
-
-def by_hand() -> Case:
-    return case_of(edited(CRANE, *BY_HAND))
+case_of = partial(read_case, Path())
 
 
 def test_a_boom_by_lengths_is_the_same_boom_also_when_it_is_written() -> None:
     """Reference: the boom with positions by hand, to the last bit."""
     case = case_of(CRANE)
-    assert build_boom(case) == build_boom(by_hand())
+    assert build_boom(case) == build_boom(case_of(edited(CRANE, *BY_HAND)))
     assert case_of(toml.dumps(case)) == case
 
 
@@ -119,21 +113,20 @@ def test_one_key_draws_all_segments_out(extension: float, tip: float) -> None:
     ],
 )  # fmt: skip
 def test_a_contradiction_is_one_line(relative: str, wrong: str, line: str) -> None:
-    with refused(f"crane.toml: {line}"):
-        case_of(edited(CRANE, (relative, wrong)))
+    assert refusal(Path(), edited(CRANE, (relative, wrong))) == line
 
 
 def test_frequencies_over_the_extension_are_one_command() -> None:
     """Reference: analytic, frequencies of the bonded boom, which play does not increase."""
     case_of(PAPER)
-    command = "frequencies", "crane.toml", "--vary", "joint.extension=5:9:3", "--out", "out"
+    command = "frequencies", "case.toml", "--vary", "joint.extension=5:9:3", "--out", "out"
     assert protractile(*command, "--models", "beam-fe,beam-fe-bonded") == 0
     assert {path.name for path in Path("out").glob("freq*")} == {
         "frequencies.csv", "frequencies.nc", "frequencies.png"
     }  # fmt: skip
     with xr.open_dataset("out/frequencies.nc", engine="scipy") as data:
         found = data["frequency"].load()
-    for point in plan("crane.toml", ["joint.extension=5:9:3"], None, None).points:
+    for point in plan("case.toml", ["joint.extension=5:9:3"], None, None).points:
         there = found.sel({"joint.extension": point.values[0]})
         exact = bonded_frequencies(build_boom(point.case), 50.0)[:3]
         for model in ("beam-fe", "beam-fe-bonded"):

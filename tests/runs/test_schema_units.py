@@ -5,6 +5,7 @@ import re
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any, get_args, get_origin
 
@@ -12,7 +13,7 @@ import pytest
 
 from geometry.fields import declared_units, describe, fields_of
 from protractile.cases import change
-from runs.case import reading, toml
+from runs.case import toml
 from runs.case.build import build_boom
 from runs.case.contact import ContactTable, JointTable
 from runs.case.messages import _tables as tables_of
@@ -20,7 +21,7 @@ from runs.case.reading import convert_to_si
 from runs.case.schema import Case, case_schema
 from runs.case.units import System, Unit
 from runs.sweep.points import plan
-from tests.runs.case_texts import STEEL, edited, elements, refused
+from tests.runs.case_texts import STEEL, edited, elements, read_case, refused
 from tests.runs.summaries import printed_check
 from tests.touching import contact_laws
 
@@ -104,9 +105,7 @@ def written(units: str = "", extra: tuple[tuple[str, str], ...] = ()) -> str:
     return edited(IN_SI.format(units=units, steel=STEEL, beam=BEAM), *extra)
 
 
-def case_of(text: str) -> Case:
-    Path("crane.toml").write_text(text, encoding="utf-8")
-    return reading.load("crane.toml")
+case_of = partial(read_case, Path())
 
 
 def in_mm(units: str = "mm-t-s") -> Case:
@@ -203,7 +202,7 @@ def test_a_sweep_s_values_are_in_the_units_of_the_case() -> None:
         ),
     }  # fmt: skip
     for text, (unit, expected, value) in keys.items():
-        planned = plan("crane.toml", [text], None, None)
+        planned = plan("case.toml", [text], None, None)
         assert list(planned.units) == [unit]
         values = [float(part) for part in text.partition("=")[2].split(",")]
         assert list(planned.variations[0].values) == values
@@ -215,17 +214,17 @@ def test_a_sweep_s_values_are_in_the_units_of_the_case() -> None:
 def test_numbers_out_of_range_and_other_systems_are_refused() -> None:
     text = written('units = "mm-t-s"', IN_MM).replace("7.85e-9", "7.85e299")
     with refused(
-        "crane.toml: units: a number is too large for SI units; look for one that is out of "
+        "case.toml: units: a number is too large for SI units; look for one that is out of "
         "proportion"
     ):
         case_of(text)
     in_mm()
     with refused(
-        "crane.toml: --vary material.density=1e+300: a value is too large for SI units; give "
+        "case.toml: --vary material.density=1e+300: a value is too large for SI units; give "
         "smaller ones"
     ):
-        plan("crane.toml", ["material.density=1e-9,1e300"], None, None)
-    with refused("crane.toml: units: must be 'SI', 'mm-t-s' or 'N-mm', got 'inch-lbf-s'"):
+        plan("case.toml", ["material.density=1e-9,1e300"], None, None)
+    with refused("case.toml: units: must be 'SI', 'mm-t-s' or 'N-mm', got 'inch-lbf-s'"):
         in_mm("inch-lbf-s")
 
 
