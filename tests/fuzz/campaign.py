@@ -11,7 +11,8 @@ from tempfile import TemporaryDirectory
 from runs import CASES
 from tests.fuzz import cases, command_lines, contract, histories
 
-SHORT = "duration = 0.02"
+COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
+SHORT = COARSE.replace("duration = 0.6", "duration = 0.02")
 # Beams alone: a shell takes FEniCSx, whose import alone takes longer than a beam's run.
 WITHOUT_SHELLS = "kantorovich-5,beam-fe"
 
@@ -29,11 +30,9 @@ def prepare(seed: int, folder: Path) -> list[str]:
     random, kind = Random(seed), kind_of(seed)
     path = random.choice(sorted(CASES.glob("*.toml")))
     text = path.read_text(encoding="utf-8")
-    if kind == "case, run":
-        text = (CASES / "coarse.toml").read_text(encoding="utf-8")
-        text = text.replace("duration = 0.6", SHORT)
     arguments = ["check", "case.toml"]
     if kind == "case, run":
+        text = SHORT
         arguments = ["run", "case.toml", "--models", WITHOUT_SHELLS, "--out", "out"]
     if kind == "case, checked" or random.random() < 0.2:
         text = cases.mutate(text, random)
@@ -44,8 +43,7 @@ def prepare(seed: int, folder: Path) -> list[str]:
         text = text.replace("[[model]]", table, 1)
         histories.put(folder / "history.csv", random)
     if kind == "command line":
-        text = (CASES / "coarse.toml").read_text(encoding="utf-8")
-        text = text.replace("duration = 0.6", SHORT)
+        text = SHORT
         arguments = command_lines.mutate(random)
     (folder / "case.toml").write_text(text, encoding="utf-8", errors="surrogateescape")
     return arguments

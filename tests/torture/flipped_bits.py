@@ -14,7 +14,6 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from runs import CASES
 from runs.case import reading as case_file
 from runs.folder.cache import Cache
 from runs.pipeline.model_run import RunContext
@@ -22,9 +21,9 @@ from runs.pipeline.run import run_case
 from runs.process.terminal import NOTICES
 from runs.sweep import run as sweep
 from runs.sweep.points import plan
+from tests.system.run_folder import COARSE
 from tests.torture.shared_cache import Row
 
-_COARSE = str(CASES / "coarse.toml")
 _SEED = 20
 
 
@@ -38,7 +37,7 @@ def rows(folder: Path, tries: int = 100) -> Iterator[Row]:
     cache = Cache(folder / "cache")
     yield "a bit of the cache", *_flip(cache.folder, tries, lambda: _shell(cache))
     sweeping = folder / "sweep"
-    sweep.prepare(sweeping, _COARSE)
+    sweep.prepare(sweeping, COARSE)
     yield "a bit of a point", *_flip(sweeping / sweep.POINTS, tries, lambda: _points(sweeping))
 
 
@@ -63,7 +62,7 @@ def _flip(entries: Path, tries: int, compute: Callable[[], bytes]) -> tuple[int,
 
 def _shell(cache: Cache) -> bytes:
     """Return a shell and its motion until shortly after its first contact, both stored."""
-    case = case_file.select(case_file.load(_COARSE), "", ["shell"], 1.0)
+    case = case_file.select(case_file.load(COARSE), "", ["shell"], 1.0)
     short = case.model_copy(update={"time": case.time.model_copy(update={"duration": 0.15})})
     run = run_case(short, "", RunContext(MPI.COMM_SELF, cache=cache, motions=cache))
     left = run.results.trajectories, run.shells["shell"].fields
@@ -72,6 +71,6 @@ def _shell(cache: Cache) -> bytes:
 
 def _points(folder: Path) -> bytes:
     """Return the plan of three points of the fastest model."""
-    planned = plan(_COARSE, ["joint.play=0.006:0.014:3"], ["beam-fe-bonded"], None)
+    planned = plan(COARSE, ["joint.play=0.006:0.014:3"], ["beam-fe-bonded"], None)
     with ThreadPoolExecutor(1) as pool:
         return repr(sweep.run_points(planned, folder, pool, lambda *_: None)).encode()

@@ -18,10 +18,11 @@ from unittest.mock import patch
 from matplotlib.figure import Figure as Sheet
 from PIL import Image
 
-from runs import CASES, cli
+from runs import cli
 from runs.folder.cache import VARIABLE
 from runs.report.opengl import RenderingUnavailable
 from tests import at_once
+from tests.system.run_folder import write_coarse
 from tests.torture.shared_cache import Row
 
 _CHANGES = "mkdir", "rename", "replace", "link", "symlink", "write"
@@ -131,11 +132,10 @@ def rows(folder: Path, tries: int = 10**6) -> Iterator[Row]:
 
 
 def _case(folder: Path, duration: float) -> str:
-    """Return the coarse case for a duration."""
-    path = folder / f"{duration:g}.toml"
-    text = (CASES / "coarse.toml").read_text(encoding="utf-8")
-    path.write_text(text.replace("duration = 0.6", f"duration = {duration:g}"), encoding="utf-8")
-    return str(path)
+    """Return the coarse case for a duration, in a folder of its own."""
+    place = folder / f"{duration:g}"
+    place.mkdir(exist_ok=True)
+    return str(write_coarse(place, duration))
 
 
 def _torture(

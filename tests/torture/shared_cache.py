@@ -7,15 +7,13 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from runs import CASES
 from tests.fuzz.contract import PROGRESS
+from tests.system.run_folder import COARSE, ROOT
 from tests.unprinted import ONE_BLANK_FIGURE
 
 # What was done, how often, how often that broke something, and what was to be.
 Row = tuple[str, int, int, str]
 
-_ROOT = Path(__file__).parents[2]
-_COARSE = CASES / "coarse.toml"
 _SHELL = "--models", "shell", "--mesh-size", "1"
 # In the names of all that is not whole yet.
 IN_THE_MAKING = "protractile-"
@@ -62,8 +60,8 @@ def one_folder(folder: Path, tries: int, models: Sequence[str]) -> Row:
 
 def _start(models: Sequence[str], out: Path, cache: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(
-        [sys.executable, "-c", COMMAND, "run", str(_COARSE), *models, "--out", str(out)],
-        env=os.environ | {"PYTHONPATH": str(_ROOT), "PROTRACTILE_CACHE": str(cache)},
+        [sys.executable, "-c", COMMAND, "run", COARSE, *models, "--out", str(out)],
+        env=os.environ | {"PYTHONPATH": str(ROOT), "PROTRACTILE_CACHE": str(cache)},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         text=True,
