@@ -261,7 +261,6 @@ def sweep(
     from runs.sweep import output as charts
     from runs.sweep import points, sampling, search
     from runs.sweep import run as sweep_runs
-    from runs.sweep import sensitivity as changes
 
     other_options = ["--sensitivity"] * sensitivity + [sampling.OPTION] * (samples is not None)
     if len(other_options) + bool(vary) != 1:
@@ -272,7 +271,7 @@ def sweep(
         points.plan, case, models=_names(models), mesh_size=mesh_size, reference=against
     )
     if sensitivity:
-        plan, rejected_keys = changes.plan_changes(case, _names(models), mesh_size)
+        plan, rejected_keys = sampling.plan_changes(case, _names(models), mesh_size)
     elif samples is not None:
         plan, samples_table = sampling.plan_samples(case, _names(models), mesh_size, samples)
     else:
@@ -294,10 +293,10 @@ def sweep(
                 tools = folder, pool, report_progress, cache
                 plan, outcomes = search.run_until(plan, bound, plan_of, *tools)
         if sensitivity:
-            table = changes.changes(plan, outcomes)
-            changes.write(table, folder)
-            print(printable(str(folder / changes.CSV)))
-            changes.print_influences(table, plan.points[0].case, rejected_keys, Terminal())
+            table = sampling.changes(plan, outcomes)
+            sampling.write_changes(table, folder)
+            print(printable(str(folder / sampling.CHANGES_CSV)))
+            sampling.print_influences(table, plan.points[0].case, rejected_keys, Terminal())
         elif samples is not None:
             results = sampling.results_of(plan, outcomes)
             sampling.write(results, samples_table, folder)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Scatter of results under the tolerances of a case, ``{ mean = 0.003, sd = 0.0005 }``.
+"""Scatter of results under the tolerances of a case, and their sensitivity to each number.
 
-Samples are scrambled Sobol points (Owen 1998), mapped to normal quantiles. A linear map then gives
-them the exact means and variances and no correlation (moment matching, Barraquand 1995), so that
-the mean and the standard deviation of a linear result are exact.
+Tolerances are normal distributions, ``{ mean = 0.003, sd = 0.0005 }``. Samples are scrambled Sobol
+points (Owen 1998), mapped to normal quantiles. A linear map then gives them the exact means and
+variances and no correlation (moment matching, Barraquand 1995), so that the mean and the standard
+deviation of a linear result are exact. Sensitivities are central differences.
 """
 
 from __future__ import annotations
@@ -17,20 +18,23 @@ import pandas as pd
 from rich.console import Console
 
 from geometry.arrays import Array
+from geometry.typography import TO_PERCENT, join_words
 from runs.case import reading as case_file
 from runs.case.messages import BadInput
+from runs.case.schema import Case
 from runs.folder.files import atomic_path, folder_lock, modified_folder
 from runs.pipeline.metrics import Metric
 from runs.pipeline.quantities import QUANTITIES
 from runs.report import theme
 from runs.report.figure_context import new_sheet
-from runs.report.tables import Table
-from runs.sweep.points import Plan, Setting, chosen_beam, make_points
+from runs.report.tables import Column, Table
+from runs.sweep.points import Plan, Plates, Point, Setting, chosen_beam, make_points, tables_of
 from runs.sweep.run import Outcome
-from runs.sweep.variation import Place, Variation, with_size
+from runs.sweep.variation import Place, Variation, numbers, with_size
 
 OPTION = "--samples"
 SAMPLES, CSV, CHART = "samples.csv", "sampling.csv", "sampling.png"
+CHANGES_CSV = "sensitivity.csv"
 # Seed of the scrambling, by which all runs have the same points.
 SEED = 0
 # Quantiles in the table.
@@ -39,6 +43,15 @@ QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
 # Ratio of standard deviation to mean below which a result has no scatter.
 NONE = 1.0e-9
+
+# Relative change by which each number is increased and decreased.
+CHANGE = 0.01
+# Maximum number of rows in the terminal.
+MOST_ROWS = 20
+# Relative change of a result below which it counts as round-off.
+ROUND_OFF = 1.0e-7
+# Tables that do not describe the boom.
+_OTHER = {"time", "model", "observe", "life"}
 
 
 def plan_samples(
@@ -173,3 +186,81 @@ def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
             axes.set(xlabel=f"{one.title} ({one.shown_unit})", ylabel="share", ylim=(0.0, 1.0))
         panels[0].legend()
         sheet.savefig(path)
+
+
+def plan_changes(
+    file: str, models: Sequence[str] | None, mesh_size: float | None
+) -> tuple[Plan, list[str]]:
+    """Return the plan of a sensitivity analysis, and the keys whose change makes the case invalid.
+
+    The first point is the case itself. Two points follow for each number, below and above it.
+
+    Raises:
+        BadInput: the case is invalid, or does not have exactly one model to run.
+    """
+    case = case_file.load(file)
+    models = chosen_beam(case, models)
+    if len(models) != 1:
+        what = f"{len(models)} models are chosen; name one with --models, a beam say"
+        raise BadInput(file, "--sensitivity", what)
+    plates: dict[Sequence[Setting], Plates] = {}
+    points: list[Point] = [*make_points(case, file, models, mesh_size, [()], plates)]
+    rejected_keys = []
+    tables = tables_of(case)
+    for place, value in numbers({k: v for k, v in tables.items() if k not in _OTHER}):
+        if not (isinstance(value, float) and value):
+            continue
+        values = (1.0 - CHANGE) * value, (1.0 + CHANGE) * value
+        variation = Variation(place.name, values, (place,))
+        try:
+            settings = [[(variation, value)] for value in values]
+            points += make_points(case, file, models, mesh_size, settings, plates)
+        except BadInput:
+            rejected_keys.append(place.name)
+    return Plan(file, case.title, (), (), (), points), rejected_keys
+
+
+def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
+    """Return a table of relative changes of results for an increase of each key by 1 %.
+
+    It has a column per result and a row per key that has an effect. Rows are in descending order
+    of the largest effect on the main results.
+    """
+    (results,) = results_of(plan, outcomes).values()
+    base, below, above = results.iloc[0], results.iloc[1::2], results.iloc[2::2]
+    keys = [point.label.partition("=")[0] for point in plan.points[1::2]]
+    parts = (above.to_numpy() - below.to_numpy()) / (2.0 * base.abs().to_numpy())
+    table = pd.DataFrame(parts, keys, results.columns).replace([np.inf, -np.inf], np.nan)
+    table = table.mask(table.abs() < ROUND_OFF, 0.0)
+    largest = table.reindex(columns=SHOWN).abs().max(axis=1)
+    order = largest.sort_values(ascending=False, kind="stable")
+    return table.loc[order.index[order > 0.0]].dropna(axis=1, how="all")
+
+
+def write_changes(data: pd.DataFrame, folder: Path) -> None:
+    """Write the relative changes in % to ``sensitivity.csv`` in the folder of a sweep."""
+    with (
+        folder_lock(folder),
+        modified_folder(folder) as part,
+        atomic_path(part / CHANGES_CSV) as path,
+    ):
+        percent = (TO_PERCENT * data).rename_axis("key").reset_index()
+        percent.to_csv(path, index=False, float_format="%.6g", lineterminator="\r\n")
+
+
+def print_influences(
+    data: pd.DataFrame, case: Case, invalid_keys: Sequence[str], console: Console
+) -> None:
+    """Print the table of the keys with the largest influence."""
+    top = data.head(MOST_ROWS)
+    columns = [Column("1 % more of", list(top.index))]
+    columns += [
+        Column(one.title.replace(" ", "\n"), (TO_PERCENT * top[one.name]).tolist(), ".2f")
+        for one in QUANTITIES
+        if one.name in SHOWN and one.name in top
+    ]
+    notes = [f"Refused with 1 % more or less: {join_words(invalid_keys)}."] if invalid_keys else []
+    if len(data) > len(top):
+        notes.append(f"{len(data) - len(top)} more numbers are in {CHANGES_CSV}.")
+    title = f"Change of results in % by 1 % of each number: {case.models[0].name}"
+    Table(title, columns, notes, "sensitivity").show(console)
