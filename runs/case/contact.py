@@ -4,21 +4,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Annotated, Self
+from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 
+from dynamics.contact import ContactLaw, PowerContact, restitution_damping
+from dynamics.contact_table import TableContact
 from geometry.boom import Direction
 from geometry.fields import PART, BoomError, Distance, In, NotNegative, Number, Positive
 from geometry.joint import BareJoint, Carrier, Drive
 from geometry.section import Side
 from runs.case.limits import CaseTable, Exponent, Text, error_at, superfluous_error, unsuitable
 from runs.case.motion_tables import DriveTable
-
-if TYPE_CHECKING:
-    from dynamics.contact import ContactLaw
-    from dynamics.contact_table import TableContact
 
 BOTH_SIDES: tuple[Side, Side] = (1, -1)
 
@@ -45,8 +43,6 @@ def table_law(points: Sequence[tuple[float, float]], damping: float = 0.0) -> Ta
     Raises:
         ValueError: the law is invalid.
     """
-    from dynamics.contact_table import TableContact
-
     depths, forces = zip(*points, strict=True)
     return TableContact(depths, forces, damping)
 
@@ -226,8 +222,6 @@ def _law(
     below: float | None,
     exponent: float | None,
 ) -> ContactLaw:
-    from dynamics.contact import PowerContact, restitution_damping
-
     impact = table.restitution
     damping = 0.0 if impact is None else restitution_damping(impact.coefficient, impact.speed)
     if table.force_table is not None and stiffness is None:

@@ -19,6 +19,7 @@ from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
 from runs.case.schema import Case, Model
+from runs.folder.cache import Cache
 from runs.pipeline.low_pass import mean_period
 from runs.pipeline.metrics import Metric
 from runs.pipeline.models import MotionPlan, build
@@ -27,8 +28,6 @@ from runs.pipeline.results import Results
 
 if TYPE_CHECKING:
     from mpi4py import MPI
-
-    from runs.folder.cache import Cache
 
 # Relative change of the loads in the run whose divergence ends the comparison of tips.
 CHANGE = 1.0e-6

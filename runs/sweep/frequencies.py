@@ -22,6 +22,7 @@ from geometry.arrays import Array
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext, ModelBoom
 from runs.case.schema import Case, Model
+from runs.folder.cache import Cache
 from runs.folder.files import atomic_path, folder_lock, modified_folder
 from runs.pipeline.model_run import ignore_progress
 from runs.pipeline.results import CONVENTIONS
@@ -32,8 +33,6 @@ from runs.sweep.points import Plan
 
 if TYPE_CHECKING:
     from mpi4py import MPI
-
-    from runs.folder.cache import Cache
 
 NAME = "frequencies"
 MODES = 3

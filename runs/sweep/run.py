@@ -12,7 +12,6 @@ from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from dynamics.failure import NumericsError
 from runs.case import toml
@@ -22,6 +21,7 @@ from runs.case.user_files import check_not_working_folder
 from runs.folder.cache import Cache, key
 from runs.pipeline.model_run import RunContext
 from runs.pipeline.quantities import Quantities
+from runs.pipeline.results import Results
 from runs.pipeline.run import run_case
 from runs.process.ending import when_interrupted
 from runs.process.ranks import single_rank
@@ -29,9 +29,6 @@ from runs.process.terminal import Progress, message, say, shorten
 from runs.process.workers import end
 from runs.sweep.distances import Features, comparison_end
 from runs.sweep.points import Plan
-
-if TYPE_CHECKING:
-    from runs.pipeline.results import Results
 
 POINTS = "points"
 

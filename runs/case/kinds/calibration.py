@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Annotated, Self
 import numpy as np
 from pydantic import Discriminator, Tag
 
+from dynamics.gap_system import GapSystem
+from dynamics.line import Line
 from geometry.boom import Boom, BoomError
 from geometry.fields import Name
 from runs.case.kinds.model import (
@@ -26,8 +28,6 @@ from runs.case.kinds.shell import Shell
 
 if TYPE_CHECKING:
     from beam_model.calibration import Calibration
-    from dynamics.gap_system import GapSystem
-    from dynamics.line import Line
     from shell_model.reduced_shell import ReducedShell
 
 

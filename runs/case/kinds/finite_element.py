@@ -11,6 +11,8 @@ from pydantic import Field
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
+from dynamics.line import Line
+from dynamics.reduction import condense
 from geometry.boom import Boom, BoomError
 from geometry.fields import Flag, Length
 from runs.case.kinds.calibration import CalibratedTable
@@ -18,7 +20,6 @@ from runs.case.kinds.model import BuiltModel, ModelBoom, Surrogate
 from runs.case.kinds.shell import Shell
 
 if TYPE_CHECKING:
-    from dynamics.line import Line
     from shell_model.reduced_shell import ReducedShell
 
 # Maximum number of elements: a larger dense eigenproblem is an input error.
@@ -105,8 +106,6 @@ class BeamElements(CalibratedTable):
         return finite_element_segments(boom, self.element_length, self.theory, self.rotary_inertia)
 
     def motion_model(self, built: BuiltModel, shell: ReducedShell, boom: Boom) -> BuiltModel:
-        from dynamics.reduction import condense
-
         if not self.section_fields:
             return super().motion_model(built, shell, boom)
         system, shapes = condense(shell.system, FIELDS * len(boom.segments))

@@ -13,7 +13,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar, get_a
 import numpy as np
 from pydantic import PrivateAttr
 
+from beam_model.boom_modes import critical_factor
 from beam_model.component import SegmentModel
+from beam_model.segment_model import gap_system
+from dynamics.gap_system import GapSystem
+from dynamics.line import Line
 from geometry.boom import Boom, BoomError
 from geometry.fields import In, Name, Positive
 from runs.case.contact import ContactTable
@@ -25,8 +29,6 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from beam_model.calibration import Calibration
-    from dynamics.gap_system import GapSystem
-    from dynamics.line import Line
     from dynamics.trajectory import Trajectory
     from runs.folder.cache import Cache
     from shell_model.reduced_shell import ReducedShell
@@ -54,8 +56,6 @@ class BeamSegments:
     @cached_property
     def critical_factor(self) -> float | None:
         """The buckling factor, see :class:`BuiltModel`; None if it cannot be computed."""
-        from beam_model.boom_modes import critical_factor
-
         if not self.boom.compressed:
             return float("inf")
         try:
@@ -347,8 +347,6 @@ class BeamTable(ModelTable):
         """Return the matrices of each segment in its own coordinates."""
 
     def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
-        from beam_model.segment_model import gap_system
-
         start = perf_counter()
         beams = model_boom.beams(self)
         boom = model_boom.boom.bonded if self.bonded else model_boom.boom
@@ -361,7 +359,6 @@ class BeamTable(ModelTable):
 
     def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
         from beam_model.lines import lines
-        from beam_model.segment_model import gap_system
 
         segments = self.segments(boom)
         return gap_system(boom.bonded, segments), lines(boom.bonded, segments)

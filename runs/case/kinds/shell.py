@@ -10,6 +10,7 @@ import numpy as np
 
 from beam_model.component import SegmentModel
 from beam_model.finite_element import finite_element_segments
+from dynamics.line import Line
 from geometry.boom import Boom, BoomError
 from geometry.fields import In, Length, Positive
 from geometry.refinement import refinement_zones
@@ -24,7 +25,6 @@ from runs.case.kinds.model import (
 from runs.case.limits import ContactTolerance, Count, Modes, Part
 
 if TYPE_CHECKING:
-    from dynamics.line import Line
     from shell_model.boom_shell import ShellOptions
 
 # Maximum number of triangles: a finer mesh is an input error.
