@@ -18,14 +18,11 @@ from geometry.joint import BareJoint
 from geometry.section import Section, SectionError, infer_inner_section, infer_outer_section
 from geometry.support_check import check_contacts_at_rest
 from geometry.taper import check_alike, mean_area, middle_section
-from runs.case import actions
+from runs.case import actions, motions
 from runs.case.actions import field_values
 from runs.case.contact import JointTable
-from runs.case.elastic_drive import check_elastic_drives
-from runs.case.hoist import check_hoist, hoist_changes
 from runs.case.schema import Case
 from runs.case.sections import SegmentTable
-from runs.case.turning import check_turning, frame_motion, turning_changes, turning_loads
 
 # Names of outputs that every boom has.
 _OUTPUT_NAMES = {
@@ -64,24 +61,24 @@ def build_boom(case: Case) -> Boom:
     rope = Thrust(len(segments) - 1, segments[-1].end, hanging * along)
     thrusts = (*actions.thrusts(case, segments), rope)
     segments = with_compression(segments, joints, thrusts, along)
-    check_turning(case)
-    check_hoist(case)
+    motions.check_turning(case)
+    motions.check_hoist(case)
     _check_planar(case)
-    frame = frame_motion(case, segments)
+    frame = motions.frame_motion(case, segments)
     boom = Boom(
         segments,
         joints,
-        (*actions.loads(case, segments), *turning_loads(frame, segments, joints)),
+        (*actions.loads(case, segments), *motions.turning_loads(frame, segments, joints)),
         tuple(actions.stops(case)),
         case.observe,
         case.cylinders,
         (
-            *hoist_changes(case, segments, joints),
-            *turning_changes(frame, segments, joints, hanging),
+            *motions.hoist_changes(case, segments, joints),
+            *motions.turning_changes(frame, segments, joints, hanging),
         ),
     )
     check_contacts_at_rest(boom)
-    check_elastic_drives(case, boom)
+    motions.check_elastic_drives(case, boom)
     return boom
 
 

@@ -15,8 +15,8 @@ from dynamics.stick_slip import ElasticDrive
 from dynamics.travel import Travel
 from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_PERCENT
-from runs.case.elastic_drive import elastic_drives, with_elastic_drives
 from runs.case.motion_tables import max_speed
+from runs.case.motions import elastic_drives, with_elastic_drives
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.static_results import extended_positions, instants, positions

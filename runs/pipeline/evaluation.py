@@ -17,8 +17,8 @@ from dynamics.trajectory import Trajectory
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.telescoping import travel
-from runs.case.hoist import with_initial_slack
 from runs.case.kinds.model import BuiltModel
+from runs.case.motions import with_initial_slack
 from runs.case.schema import Case, Model
 from runs.pipeline.combinations import combination_states
 from runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects

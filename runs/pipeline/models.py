@@ -18,9 +18,8 @@ from dynamics.trajectory import Trajectory
 from dynamics.travel import ChangingAxialForce, RowTable, Travel
 from geometry.boom import Boom
 from runs.case.build import build_boom
-from runs.case.elastic_drive import with_elastic_drives
-from runs.case.hoist import hanging_load, with_hanging_load
 from runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom, ModelTable
+from runs.case.motions import hanging_load, with_elastic_drives, with_hanging_load
 from runs.case.schema import Case, Model
 
 if TYPE_CHECKING:

@@ -17,10 +17,9 @@ from dynamics.trajectory import Trajectory
 from geometry.axial import lumped_masses
 from geometry.boom import Boom
 from geometry.telescoping import drives_of
-from runs.case.hoist import hanging_load
 from runs.case.motion_tables import resolving_times
+from runs.case.motions import frame_motion, hanging_load
 from runs.case.schema import Case
-from runs.case.turning import frame_motion
 from runs.pipeline.metrics import Metric, Record
 
 if TYPE_CHECKING:

@@ -15,8 +15,8 @@ from dynamics.excitation import HistorySum
 from geometry.arrays import Array
 from geometry.boom import Boom
 from geometry.telescoping import drives_of
+from runs.case.motions import frame_motion
 from runs.case.schema import Case
-from runs.case.turning import frame_motion
 from runs.report import theme
 
 # Length of a rope that the case does not give, over the length of the boom.

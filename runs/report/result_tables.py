@@ -9,7 +9,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from geometry.cylinder import force_name
-from runs.case.turning import frame_motion
+from runs.case.motions import frame_motion
 from runs.pipeline.combinations import combination_tables
 from runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from runs.pipeline.metrics import records

@@ -11,9 +11,9 @@ from dynamics.equilibrium import equilibrium
 from protractile.cases import change, run_case
 from runs import CASES
 from runs.case.build import build_boom
-from runs.case.hoist import with_initial_slack
 from runs.case.load_tables import LoadTable
 from runs.case.motion_tables import HoistTable, WindTable
+from runs.case.motions import with_initial_slack
 from runs.case.reading import select
 from runs.case.schema import Case, EnsembleTable, StartTable
 from runs.pipeline.evaluation import bonded_system

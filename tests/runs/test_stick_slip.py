@@ -19,7 +19,7 @@ from dynamics.trajectory import Trajectory
 from dynamics.travel import RowTable, Travel
 from protractile.cases import change, run_case
 from runs.case.build import build_boom
-from runs.case.elastic_drive import elastic_drives
+from runs.case.motions import elastic_drives
 from runs.case.schema import Case
 from runs.case.units import System
 from runs.pipeline.drives import lag_cautions

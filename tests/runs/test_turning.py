@@ -26,9 +26,9 @@ from runs import CASES
 from runs.case.build import build_boom
 from runs.case.kinds.finite_element import BeamElements
 from runs.case.motion_tables import HoistTable, LuffTable
+from runs.case.motions import turning_changes, turning_loads
 from runs.case.reading import CheckedCase, load
 from runs.case.schema import Case
-from runs.case.turning import turning_changes, turning_loads
 from runs.pipeline.estimates import Preview
 from runs.pipeline.models import axial_travels
 from runs.pipeline.turning import drive_moments, shaper_lines, turning_cautions, turning_lines
