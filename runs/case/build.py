@@ -409,31 +409,46 @@ def _spans(
     """
     lengths = {segment.name: segment.length for segment in segments}
     ends = {segment.name: segment.span for segment in segments if segment.span is not None}
-    with_extension = [
-        (f"joint[{i}].extension", j) for i, j in enumerate(joints, 1) if j.extension is not None
-    ]
-    for number, (where, joint) in enumerate(with_extension):
+    # The keys of extensions that place inner segments, by the names of these.
+    keys: dict[str, str] = {}
+    sliding = [one for one in joints if one.extension is not None]
+    for number, joint in enumerate(joints, start=1):
+        if joint.extension is None:
+            continue
+        where = f"joint[{number}].extension"
         if lengths[joint.inner] is None:
             raise BoomError(
                 where,
                 f"{joint.inner!r} has a span, which says how far it is out; give it by its length, "
                 "or leave extension out",
             )
-        for other, earlier in with_extension[:number]:
-            if earlier.inner == joint.inner:
-                raise BoomError(
-                    where, f"{joint.inner!r} has its place by {other}; leave one of them out"
-                )
+        if joint.inner in keys:
+            raise BoomError(
+                where,
+                f"{joint.inner!r} has its place by {keys[joint.inner]}; leave one of them out",
+            )
+        keys[joint.inner] = where
     first = segments[0]
-    if first.length is not None and first.name not in {joint.inner for _, joint in with_extension}:
+    if first.length is not None and first.name not in keys:
         ends[first.name] = 0.0, first.length
     # One pass per joint places the segments, in any order of the joints.
-    for _ in with_extension:
-        for where, joint in with_extension:
-            if joint.outer in ends and joint.inner not in ends:
-                length = lengths[joint.inner]
-                assert length is not None
-                ends[joint.inner] = _inner_span(where, joint, ends[joint.outer], length)
+    for joint in sliding * len(sliding):
+        if joint.outer in ends and joint.inner not in ends:
+            (start, end), length, extension = (
+                ends[joint.outer],
+                lengths[joint.inner],
+                joint.extension,
+            )
+            assert length is not None
+            assert extension is not None
+            least = max(0.0, length - (end - start))
+            if not least <= extension < length:
+                raise BoomError(
+                    keys[joint.inner],
+                    f"must be at least {least:g} m and below {length:g} m, so that "
+                    f"{joint.inner!r} begins in {joint.outer!r}, got {extension:g} m",
+                )
+            ends[joint.inner] = end + extension - length, end + extension
     for number, segment in enumerate(segments, start=1):
         if segment.name not in ends:
             raise BoomError(
@@ -442,19 +457,3 @@ def _spans(
                 "it slides, or a span to the segment",
             )
     return [ends[segment.name] for segment in segments]
-
-
-def _inner_span(
-    where: str, joint: JointTable, outer: tuple[float, float], length: float
-) -> tuple[float, float]:
-    """Return the x in m of the start and the end of an inner segment, from its extension."""
-    start, end = outer
-    assert joint.extension is not None
-    least = max(0.0, length - (end - start))
-    if not least <= joint.extension < length:
-        raise BoomError(
-            where,
-            f"must be at least {least:g} m and below {length:g} m, so that {joint.inner!r} begins "
-            f"in {joint.outer!r}, got {joint.extension:g} m",
-        )
-    return end + joint.extension - length, end + joint.extension
