@@ -40,7 +40,7 @@ def loads(case: Case, segments: Sequence[Segment]) -> Iterator[Load]:
     for number, table in enumerate(case.loads, start=1):
         yield _load(f"load[{number}]", table)
     if payload is not None and gravity is None:
-        weight = -payload.mass * _payload_gravity(payload)
+        weight = -payload.mass * payload_gravity(payload)
         if weight < 0.0:
             yield Load(len(segments) - 1, "z", weight, segments[-1].end, Step())
     if gravity is not None:
@@ -147,11 +147,11 @@ def axial_force(where: str, table: AxialTable, case: Case) -> float:
             f"{where}.mass",
             "missing, and there is no payload; it is the mass in kg that the rope carries",
         )
-    gravity = _payload_gravity(case.payload) if case.gravity is None else case.gravity.acceleration
+    gravity = payload_gravity(case.payload) if case.gravity is None else case.gravity.acceleration
     return mass * gravity / table.falls
 
 
-def _payload_gravity(payload: PayloadTable | None) -> float:
+def payload_gravity(payload: PayloadTable | None) -> float:
     """Return the acceleration of gravity in m/s² that acts on the payload alone."""
     if payload is None or payload.gravity is None:
         return STANDARD_GRAVITY

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple, TypeVar, get_args
 from geometry.boom import BoomError
 from geometry.cylinder import Cylinder
 from geometry.typography import choices
-from runs.case.actions import STANDARD_GRAVITY, axial_force
+from runs.case.actions import axial_force, payload_gravity
 from runs.case.build import build_boom, check_names
 from runs.case.limits import CaseTable
 from runs.case.load_tables import (
@@ -108,13 +108,11 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
     ]
     base = [_times(one, factors[one.group], one.amount) for one in combined.base]
     # Factor by which the model already multiplies the weight of the mass at the tip.
-    weight_factor = 0.0
-    acceleration = STANDARD_GRAVITY
+    weight_factor, acceleration = 0.0, payload_gravity(payload)
     if gravity is not None:
         weight_factor, acceleration = dead, gravity.acceleration
         gravity = _times(gravity, dead, "acceleration")
     elif payload is not None:
-        acceleration = STANDARD_GRAVITY if payload.gravity is None else payload.gravity
         payload = payload.model_copy(update={"gravity": 0.0})
     masses: list[tuple[Group, float]] = [("payload", table.payload or 0.0)]
     if case.payload is not None:

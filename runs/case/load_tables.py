@@ -3,8 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from math import prod
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
@@ -57,30 +58,28 @@ class HistoryTable(CaseTable):
         return self
 
 
+_HISTORIES: Mapping[str, Callable[[Any], History]] = {
+    "ramp": Ramp,
+    "frequency": Sine,
+    "half_sine": lambda duration: Sine(0.5 / duration, end=duration),
+    "table": lambda pairs: PiecewiseLinear(*zip(*pairs, strict=True)),
+}
+
+
 def build_history(where: str, table: HistoryTable) -> History:
     """Return the history of a load or of an acceleration.
 
     Raises:
         BoomError: keys contradict one another, or the table is invalid.
     """
-    keys = ("ramp", "frequency", "half_sine", "table")
-    present_keys = [key for key in keys if getattr(table, key) is not None]
-    if len(present_keys) > 1:
-        raise BoomError(
-            f"{where}.{present_keys[1]}", f"{present_keys[0]} is given; leave one of them out"
-        )
-    if table.ramp is not None:
-        return Ramp(table.ramp)
-    if table.frequency is not None:
-        return Sine(table.frequency)
-    if table.half_sine is not None:
-        return Sine(0.5 / table.half_sine, end=table.half_sine)
-    if table.table is not None:
-        times, factors = zip(*table.table, strict=True)
+    given = [(key, value) for key in _HISTORIES if (value := getattr(table, key)) is not None]
+    if len(given) > 1:
+        raise BoomError(f"{where}.{given[1][0]}", f"{given[0][0]} is given; leave one of them out")
+    for key, value in given:
         try:
-            return PiecewiseLinear(times, factors)
+            return _HISTORIES[key](value)
         except ValueError as error:
-            raise BoomError(f"{where}.table", str(error)) from None
+            raise BoomError(f"{where}.{key}", str(error)) from None
     return Step()
 
 

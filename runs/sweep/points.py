@@ -146,12 +146,9 @@ def make_points(
     combinations: Iterable[Sequence[Setting]],
     plates: dict[Sequence[Setting], Plates] | None = None,
 ) -> Iterator[Point]:
-    """Yield a checked point for each combination of values.
+    """Yield a checked point for each combination of values of the varied keys.
 
-    Args:
-        whole, file, models, mesh_size: case and options as for :func:`plan`.
-        combinations: the varied keys with their values at each point.
-        plates: cache of inferred plates, by the values that determine sections.
+    ``plates`` caches inferred plates, by the values that determine sections.
 
     Raises:
         BadInput: a combination is invalid.
