@@ -59,10 +59,7 @@ _FIRST = {
 }
 
 # Tables whose numbers the page does not change. The page has its own beam as model.
-_EXCLUDED = (
-    "ensemble", "model", "title", "units", "shown_units", "load_case", "combination",
-    "spectrum",
-)  # fmt: skip
+_EXCLUDED = ("model", "load_case", "combination", "spectrum")
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,9 +107,7 @@ class Draft:
 
     @cached_property
     def _tables(self) -> Tables:
-        return self.case.model_dump(
-            mode="json", by_alias=True, exclude_none=True, exclude={"ensemble"}
-        )
+        return self.case.model_dump(mode="json", by_alias=True, exclude_none=True)
 
     @cached_property
     def _numbers(self) -> Mapping[str, tuple[Place, float]]:
@@ -139,17 +134,15 @@ class Draft:
             for common, several in groups.items():
                 equal = len({self._numbers[key][1] for key in several}) == 1
                 keys_of_controls |= {common: several} if equal else {key: [key] for key in several}
-        return [self._control(key, several) for key, several in keys_of_controls.items()]
+        return [self.control(key, several) for key, several in keys_of_controls.items()]
 
-    def control(self, key: str) -> Control:
-        """Return the control of a key.
+    def control(self, key: str, equal_keys: Sequence[str] = ()) -> Control:
+        """Return the control of a key, or of several keys of equal numbers.
 
         Raises:
             BadInput: the case has no such number.
         """
-        return self._control(key, [key])
-
-    def _control(self, key: str, keys: Sequence[str]) -> Control:
+        keys = equal_keys or [key]
         if keys[0] not in self._numbers:
             raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
         place, value = self._numbers[keys[0]]
@@ -163,7 +156,7 @@ class Draft:
             self._label(keys),
             describe(_field(self.case, place)),
             in_unit[0],
-            system.label(unit) if unit else "",
+            system.label(unit),
             (in_unit[1], in_unit[2]) if low < high else None,
         )
 
