@@ -50,12 +50,8 @@ class BeamElements(CalibratedTable):
     with the rotary inertia of its plates"""
     rotary_inertia: Flag = True
     """whether the rotary inertia is kept"""
-    bonded_joints: Flag = Field(
-        False,
-        alias="bonded",
-        description="whether the segments are bonded at the stations, without play",
-    )
-
+    bonded_joints: Flag = Field(False, alias="bonded")
+    """whether the segments are bonded at the stations, without play"""
     section_fields: Flag = Field(
         False,
         description="whether a calibrated beam has the section's own fields besides: bending and "
