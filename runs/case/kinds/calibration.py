@@ -42,7 +42,7 @@ _Shell = Annotated[
 ]
 
 
-class CalibratedTable(BeamTable):
+class CalibratedTable(BeamTable, init=False):
     """Keys of a beam model that a shell may calibrate: segment stiffness and station springs."""
 
     calibrated_by: _Shell | None = None

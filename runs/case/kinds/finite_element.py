@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal, Self
+from typing import TYPE_CHECKING, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -34,12 +34,8 @@ _EIGEN_TIME, _EIGEN_ROOM = 5.0e-9, 6.0
 _BUILT = 400
 
 
-class BeamElements(CalibratedTable):
+class BeamElements(CalibratedTable, init=False):
     """Beam finite elements."""
-
-    if TYPE_CHECKING:
-
-        def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None: ...
 
     kind: Literal["finite-element"]
     """the kind of model"""

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import Annotated, ClassVar, Literal
 
 from beam_model.component import SegmentModel
 from beam_model.kantorovich import (
@@ -22,14 +22,10 @@ from runs.case.limits import Count
 MOST_TERMS = 60
 
 
-class Kantorovich(CalibratedTable):
+class Kantorovich(CalibratedTable, init=False):
     """The semi-discrete Ritz series of the paper."""
 
     smooth: ClassVar[bool] = True
-
-    if TYPE_CHECKING:
-
-        def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None: ...
 
     kind: Literal["kantorovich"]
     """the kind of model"""
@@ -72,12 +68,8 @@ class Kantorovich(CalibratedTable):
         return Surrogate(self, sum(self.terms) * (3 if boom.spatial else 1))
 
 
-class Rigid(BeamTable):
+class Rigid(BeamTable, init=False):
     """Rigid segments, which move only by play and by the compliance of contacts and supports."""
-
-    if TYPE_CHECKING:
-
-        def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None: ...
 
     kind: Literal["rigid"]
     """the kind of model"""

@@ -149,6 +149,9 @@ class ModelTable(CaseTable):
     # and kind. Functions are typed without attributes.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined] # see above
 
+    def __init_subclass__(cls, init: bool = True) -> None:
+        """Accept ``init=False``, by which type checkers take the constructor from this class."""
+
     # True if the model has a mesh of the plates and writes fields.
     meshed: ClassVar[bool] = False
 
@@ -339,7 +342,7 @@ class ModelTable(CaseTable):
         """Return the cheap beam model from which the cost of the model is estimated."""
 
 
-class BeamTable(ModelTable):
+class BeamTable(ModelTable, init=False):
     """Keys of a model whose segments are elements, series or rigid bodies along one axis."""
 
     @abstractmethod

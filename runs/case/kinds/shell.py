@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 
@@ -62,14 +62,10 @@ class _ShellSurrogate(BeamTable):
         return Surrogate(self, 0)
 
 
-class Shell(ModelTable):
+class Shell(ModelTable, init=False):
     """Flat shell elements on the walls of the segments, reduced to fewer coordinates."""
 
     meshed: ClassVar[bool] = True
-
-    if TYPE_CHECKING:
-
-        def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None: ...
 
     kind: Literal["shell"]
     """the kind of model"""
