@@ -162,12 +162,6 @@ def opengl() -> None:
         pytest.skip(str(reason))
 
 
-@pytest.fixture
-def on_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
-    """Return a runner of Python programs on a number of ranks in an empty folder."""
-    return ranks_in(tmp_path)
-
-
 def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Return a runner of Python programs on a number of ranks in a folder."""
     if shutil.which("mpirun") is None:
@@ -216,8 +210,6 @@ def _on_one_core() -> Iterator[None]:
 
 
 @pytest.fixture
-def two_ranks(
-    on_ranks: Callable[..., subprocess.CompletedProcess[str]],
-) -> Callable[..., subprocess.CompletedProcess[str]]:
+def two_ranks(tmp_path: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Return a runner of Python programs on two ranks in an empty folder."""
-    return partial(on_ranks, 2)
+    return partial(ranks_in(tmp_path), 2)
