@@ -13,6 +13,7 @@ from rich.console import Console
 from dynamics.equilibrium import equilibrium_at
 from dynamics.trajectory import Trajectory
 from runs.case.build import build_boom
+from runs.case.kinds.model import BuildContext
 from runs.case.reading import CheckedCase
 from runs.case.schema import Case
 from runs.check import check_case
@@ -98,9 +99,9 @@ def answers_of(case: Case, comm: Intracomm | None = None) -> DesignResults:
     return Summary.model_validate_json(str(run.results.summary)).design
 
 
-def static_tip(case: Case, time: float = 0.0) -> float:
+def static_tip(case: Case, time: float = 0.0, tools: BuildContext | None = None) -> float:
     """Return the tip deflection in m of the case's first model at rest under loads at a time."""
-    system = build(case, build_boom(case), case.models[0]).system.gather_loads()
+    system = build(case, build_boom(case), case.models[0], tools).system.gather_loads()
     return float(system.observers["tip"].row @ equilibrium_at(system, time))
 
 

@@ -13,11 +13,10 @@ from runs import CASES
 from runs.case import reading, toml
 from runs.case.build import build_boom
 from runs.case.kinds.model import BuildContext
-from runs.case.schema import Case
 from runs.pipeline.models import build
 from runs.pipeline.results import Results
-from studies.reference_models.statics import static_response
 from tests.runs.case_texts import CLAMPED, COARSE, REST, STEEL, elements, read_case, refusal, table
+from tests.runs.summaries import static_tip
 
 CANTILEVER = f"""
 title = "One segment"
@@ -178,16 +177,6 @@ SHELL = '[[model]]\nname = "shell"\nkind = "shell"\nmesh_size = 0.1\ncontact_tol
 BOX = "section = { height = 0.47, width = 0.41, flange = 0.006, web = 0.006 }\n"
 
 
-def tip_at_rest(case: Case) -> float:
-    """Return the tip deflection in m under all loads at the value 1 of their histories."""
-    from mpi4py import MPI
-
-    tools = BuildContext(MPI.COMM_SELF)
-    system = build(case, build_boom(case), case.models[0], tools).system
-    load = system.load + np.sum([x.load for x in system.excitations], axis=0)
-    return float(system.observers["tip"].row @ static_response(system, load))
-
-
 def under_part(bending: float) -> float:
     """Return the tip of a cantilever, −q ∫ x² (3 L − x)/6 dx from 3 to 7 m over E J."""
     antiderivative = [10.0 * x**3 / 6.0 - x**4 / 24.0 for x in (3.0, 7.0)]
@@ -205,7 +194,7 @@ def test_beams_have_the_deflections_of_statics(
     tmp_path: Path, load: str, expected: Callable[[float], float], model: str
 ) -> None:
     """Reference: analytic. Elements and series contain the influence line of the tip, a cubic."""
-    found = tip_at_rest(read_case(tmp_path, CANTILEVER + load + model))
+    found = static_tip(read_case(tmp_path, CANTILEVER + load + model))
     assert found == pytest.approx(expected(BENDING), rel=1e-9)
 
 
@@ -218,8 +207,10 @@ def test_a_shell_rests_near_a_beam_with_shear(
         "second_moment_of_area = 3.7986e-4\n", ""
     )
     elements = ELEMENTS.replace("euler-bernoulli", "timoshenko")
-    beams = tip_at_rest(read_case(tmp_path, beam + load + elements))
-    shell = tip_at_rest(read_case(tmp_path, beam + load + SHELL))
+    from mpi4py import MPI
+
+    beams = static_tip(read_case(tmp_path, beam + load + elements))
+    shell = static_tip(read_case(tmp_path, beam + load + SHELL), tools=BuildContext(MPI.COMM_SELF))
     assert shell == pytest.approx(beams, rel=5e-3)
 
 
