@@ -37,12 +37,12 @@ from geometry.axial import joint_thrust, moving_force
 from geometry.boom import SAME_PLACE, Boom
 from geometry.telescoping import TelescopingStations, reach, telescoping_stations
 from shell_model.boom_shell import BoomShell
-from shell_model.reduction.coordinates import BoomCoordinates, exact_product
+from shell_model.reduction.coordinates import BoomCoordinates
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.reduction.symmetry import Job, SymmetryReduction
 from shell_model.segment.cross_section import Operator, Row
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver, squared, times
+from shell_model.segment.solver import ShiftedSolver, exact_product, squared, times
 from shell_model.stress.stresses import lines_around
 
 # Maximum frequency of modes in Hz, frequency in Hz up to which all modes are kept, and minimum

@@ -4,29 +4,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
-from mpi4py import MPI
 from scipy.linalg import block_diag, eigh, null_space
 
 from dynamics.second_order import buckling_factor, soften_modes
 from geometry.arrays import Array
 from geometry.cylinder import GroundLine
+from shell_model.boom_shell import BoomShell
 from shell_model.reduction.segment import ReducedSegment
 from shell_model.segment.cross_section import Operator
-
-if TYPE_CHECKING:
-    from shell_model.boom_shell import BoomShell
+from shell_model.segment.solver import exact_product
 
 # Fraction of the largest singular value below which a singular value is round-off.
 ROUND_OFF = 1.0e-9
-
-# Number of rows of a batch, whose products are in memory.
-_AT_ONCE = 1 << 14
-
-# Fraction of the sum of absolute terms below which a sum is round-off.
-_CANCELLED = 1.0e-14
 
 
 class BoomCoordinates:
@@ -116,40 +107,3 @@ def _constrained_modes(omega2: Array, tied: Array, pulls: Array) -> tuple[Array,
     num_rigid = scaled.shape[1] - int((values > ROUND_OFF * values.max(initial=0.0)).sum())
     held_omega2[:num_rigid] = 0.0
     return held_omega2, free @ combination
-
-
-def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
-    """Return leftᵀ right (num_columns,), bitwise equal for any number of ranks. Collective.
-
-    ``left`` is (num_owned,), ``right`` (num_owned, num_columns). Sums have double the usual
-    precision, so that their order has no effect.
-    """
-    rows = np.flatnonzero(left != 0.0)
-    parts = [np.zeros((1, right.shape[1]))]
-    rounding, size = np.zeros((2, right.shape[1]))
-    for begin in range(0, rows.size, _AT_ONCE):
-        some = rows[begin : begin + _AT_ONCE]
-        terms = left[some, None] * right[some]
-        part, off = _sum(terms)
-        parts.append(part[None, :])
-        rounding += off
-        size += np.abs(terms).sum(axis=0)
-    gathered = comm.allgather((np.concatenate(parts), rounding, size))
-    total, off = _sum(np.concatenate([part for part, _, _ in gathered]))
-    total += off + np.sum([rounding for _, rounding, _ in gathered], axis=0)
-    # A sum that is only round-off is zero.
-    total[np.abs(total) < _CANCELLED * np.sum([size for _, _, size in gathered], axis=0)] = 0.0
-    return total
-
-
-def _sum(terms: Array) -> tuple[Array, Array]:
-    """Return the sums over the first axis, and their rounding errors (Knuth 1969)."""
-    rounding = np.zeros(terms.shape[1:])
-    while len(terms) > 1:
-        half = len(terms) // 2
-        a, b = terms[:half], terms[half : 2 * half]
-        both = a + b
-        of_b = both - a
-        rounding += ((a - (both - of_b)) + (b - of_b)).sum(axis=0)
-        terms = np.concatenate([both, terms[2 * half :]])
-    return terms[0], rounding

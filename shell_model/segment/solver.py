@@ -36,6 +36,50 @@ def gram(comm: MPI.Comm, left: Array, right: Array) -> Array:
     return product
 
 
+# Number of rows of a batch, whose products are in memory.
+_AT_ONCE = 1 << 14
+
+# Fraction of the sum of absolute terms below which a sum is round-off.
+_CANCELLED = 1.0e-14
+
+
+def exact_product(comm: MPI.Comm, left: Array, right: Array) -> Array:
+    """Return leftᵀ right (num_columns,), bitwise equal for any number of ranks. Collective.
+
+    ``left`` is (num_owned,), ``right`` (num_owned, num_columns). Sums have double the usual
+    precision, so that their order has no effect.
+    """
+    rows = np.flatnonzero(left != 0.0)
+    parts = [np.zeros((1, right.shape[1]))]
+    rounding, size = np.zeros((2, right.shape[1]))
+    for begin in range(0, rows.size, _AT_ONCE):
+        some = rows[begin : begin + _AT_ONCE]
+        terms = left[some, None] * right[some]
+        part, off = _sum(terms)
+        parts.append(part[None, :])
+        rounding += off
+        size += np.abs(terms).sum(axis=0)
+    gathered = comm.allgather((np.concatenate(parts), rounding, size))
+    total, off = _sum(np.concatenate([part for part, _, _ in gathered]))
+    total += off + np.sum([rounding for _, rounding, _ in gathered], axis=0)
+    # A sum that is only round-off is zero.
+    total[np.abs(total) < _CANCELLED * np.sum([size for _, _, size in gathered], axis=0)] = 0.0
+    return total
+
+
+def _sum(terms: Array) -> tuple[Array, Array]:
+    """Return the sums over the first axis, and their rounding errors (Knuth 1969)."""
+    rounding = np.zeros(terms.shape[1:])
+    while len(terms) > 1:
+        half = len(terms) // 2
+        a, b = terms[:half], terms[half : 2 * half]
+        both = a + b
+        of_b = both - a
+        rounding += ((a - (both - of_b)) + (b - of_b)).sum(axis=0)
+        terms = np.concatenate([both, terms[2 * half :]])
+    return terms[0], rounding
+
+
 # ICNTL(7) of MUMPS: approximate minimum fill. For a long and thin boom, this ordering has as little
 # fill as nested dissection, and takes half the time. PETSc accepts it only as an option, since it
 # loses values that are set before the analysis. The option is removed after use, since PETSc

@@ -14,12 +14,11 @@ from geometry.arrays import Array
 from geometry.probe_responses import PROBE_FREQUENCY
 from runs.process.workers import workers
 from shell_model.contact.local_compliance import shell_compliance
-from shell_model.reduction.coordinates import exact_product
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver, times
+from shell_model.segment.solver import ShiftedSolver, exact_product, times
 from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD
