@@ -283,12 +283,15 @@ def test_late_and_low_model_differs_at_each_level() -> None:
     assert spread.distance == pytest.approx(0.5, abs=0.02)
 
 
-def test_without_a_slow_motion_ensembles_are_not_compared() -> None:
+def test_without_a_slow_motion_or_another_model_nothing_is_compared() -> None:
     ensembles = members({name: np.array([swing(), swing()]) for name in SERIES})
     data = trajectories(kantorovich_4=swing(), kantorovich_5=swing())
     case = case_of(*SERIES)
     assert compare_models(case, data, ensembles, None) is None
     assert compare_models(case, data, None, None) is None
+    # A model alone is compared with nothing.
+    alone = case_of("kantorovich-4", friction=0.2)
+    assert compare_models(alone, data.isel(model=[0]), ensembles.isel(model=[0]), SLOW) is None
 
 
 def test_with_friction_every_model_is_compared_to_the_end() -> None:
@@ -331,13 +334,6 @@ def test_a_short_run_with_friction_is_compared_to_its_end_alone() -> None:
     found = compare_models(case, data.sel(time=slice(None, 2.0)), None, None)
     assert found.whole["kantorovich-4"].until == [2.0]
     assert found.whole["kantorovich-4"].largest == pytest.approx([0.1], rel=1e-6)
-
-
-def test_a_model_alone_is_compared_with_nothing() -> None:
-    alone = members({"kantorovich-4": np.array([swing(), swing()])})
-    data = trajectories(kantorovich_4=swing())
-    case = case_of("kantorovich-4", friction=0.2)
-    assert compare_models(case, data, alone, SLOW) is None
 
 
 MODELS = (*SERIES, "beam-fe-bonded")

@@ -13,9 +13,7 @@ from beam_model.finite_element import finite_element_segments
 from beam_model.kantorovich import kantorovich_segments
 from beam_model.lines import lines
 from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
 from dynamics.damping import closed_contact_modes
-from dynamics.gap_system import GapSystem
 from geometry.boom import Boom, Material, Segment, Support
 from geometry.section import BoxSection
 from protractile.cases import run_case
@@ -24,6 +22,7 @@ from runs.pipeline.modes import Mode, match_modes, modes
 from runs.pipeline.section_forces import LoadedModel
 from tests.runs.case_texts import COARSE, read_case, refusal
 from tests.runs.test_actions import CANTILEVER
+from tests.runs.test_statics import ball
 
 BOX = BoxSection(height=0.30, width=0.20, flange=0.006, web=0.006)
 
@@ -81,10 +80,7 @@ def test_modes_match_in_any_order(arm: Boom) -> None:
 
 def test_rigid_segment_has_modes_of_its_contacts() -> None:
     """Reference: analytic, a ball of 1 kg without elastic modes, on a contact of 1e6 N/m."""
-    law = PowerContact(1e6, 1.0).lower()
-    one = np.ones(1)
-    ball = GapSystem(0.0 * one, -9.81 * one, one[None], [law], np.array([0]), [0.0], {})
-    omega, _ = closed_contact_modes(ball)
+    omega, _ = closed_contact_modes(ball())
     np.testing.assert_allclose(omega, [1e3])
 
 

@@ -51,6 +51,14 @@ def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     )
 
 
+def check_interrupted(process: subprocess.Popen[str], number: signal.Signals) -> None:
+    """Check the end of a command by a signal, with one line after those of its progress."""
+    out, err = process.communicate(timeout=60)
+    assert (out, err.splitlines()[-1]) == ("", "protractile: interrupted")
+    assert err.count("protractile: ") == 1
+    assert process.returncode == 128 + number
+
+
 def command(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     return start(folder, "-m", "protractile", *arguments, "--out", "out")
 
@@ -78,11 +86,7 @@ def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: s
     process = command(tmp_path, *RUN)
     wait_until(listens if stage == "importing" else works(tmp_path), process)
     os.killpg(process.pid, number)
-    out, err = process.communicate(timeout=60)
-    # Where it takes long it has told how far it was.
-    assert (out, err.splitlines()[-1]) == ("", "protractile: interrupted")
-    assert err.count("protractile: ") == 1
-    assert process.returncode == 128 + number
+    check_interrupted(process, number)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -108,9 +112,7 @@ def test_sigterm_ends_a_run_after_meshing(tmp_path: Path) -> None:
     process = start(tmp_path, "-c", TELLING, *shell, "--out", "out")
     wait_until(tells("shell (1 of 1): reduction"), process)
     process.terminate()
-    out, err = process.communicate(timeout=60)
-    assert (out, err.splitlines()[-1]) == ("", "protractile: interrupted")
-    assert process.returncode == 128 + signal.SIGTERM
+    check_interrupted(process, signal.SIGTERM)
     assert list(tmp_path.iterdir()) == []
 
 
@@ -119,11 +121,7 @@ def test_a_sweep_ends_with_its_processes(tmp_path: Path) -> None:
     process = command(tmp_path, *SWEEP)
     wait_until(has_a_point(tmp_path), process)
     os.killpg(process.pid, signal.SIGINT)
-    out, err = process.communicate(timeout=60)
-    # Where it takes long it has told how far it was.
-    assert (out, err.splitlines()[-1]) == ("", "protractile: interrupted")
-    assert err.count("protractile: ") == 1
-    assert process.returncode == 128 + signal.SIGINT
+    check_interrupted(process, signal.SIGINT)
     assert [path.name for path in tmp_path.iterdir()] == ["out"]
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["points"]
 
