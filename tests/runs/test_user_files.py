@@ -7,16 +7,14 @@ from pathlib import Path
 
 import pytest
 
-from runs.case import reading
 from runs.case.actions import series_notes
-from runs.case.messages import BadInput
 from runs.case.reading import load
 from runs.case.schema import Case
 from runs.case.units import Unit
 from runs.case.user_files import MAX_BYTES, check_not_working_folder
 from runs.folder.files import MANIFEST
 from runs.pipeline.results import prepare
-from tests.runs.case_texts import COARSE, refusal, refused
+from tests.runs.case_texts import COARSE, read_case, refusal, refused
 
 GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'
 
@@ -80,18 +78,18 @@ def test_nobody_s_folder_is_replaced_around_them(
         prepare(str(folder), "case.toml")
 
 
-LOAD = '[[load]]\nsegment = "inner"\n{keys}\nfile = "gust.csv"\n\n[[model]]'
 TABLE = ((0.0, 0.5), (0.25, -1500.0))
 
 
-def case_of(csv: str, keys: str, key: str = "load") -> Case:
+def text_of(csv: str, keys: str, heading: str = '[[load]]\nsegment = "inner"') -> str:
+    """Write a file, and return a case with a table that reads it."""
     Path("gust.csv").write_text(csv, encoding="utf-8")
-    table = LOAD.replace("load", key)
-    text = COARSE.replace("[[model]]", table.format(keys=keys), 1)
-    if key == "base":
-        text = text.replace('[[base]]\nsegment = "inner"\n', "[[base]]\n")
-    Path("case.toml").write_text(text, encoding="utf-8")
-    return reading.load("case.toml")
+    table = f'{heading}\n{keys}\nfile = "gust.csv"'
+    return COARSE.replace("[[model]]", f"{table}\n\n[[model]]", 1)
+
+
+def case_of(*given: str) -> Case:
+    return read_case(Path(), text_of(*given))
 
 
 @pytest.mark.parametrize(
@@ -128,11 +126,9 @@ def test_files_are_read_as_spreadsheets_save_them(encoding: str) -> None:
     """Reference: analytic, the same pairs; the names and the unit have letters beyond ASCII."""
     csv = "Zeit (s);Erregung für Süd (m/s²)\r\n0;0,5\r\n0,25;-1500\r\n"
     keys = 'columns = ["Zeit", "Erregung für Süd"]'
-    case_of("0,0\n1,1\n", "acceleration = 1.0", "base")
-    text = Path("case.toml").read_text(encoding="utf-8").replace("acceleration = 1.0", keys)
-    Path("case.toml").write_text(text, encoding="utf-8")
+    text = text_of("", keys, "[[base]]")
     Path("gust.csv").write_bytes(csv.encode(encoding))
-    assert reading.load("case.toml").base[0].table == TABLE
+    assert read_case(Path(), text).base[0].table == TABLE
 
 
 @pytest.mark.parametrize(
@@ -142,7 +138,7 @@ def test_a_measured_quake_needs_no_acceleration(unit: str, factor: float) -> Non
     """Reference: analytic, the standard gravity 9.80665 m/s², times a given factor."""
     csv = f"t (s),a ({unit})\n0,0\n0.5,0.3\n"
     for keys, times in (("", 1.0), ("acceleration = -2.0", -2.0)):
-        (base,) = case_of(csv, keys, "base").base
+        (base,) = case_of(csv, keys, "[[base]]").base
         assert base.acceleration * base.table[1][1] == pytest.approx(times * 0.3 * factor)
 
 
@@ -151,8 +147,7 @@ def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
     Path("pad.csv").write_text("F [kN];depth [mm]\n1,5;0,1\n4;0,2\n", encoding="utf-8")
     law = 'force_file = "pad.csv"\nforce_columns = ["depth", "F"]\n'
     text = COARSE.replace("stiffness = 1e13\nexponent = 2.0\n", law, 1)
-    Path("case.toml").write_text(text, encoding="utf-8")
-    (joint,) = reading.load("case.toml").joints
+    (joint,) = read_case(Path(), text).joints
     assert joint.force_table == ((1.0e-4, 1500.0), (2.0e-4, 4000.0))
     assert joint.force_columns is None
 
@@ -194,17 +189,13 @@ def test_factors_need_a_magnitude_and_columns_are_two_of_a_file() -> None:
     one = 'magnitude = 1.0\ncolumns = ["t"]'
     assert complaint("0;1\n1;1\n", one) == "columns: must be a list of two names, got ['t']"
     text = '[[load]]\nsegment = "inner"\nmagnitude = 1.0\ncolumns = ["t", "F"]\n\n[[model]]'
-    Path("case.toml").write_text(COARSE.replace("[[model]]", text, 1), encoding="utf-8")
-    with refused(
-        "case.toml: load[1].columns: there is no file whose columns these are; leave it out"
-    ):
-        reading.load("case.toml")
+    assert refusal(Path(), COARSE.replace("[[model]]", text, 1)) == (
+        "load[1].columns: there is no file whose columns these are; leave it out"
+    )
 
 
 def complaint(csv: str, keys: str) -> str:
-    with pytest.raises(BadInput) as error:
-        case_of(csv, keys)
-    return str(error.value).removeprefix("case.toml: load[1].")
+    return refusal(Path(), text_of(csv, keys)).removeprefix("load[1].")
 
 
 @pytest.mark.parametrize(
