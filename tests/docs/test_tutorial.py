@@ -22,6 +22,7 @@ from runs.pipeline.proportions import proportion_cautions
 from runs.pipeline.statics import cylinder_force, statics
 from runs.pipeline.summary import Summary
 from tests.docs.conftest import DOCS, toml_blocks
+from tests.runs.case_texts import read_case
 
 PAGE = (DOCS / "tutorial.md").read_text("utf-8")
 SECTION = "section = { height = 0.300, width = 0.220, flange = 0.006, web = 0.005 }"
@@ -48,9 +49,7 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> Runner:
     """Return a function that runs some models of a case and returns the summary."""
 
     def of(text: str, *models: str, **changes: object) -> Summary:
-        path = tmp_path_factory.mktemp("tutorial") / "my-lift.toml"
-        path.write_text(text, "utf-8")
-        case = pt.change(pt.load_case(path), **changes)
+        case = pt.change(read_case(tmp_path_factory.mktemp("tutorial"), text), **changes)
         return pt.run_case(case, models=[*models]).summary
 
     return of
@@ -69,10 +68,7 @@ def first_frequency(state: StaticState) -> float:
 
 def test_values_of_the_first_check(tmp_path: Path) -> None:
     """Reference: the page, to its digits."""
-    text = toml_blocks("tutorial.md")[0]
-    path = tmp_path / "my-lift.toml"
-    path.write_text(text, "utf-8")
-    case = pt.load_case(path)
+    case = read_case(tmp_path, toml_blocks("tutorial.md")[0])
     boom = build_boom(case)
     assert proportion_cautions(case, boom) == []
     mass = sum(segment.mass_per_length * segment.length for segment in boom.segments)
@@ -93,9 +89,7 @@ def test_beam_results_equal_the_page(run: Runner, lift: str, tmp_path: Path) -> 
     beam = summary.design.models["beam"]
     peaks = {(peak.what, peak.where): peak for peak in beam.motion.peaks}
     tip = peaks["deflection", "tip"]
-    path = tmp_path / "my-lift.toml"
-    path.write_text(lift, "utf-8")
-    state = checked(pt.load_case(path))
+    state = checked(read_case(tmp_path, lift))
     assert shown(1e3 * state.tip, 1, "static tip deflection (t = 0), empty cage")
     assert shown(1e-3 * cylinder_force(state, 1), 1, "force of the cylinder", 1)
     assert shown(first_frequency(state), 2, "first natural frequency, joints in contact", 1)

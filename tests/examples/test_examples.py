@@ -15,6 +15,7 @@ from dynamics.integrator import FixedStep, simulate
 from dynamics.motion import Motion
 from dynamics.predictability import integrate_ensemble
 from tests.dynamics.two_stops import CHAOTIC
+from tests.runs.case_texts import COARSE, read_case
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -49,10 +50,8 @@ def test_a_ball_bounces(example: ModuleType) -> None:
 @of("change_a_case")
 def test_changed_case_equals_case_of_a_changed_file(example: ModuleType, tmp_path: Path) -> None:
     """Reference: other code path, a case file with this number."""
-    text = (pt.CASES / "coarse.toml").read_text("utf-8")
-    file = tmp_path / "case.toml"
-    file.write_text(text.replace("play = 0.014", "play = 0.007"), "utf-8")
-    expected = pt.run_case(pt.load_case(file), models=["kantorovich-5"])
+    case = read_case(tmp_path, COARSE.replace("play = 0.014", "play = 0.007"))
+    expected = pt.run_case(case, models=["kantorovich-5"])
     found = example.run(0.007)
     np.testing.assert_array_equal(found.trajectories["tip"], expected.trajectories["tip"])
     assert found.summary.models["kantorovich-5"].first_contact < 0.1
