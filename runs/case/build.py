@@ -24,17 +24,6 @@ from runs.case.contact import JointTable
 from runs.case.schema import Case
 from runs.case.sections import SegmentTable
 
-# Names of outputs that every boom has.
-_OUTPUT_NAMES = {
-    *STATION_VARIABLES,
-    *DRIVEN_ENERGIES,
-    "time",
-    "station",
-    "direction",
-    "place",
-    "model",
-}
-
 # Permitted relative difference between the beam properties of a case and those of its plates: data
 # sheets give rounded numbers.
 SECTION_TOLERANCE = 0.01
@@ -109,13 +98,14 @@ def check_ensemble_data(case: Case, boom: Boom) -> None:
 
 def _check_observations(case: Case) -> None:
     check_names("observe", [table.name for table in case.observe])
-    drive_names = {
+    taken = {"time", "station", "direction", "place", "model", *STATION_VARIABLES, *DRIVEN_ENERGIES}
+    taken |= {
         name + suffix
         for suffix in case.driven_segments
         for name in (*DRIVE_VARIABLES, *ELASTIC_DRIVE_VARIABLES)
     }
     for number, table in enumerate(case.observe, start=1):
-        if table.name in _OUTPUT_NAMES | drive_names:
+        if table.name in taken:
             raise BoomError(
                 f"observe[{number}].name",
                 f"{table.name!r} is the name of another output already; give it its own",
@@ -129,8 +119,7 @@ def check_names(where: str, names: Sequence[str]) -> None:
         BoomError: a name occurs twice.
     """
     for number, name in enumerate(names, start=1):
-        if name in names[: number - 1]:
-            first = names.index(name) + 1
+        if (first := names.index(name) + 1) < number:
             raise BoomError(
                 f"{where}[{number}].name",
                 f"{name!r} is the name of {where}[{first}] already; give each its own",

@@ -209,12 +209,12 @@ def _choose_columns(
             raise _FileError(what, "name two of them")
         indices = [0, 1]
     else:
-        bare_names = [_split_heading(name)[0] for name in names]
-        for name in bare_names:
+        indices = []
+        for name, _ in map(_split_heading, names):
             if (count := column_names.count(name)) != 1:
                 what = f"has {count} columns {shorten(name)!r} in line {heading.line}"
                 raise _FileError(what, "name columns that it has once")
-        indices = [column_names.index(name) for name in bare_names]
+            indices.append(column_names.index(name))
     for row in headings:
         row.check_columns(indices, names)
     of_units = headings[-1]
