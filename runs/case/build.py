@@ -352,21 +352,16 @@ def _sections(case: Case, joints: Sequence[Joint]) -> list[Section | None]:
         if sections[i] is None and table.height_to_width is not None:
             sections[i] = _infer_section(case, i, infer_outer_section, table.height_to_width)
     # One pass per joint reaches every inner segment, whatever the order of the joints.
-    for _ in joints:
-        for joint in joints:
-            outer = sections[joint.outer]
-            if sections[joint.inner] is None and outer is not None:
-                outer_table = case.segments[joint.outer]
-                if outer_table.head_section is not None:
-                    raise BoomError(
-                        f"segment[{joint.inner + 1}].section",
-                        f"missing, and none is inferred within {outer_table.name!r}, which tapers; "
-                        "give it",
-                    )
-                hint = outer, 0.5 * joint.play
-                sections[joint.inner] = _infer_section(
-                    case, joint.inner, infer_inner_section, *hint
+    for joint in [*joints] * len(joints):
+        outer, table = sections[joint.outer], case.segments[joint.outer]
+        if sections[joint.inner] is None and outer is not None:
+            if table.head_section is not None:
+                raise BoomError(
+                    f"segment[{joint.inner + 1}].section",
+                    f"missing, and none is inferred within {table.name!r}, which tapers; give it",
                 )
+            hint = outer, 0.5 * joint.play
+            sections[joint.inner] = _infer_section(case, joint.inner, infer_inner_section, *hint)
     return sections
 
 
@@ -423,11 +418,8 @@ def _spans(
     # One pass per joint places the segments, in any order of the joints.
     for joint in sliding * len(sliding):
         if joint.outer in ends and joint.inner not in ends:
-            (start, end), length, extension = (
-                ends[joint.outer],
-                lengths[joint.inner],
-                joint.extension,
-            )
+            start, end = ends[joint.outer]
+            length, extension = lengths[joint.inner], joint.extension
             assert length is not None
             assert extension is not None
             least = max(0.0, length - (end - start))
