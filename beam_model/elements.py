@@ -30,12 +30,16 @@ GAUSS = 0.5 * (_POINTS + 1.0), 0.5 * _WEIGHTS
 
 def element(segment: Segment, theory: Theory, start: float, h: float) -> Element:
     """Return the element of a segment from x = ``start`` over the length ``h``, both in m."""
+    places = [segment]
+    if segment.head_section is not None:
+        places = [segment.prismatic_at(start + part * h) for part in (0.0, 0.5, 1.0)]
+    stiffnesses = [None if theory == "euler-bernoulli" else one.shear_stiffness for one in places]
     if segment.head_section is None:
-        return PrismaticElement(h, segment.bending_stiffness, _shear_number(segment, theory, h))
-    places = [segment.prismatic_at(start + part * h) for part in (0.0, 0.5, 1.0)]
-    bending = [1.0 / place.bending_stiffness for place in places]
-    shear = [_shear_flexibility(place, theory) for place in places]
-    return TaperedElement(h, _parabola(bending), _parabola(shear))
+        shear, bending = stiffnesses[0], segment.bending_stiffness
+        return PrismaticElement(h, bending, 12.0 * bending / (shear * h**2) if shear else 0.0)
+    flexibilities = [1.0 / shear if shear else 0.0 for shear in stiffnesses]
+    bent = _parabola([1.0 / place.bending_stiffness for place in places])
+    return TaperedElement(h, bent, _parabola(flexibilities))
 
 
 @lru_cache(maxsize=256)
@@ -187,18 +191,3 @@ def _parabola(values: list[float]) -> Polynomial:
     """Return the parabola through values at ξ = 0, 1/2 and 1."""
     start, middle, end = values
     return Polynomial([start, 4.0 * middle - 3.0 * start - end, 2.0 * (start + end) - 4.0 * middle])
-
-
-def _shear_flexibility(segment: Segment, theory: Theory) -> float:
-    """Return 1/(G A_s) in 1/N, zero for an Euler–Bernoulli beam."""
-    if theory == "euler-bernoulli" or segment.section is None:
-        return 0.0
-    return 1.0 / (segment.material.shear_modulus * segment.section.shear_area)
-
-
-def _shear_number(segment: Segment, theory: Theory, h: float) -> float:
-    """Return Φ_s for an element of length ``h`` in m, zero for an Euler–Bernoulli beam."""
-    shear_stiffness = segment.shear_stiffness
-    if theory == "euler-bernoulli" or shear_stiffness is None:
-        return 0.0
-    return 12.0 * segment.bending_stiffness / (shear_stiffness * h**2)

@@ -88,13 +88,14 @@ def _rows(
         on_outer, on_inner = pad.travels(extensions.get(pad.number, 0.0))
         law = pad.joint.law(pad.direction)
         joint = pad.joint
+        slide_x = pad.midpoint if joint.lateral_play is None else pad.x
         # u − w of both points of the pad.
         approach, slide = (
             modes.displacement(joint.inner, x + on_inner, direction, inner)
             - modes.displacement(joint.outer, x + on_outer, direction, outer)
             for direction, x, (inner, outer) in (
                 (pad.direction, pad.midpoint, pad.area_centres),
-                (pad.sliding_direction, pad.slide_x, (pad.inner, pad.outer)),
+                (pad.sliding_direction, slide_x, (pad.inner, pad.outer)),
             )
         )
         pressing_sides = (pad.side,) if pad.side else sides

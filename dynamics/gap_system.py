@@ -110,38 +110,31 @@ class GapSystem:
     geometric_stiffness: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
-        n, m = self.omega2.size, len(self.laws)
+        n, m, places = self.omega2.size, len(self.laws), len(self.stations)
         of_modes = {name: (n,) for name in ("damping", "released_load", "initial_impulse")}
         empty = of_modes | {name: (0, n) for name in ("dashpots", "friction_rows")}
         for name, zeros in empty.items():
             if getattr(self, name).size == 0:
                 object.__setattr__(self, name, np.zeros(zeros))
         if not self.station_directions:
-            object.__setattr__(self, "station_directions", ("z",) * len(self.stations))
-        expected = {
-            "omega2": (self.omega2, (n,)),
-            "load": (self.load, (n,)),
-            **{name: (getattr(self, name), shape) for name, shape in of_modes.items()},
-            "dashpots": (self.dashpots, (len(self.dashpots), n)),
-            "geometric_stiffness": (
-                self.geometric_stiffness,
-                (n, n) if self.geometric_stiffness.size else (0, 0),
-            ),
-            "rows": (self.rows, (m, n)),
-            "station_of_row": (self.station_of_row, (m,)),
-            "friction_rows": (self.friction_rows, (len(self.frictions), n)),
-            **{f"excitation {e}": (x.load, (n,)) for e, x in enumerate(self.excitations)},
-            **{
-                f"observer {name!r}": (observer.row, (n,))
-                for name, observer in self.observers.items()
-            },
+            object.__setattr__(self, "station_directions", ("z",) * places)
+        shapes = of_modes | {
+            "omega2": (n,),
+            "load": (n,),
+            "dashpots": (len(self.dashpots), n),
+            "geometric_stiffness": (n, n) if self.geometric_stiffness.size else (0, 0),
+            "rows": (m, n),
+            "station_of_row": (m,),
+            "friction_rows": (len(self.frictions), n),
         }
-        for name, (array, shape) in expected.items():
+        arrays = [(name, getattr(self, name), shape) for name, shape in shapes.items()]
+        arrays += [(f"excitation {e}", x.load, (n,)) for e, x in enumerate(self.excitations)]
+        arrays += [(f"observer {name!r}", one.row, (n,)) for name, one in self.observers.items()]
+        for name, array, shape in arrays:
             if array.shape != shape:
                 raise ValueError(f"{name} must have the shape {shape}, got {array.shape}")
             if not np.isfinite(array).all():
                 raise ValueError(f"{name} must be finite")
-        places = len(self.stations)
         for name in ("station_of_row", "grounded"):
             if any(not 0 <= station < places for station in getattr(self, name)):
                 raise ValueError(f"{name} must hold positions in stations")
@@ -157,7 +150,7 @@ class GapSystem:
         if (self.damping < 0.0).any():
             raise ValueError("damping must not be negative")
         for number, travel in enumerate(self.travels):
-            if travel.table.num_modes != n:
+            if travel.table.coefficients.shape[3] != n:
                 raise ValueError(f"the rows of travel {number} must have {n} modes")
             if any(not 0 <= row < len(getattr(self, kind)) for kind, row in travel.moved_rows):
                 raise ValueError(f"travel {number} must move rows of the system")

@@ -118,11 +118,6 @@ class RowTable:
         pieces = [cubic * lengths**power for power, cubic in enumerate(powers)]
         return cls(knots, np.ascontiguousarray(np.stack(pieces, axis=1)))
 
-    @property
-    def num_modes(self) -> int:
-        """The number of modal coordinates."""
-        return self.coefficients.shape[3]
-
     def transform(self, shapes: Array) -> RowTable:
         """Return the table in other coordinates b, with a = Φ b and Φ (num_modes, num_others)."""
         return replace(self, coefficients=self.coefficients @ shapes)
@@ -155,11 +150,6 @@ class MovingAxialForce:
     def transform(self, shapes: Array) -> MovingAxialForce:
         """Return the force in other coordinates, as :meth:`RowTable.transform`."""
         return replace(self, table=self.table.transform(shapes))
-
-    @property
-    def planes(self) -> int:
-        """The number of planes of bending."""
-        return self.table.coefficients.shape[2]
 
     @cached_property
     def slopes(self) -> Array:

@@ -178,11 +178,6 @@ class Pad:
         return replace(self, intervals=(inner, outer), travel=(on_inner, on_outer))
 
     @property
-    def slide_x(self) -> float:
-        """The x in m at which the sliding distance is measured."""
-        return self.midpoint if self.joint.lateral_play is None else self.x
-
-    @property
     def area_centres(self) -> tuple[Offset, Offset]:
         """The patch centres (y, z) in m on inner and outer segment, from the segment's axis."""
         step = (self.across, 0.0) if self.direction == "z" else (0.0, self.across)
@@ -320,7 +315,6 @@ def stop_patches(boom: Boom) -> list[StopPatch]:
     patches = []
     for station, stop in boom.numbered_stops:
         segment = boom.segments[stop.segment]
-        assert segment.section is not None
         extended = reach(drives_of(boom.joints, stop.segment))
         length = stop.contact_length or min(
             _OF_HEIGHT * segment.section_at(stop.x).size("z"), segment.length

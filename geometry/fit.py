@@ -24,50 +24,42 @@ _WHERE: Mapping[tuple[Direction, Side], str] = {
 }
 
 
-def check_room(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
+def check_room(
+    where: str, joint: Joint, outer: Segment, inner: Segment, extension: float | None = None
+) -> None:
     """Check that the inner segment of a joint fits with its play, if both sections are given.
 
+    Args:
+        where: the joint, or the drive with the ``extension`` in m, for messages.
+
     Raises:
-        BoomError: the segment does not fit; the message begins with the joint ``where``.
+        BoomError: the segment does not fit.
     """
     if outer.section is None or inner.section is None:
         return
     near = SAME_PLACE * outer.length
-    height, width = room(joint, outer, inner)
+    height, width = room(joint, outer, inner, extension or 0.0)
     if height < joint.play - near or width < 0.0:
+        if extension is not None:
+            raise BoomError(
+                where,
+                f"moves {inner.name!r} by {extension:g} m to where it does not fit in "
+                f"{outer.name!r}: {height:.6g} m of height and {width:.6g} m of width are free "
+                f"there, and a play of {joint.play:.6g} m is asked for; make the travel or the "
+                "taper smaller",
+            )
         raise BoomError(
             f"{where}.play",
             f"{inner.name!r} does not fit in {outer.name!r}: {height:.6g} m of height and "
             f"{width:.6g} m of width are free, and a play of {joint.play:.6g} m is "
             "asked for; make the inner section or the play smaller",
         )
-    if joint.lateral_play is not None and width < joint.lateral_play - near:
+    if extension is None and width < (joint.lateral_play or 0.0) - near:
         raise BoomError(
             f"{where}.lateral_play",
             f"{inner.name!r} does not fit in {outer.name!r}: {width:.6g} m of width are free, and "
             f"a lateral play of {joint.lateral_play:.6g} m is asked for; make the inner "
             "section or the lateral play smaller",
-        )
-
-
-def check_room_at_extension(
-    where: str, joint: Joint, outer: Segment, inner: Segment, extension: float
-) -> None:
-    """Check that the inner segment of a flat joint fits with its play at an extension in m.
-
-    Raises:
-        BoomError: the segment does not fit; the message begins with the drive ``where``.
-    """
-    if outer.section is None or inner.section is None:
-        return
-    near = SAME_PLACE * outer.length
-    height, width = room(joint, outer, inner, extension)
-    if height < joint.play - near or width < 0.0:
-        raise BoomError(
-            where,
-            f"moves {inner.name!r} by {extension:g} m to where it does not fit in {outer.name!r}: "
-            f"{height:.6g} m of height and {width:.6g} m of width are free there, and a play of "
-            f"{joint.play:.6g} m is asked for; make the travel or the taper smaller",
         )
 
 
@@ -152,7 +144,13 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
         if joint.pads and not pads and direction in boom.directions:
             raise BoomError(f"{where}.pads", f"none is {side}; give each side one at least")
         for one, other in combinations(pads, 2):
-            _check_apart(f"{where}.pads", one, other)
+            near, far = sorted((one, other), key=lambda pad: pad.offset)
+            if far.offset < near.offset + near.width:
+                raise BoomError(
+                    f"{where}.pads",
+                    f"two lie on one another {side}, {far.offset:g} m from the corner; give the "
+                    f"outer one a width of at most {far.offset - near.offset:g} m",
+                )
 
 
 def check_pads_in_travel(where: str, joint: Joint, boom: Boom) -> None:
@@ -187,16 +185,6 @@ def check_pads_in_travel(where: str, joint: Joint, boom: Boom) -> None:
                         f"the pad at {x:g} m leaves {slides.name!r} as {inner.name!r} telescopes "
                         f"by {extension:g} m; make it shorter, or move the station",
                     )
-
-
-def _check_apart(where: str, one: SlidePad, other: SlidePad) -> None:
-    near, far = sorted((one, other), key=lambda pad: pad.offset)
-    if far.offset < near.offset + near.width:
-        raise BoomError(
-            where,
-            f"two lie on one another {one.side}, {far.offset:g} m from the corner; give the outer "
-            f"one a width of at most {far.offset - near.offset:g} m",
-        )
 
 
 def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:

@@ -157,7 +157,6 @@ def diaphragm_breaks(segment: Segment) -> dict[str, float]:
 
 def strip_lines(segment: Segment) -> dict[int, list[float]]:
     """Return the distances in m of collar edges from a plate's midpoint, by the plate's index."""
-    assert segment.section is not None
     lines: dict[int, list[float]] = {}
     for strip in (one for collar in segment.collars for one in collar.strips(segment.widest)):
         half = 0.5 * segment.widest.plates[strip.wall].length

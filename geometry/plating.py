@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Array, Indices
+from geometry.arrays import Array
 from geometry.mesh import SegmentMesh
 from geometry.section import Section
 from geometry.segment import Segment
@@ -105,7 +105,12 @@ def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
         segment: tapered segment.
         mesh: mesh of the prismatic segment with the section ``segment.widest``.
     """
-    number, first, last = _in_fan(segment.widest, mesh.points[:, 1:])
+    # Triangle of each point, and two barycentric coordinates.
+    starts, middle = _fan(segment.widest)
+    sides = np.stack([starts, np.roll(starts, -1, axis=0)], axis=2) - middle[:, None]
+    parts = np.einsum("kij,nj->nki", np.linalg.inv(sides), mesh.points[:, 1:] - middle)
+    number = parts.min(axis=2).argmax(axis=1)
+    first, last = parts[np.arange(len(parts)), number].T
     points = mesh.points.copy()
     near = _ROUND_OFF * float(np.ptp(points[:, 0]))
     places, at = np.unique(np.round(points[:, 0] / near), return_inverse=True)
@@ -123,13 +128,3 @@ def tapered_mesh(segment: Segment, mesh: PlatedMesh) -> PlatedMesh:
 def _fan(section: Section) -> tuple[Array, Array]:
     """Return the starts (num_plates, 2) of the plates and the centre (2,) of a section in m."""
     return np.array([plate.start for plate in section.plates]), np.mean(section.bounds, axis=0)
-
-
-def _in_fan(section: Section, places: Array) -> tuple[Indices, Array, Array]:
-    """Return the triangle (num_places,) of each place, and two barycentric coordinates."""
-    starts, middle = _fan(section)
-    arms = np.stack([starts, np.roll(starts, -1, axis=0)], axis=2) - middle[:, None]
-    parts = np.einsum("kij,nj->nki", np.linalg.inv(arms), places - middle)
-    number = parts.min(axis=2).argmax(axis=1)
-    first, last = parts[np.arange(len(places)), number].T
-    return number, first, last

@@ -68,11 +68,6 @@ class Support:
         """Return whether the slope of the deflection along y or z is fixed."""
         return self.kind == "clamped" or (self.kind == "hinged" and direction == "y")
 
-    @property
-    def clamped(self) -> bool:
-        """True if both slopes are fixed."""
-        return self.kind == "clamped"
-
     def turned(self) -> Support:
         """Return the support for a segment with y and z exchanged."""
         return replace(self, kind="clamped") if self.kind == "hinged" else self
@@ -86,13 +81,13 @@ def check_support(where: str, support: Support) -> None:
     """
     at = f"at {support.x:g} m"
     if support.stiffness is not None and support.kind != "pinned":
-        hold = "clamped support" if support.clamped else "hinge"
+        hold = "clamped support" if support.kind == "clamped" else "hinge"
         raise BoomError(
             where,
             f"a {hold} is rigid, and the one {at} has a stiffness; leave it out, or make the "
             "support pinned",
         )
-    if support.rotation_stiffness is not None and support.clamped:
+    if support.rotation_stiffness is not None and support.kind == "clamped":
         raise BoomError(
             where,
             f"a clamped support holds the slope, and the one {at} has a rotation_stiffness; leave "

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from geometry.fields import BoomError
-from geometry.fit import check_pads_in_travel, check_room_at_extension
+from geometry.fit import check_pads_in_travel, check_room
 from geometry.joint import Drive, Joint
 from geometry.segment import SAME_PLACE, Segment
 
@@ -186,7 +186,7 @@ def _check_travel(where: str, joint: Joint, outer: Segment, inner: Segment) -> N
                 f"stations pass one another as {inner.name!r} telescopes by {extension:g} m; "
                 "make the travel shorter, or move them",
             )
-        check_room_at_extension(where, joint, outer, inner, extension)
+        check_room(where, joint, outer, inner, extension)
 
 
 def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:

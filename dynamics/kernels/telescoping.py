@@ -93,7 +93,7 @@ def moving_axial_forces(system: GapSystem) -> AxialForces:
         (k, one, plane)
         for k, one in forces
         if isinstance(one, MovingAxialForce)
-        for plane in range(one.planes)
+        for plane in range(one.table.coefficients.shape[2])
     ]
     changing = [(k, one) for k, one in forces if isinstance(one, ChangingAxialForce)]
     reach = [np.abs(one.slopes[:, :, plane]).max(axis=(0, 1)) for _, one, plane in every]

@@ -172,7 +172,7 @@ def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
                 f"cylinder[{number}].segment: {segment.name!r} slides in another segment; a "
                 f"luffing cylinder usually holds {boom.segments[0].name!r}"
             )
-        elif any(support.clamped for support in segment.supports):
+        elif any(support.kind == "clamped" for support in segment.supports):
             yield (
                 f"cylinder[{number}]: {segment.name!r} has a clamped support, beside which a "
                 "cylinder carries little; a foot is usually hinged"

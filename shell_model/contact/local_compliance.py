@@ -76,16 +76,6 @@ def local_compliance(
     return local
 
 
-def extrapolated_error(fine: Array, coarse: Array, order: float) -> Array:
-    """Return the relative discretisation error of ``fine`` by extrapolation (Richardson 1911).
-
-    Args:
-        fine, coarse: values of the mesh, and of a mesh with edges of twice the length.
-        order: order of convergence of the values.
-    """
-    return np.asarray(np.abs(1.0 - coarse / fine) / (2.0**order - 1.0))
-
-
 def _opposite(
     laws: Sequence[ContactLaw], station_of_row: Sequence[int]
 ) -> Iterator[tuple[int, int]]:

@@ -15,6 +15,7 @@ from scipy.linalg import eigh
 from dynamics.failure import NumericsError
 from geometry.arrays import Array, Mask
 from geometry.probe_responses import PROBE_FREQUENCY
+from shell_model.reduction.symmetry import Job, SymmetryCell
 from shell_model.segment.shell import Shell
 from shell_model.segment.solver import ShiftedSolver, times
 
@@ -92,34 +93,30 @@ class ClassCoordinates(Coordinates):
 
 
 def reduce_class(
-    shell: Shell,
-    inputs: Array,
-    outputs: Array,
-    probes: Array,
+    cell: SymmetryCell,
+    job: Job,
     options: KrylovOptions,
-    progress: Callable[[float], None],
+    progress: Callable[[float], None] = lambda _: None,
 ) -> ClassCoordinates:
-    """Return the coordinates of a reduced shell that is stored on this rank only.
+    """Return the coordinates of a reduced symmetry class on the rank that computes it.
 
     Args:
-        inputs: load vectors (num_rows, num_inputs); they may be zero or dependent.
-        outputs: rows (num_rows, num_outputs) of outputs.
-        probes: load vectors (num_rows, num_probes) of probes.
-        options: options; ``most`` is for this shell.
+        cell, job: the cell of the segment, and the data of the class.
+        options: options; ``most`` is for this class.
         progress: callback that receives the completed fraction, 0 to 1.
 
     Raises:
         NumericsError: a compliance is not finite, or the tolerance is not met.
     """
-    inputs = inputs * shell.free[:, None]
-    forces = _independent(inputs)
-    rows = outputs * shell.free[:, None]
-    rows = rows[:, rows.any(axis=0)]
+    shell = job.shell(cell)
+    inputs, rows, probes = (
+        columns * shell.free[:, None] for columns in (job.forces, job.outputs, job.probes)
+    )
+    forces, rows = _independent(inputs), rows[:, rows.any(axis=0)]
     order, tests = list(options.order), options.tests
     stages = len(order) + len(tests)
     basis = _Basis(shell, forces, options.most)
     solve = ShiftedSolver(shell, PROBE_FREQUENCY)
-    probes = probes * shell.free[:, None]
     probe_compliance = probes.T @ solve(probes)
     if options.tolerance is not None:
         full = [_FullResponse.at(frequency, solve, forces, rows) for frequency in tests]

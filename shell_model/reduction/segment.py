@@ -25,7 +25,7 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array
 from shell_model.reduction.krylov import ClassCoordinates, Coordinates, KrylovOptions, reduce_class
 from shell_model.reduction.mirror import SymmetryClass
-from shell_model.reduction.symmetry import Job, SymmetryCell, SymmetryReduction, share_jobs
+from shell_model.reduction.symmetry import Job, SymmetryReduction, share_jobs
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +83,7 @@ def reduce_segments(
 
     def reduce_here(number: int, job: Job) -> ClassCoordinates:
         done = mine.index(number)
-        return _reduce_job(
+        return reduce_class(
             owners[number].symmetry.cell,
             job,
             class_options[number],
@@ -92,7 +92,7 @@ def reduce_segments(
 
     def reduce_there(number: int, job: Job) -> Future[ClassCoordinates]:
         assert helper is not None
-        return helper.submit(_reduce_job, owners[number].symmetry.cell, job, class_options[number])
+        return helper.submit(reduce_class, owners[number].symmetry.cell, job, class_options[number])
 
     every = [job for some in jobs for job in some]
     results = share_jobs(comm, every, reduce_here, reduce_there if helper else None)
@@ -141,12 +141,3 @@ def _join(
         geometric=block_diag(*(part.geometric for part in parts))[np.ix_(order, order)],
         probe_compliance=np.sum([part.probe_compliance for part in parts], axis=0),
     )
-
-
-def _reduce_job(
-    cell: SymmetryCell,
-    job: Job,
-    options: KrylovOptions,
-    progress: Callable[[float], None] = lambda _: None,
-) -> ClassCoordinates:
-    return reduce_class(job.shell(cell), job.forces, job.outputs, job.probes, options, progress)

@@ -54,8 +54,24 @@ class Attachments(NamedTuple):
 
     def add_to(self, comm: MPI.Comm, matrix: PETSc.Mat) -> None:
         """Add factor · r rᵀ for each row r to a matrix that is distributed by rows. Collective."""
-        for row, factor in zip(self.rows.T, self.factors, strict=True):
-            _add_outer_product(comm, matrix, row, float(factor))
+        first, _ = matrix.getOwnershipRange()
+        for local, factor in zip(self.rows.T, self.factors.tolist(), strict=True):
+            mine = np.flatnonzero(local)
+            columns = np.concatenate(comm.allgather(mine + first))
+            values = np.concatenate(comm.allgather(local[mine]))
+            counts = np.zeros(local.size + 1, dtype=PETSc.IntType)
+            counts[mine + 1] = columns.size
+            product = PETSc.Mat().createAIJ(
+                matrix.getSizes(),
+                csr=(
+                    np.cumsum(counts, dtype=PETSc.IntType),
+                    np.tile(columns, mine.size).astype(PETSc.IntType),
+                    factor * np.outer(local[mine], values).ravel(),
+                ),
+                comm=comm,
+            )
+            matrix.axpy(1.0, product, structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
+            product.destroy()
 
 
 def springs(segment: Segment) -> Iterator[tuple[float, Callable[[SectionNodes], Row], float]]:
@@ -73,7 +89,7 @@ def springs(segment: Segment) -> Iterator[tuple[float, Callable[[SectionNodes], 
             yield support.x, SectionNodes.twist, RIGID_TURN * torsion / segment.length
         for direction, stiffness in bending.items():
             turn = partial(SectionNodes.rotation, direction=direction)
-            if support.holds_slope(direction) and not support.clamped:
+            if support.holds_slope(direction) and support.kind != "clamped":
                 yield support.x, turn, RIGID_TURN * stiffness / segment.length
             elif support.rotation_stiffness is not None:
                 yield support.x, turn, support.rotation_stiffness
@@ -85,26 +101,6 @@ def masses(segment: Segment) -> Iterator[tuple[float, Callable[[SectionNodes], R
         yield mass.x, partial(SectionNodes.mean_displacement, component=0), mass.mass
         yield mass.x, partial(SectionNodes.wall_deflection, direction="y"), mass.mass
         yield mass.x, partial(SectionNodes.wall_deflection, direction="z"), mass.mass
-
-
-def _add_outer_product(comm: MPI.Comm, matrix: PETSc.Mat, local: Array, factor: float) -> None:
-    first, _ = matrix.getOwnershipRange()
-    mine = np.flatnonzero(local)
-    columns = np.concatenate(comm.allgather(mine + first))
-    values = np.concatenate(comm.allgather(local[mine]))
-    counts = np.zeros(local.size + 1, dtype=PETSc.IntType)
-    counts[mine + 1] = columns.size
-    product = PETSc.Mat().createAIJ(
-        matrix.getSizes(),
-        csr=(
-            np.cumsum(counts, dtype=PETSc.IntType),
-            np.tile(columns, mine.size).astype(PETSc.IntType),
-            factor * np.outer(local[mine], values).ravel(),
-        ),
-        comm=comm,
-    )
-    matrix.axpy(1.0, product, structure=PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
-    product.destroy()
 
 
 @dataclass(frozen=True)
@@ -291,6 +287,7 @@ def _rigid_supports(segment: Segment) -> Iterator[_Condition]:
         if support.stiffness is not None:
             continue
         outline = partial(on_outline, section=segment.section_at(support.x), x=support.x)
-        for part in (0, 1) if support.clamped else (0,):
-            for component in (0, 1, 2) if support.clamped else COMPONENT.values():
+        clamped = support.kind == "clamped"
+        for part in (0, 1) if clamped else (0,):
+            for component in (0, 1, 2) if clamped else COMPONENT.values():
                 yield part, component, outline
