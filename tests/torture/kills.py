@@ -166,9 +166,22 @@ def _start(
 
 
 def _kill(process: subprocess.Popen[bytes]) -> None:
-    """Kill the session of a process, in every process group, until none is left."""
-    kill = "pkill", "-KILL", "-s", str(process.pid)
-    while subprocess.run(kill, check=False).returncode == 0:
+    """Kill all processes of the session of a process, in every process group."""
+    while sessions := _of_session(process.pid):
+        for pid in sessions:
+            with suppress(ProcessLookupError):
+                os.kill(pid, signal.SIGKILL)
         process.poll()
         time.sleep(0.01)
     process.wait()
+
+
+def _of_session(session: int) -> list[int]:
+    """Return the living processes of a session."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            state, _, _, its_session, *_ = path.read_text().rpartition(")")[2].split()
+            if int(its_session) == session and state != "Z":
+                found.append(int(path.parent.name))
+    return found

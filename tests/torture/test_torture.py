@@ -3,7 +3,6 @@
 
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from shutil import which
 
 import pytest
 
@@ -14,7 +13,6 @@ from tests.torture.shared_cache import Row
 
 pytestmark = pytest.mark.slow
 
-PKILL = pytest.mark.skipif(which("pkill") is None, reason="sessions are killed by procps' pkill")
 BEAM = "--models", "beam-fe-bonded"
 
 
@@ -23,9 +21,7 @@ BEAM = "--models", "beam-fe-bonded"
     [
         pytest.param(lambda folder: flipped_bits.rows(folder, 3), 2, id="flipped bits"),
         pytest.param(lambda folder: full_disk.rows(folder, 2), 6, id="full disk"),
-        pytest.param(
-            lambda folder: kills.killed(folder, 1, kills.COMMANDS[:2]), 2, id="killed", marks=PKILL
-        ),
+        pytest.param(lambda folder: kills.killed(folder, 1, kills.COMMANDS[:2]), 2, id="killed"),
         pytest.param(lambda folder: [shared_cache.one_folder(folder, 1, BEAM)], 1, id="one folder"),
     ],
 )
