@@ -95,10 +95,8 @@ def beam_results(
 
     The static results come first, then a preview of the motion, then the motion with error control.
 
-    Args:
-        checked: the checked case with one beam.
-        draft: draft of the case, whose shells may calibrate the beam.
-        check_current: function that ends an outdated computation by raising an error.
+    Shells of the draft may calibrate the beam. ``check_current`` raises an error to end an outdated
+    computation.
 
     Raises:
         NumericsError: the beam has no equilibrium, or its motion cannot be computed.
@@ -215,12 +213,8 @@ def build_beam(
 ) -> tuple[CheckedCase, BuiltModel, str]:
     """Return the case, its built beam, and a text that says how its stiffness is determined.
 
-    If the cache has a shell of the same geometry, the beam is calibrated by it.
-
-    Args:
-        checked: the checked case.
-        original: case of the file, whose shell may be in the cache.
-        shells: shells that may calibrate the beam.
+    If the cache has one of the shells with the geometry of the case or of the ``original``, the
+    case of the file, the beam is calibrated by it.
     """
     case, boom, (model,) = checked.case, checked.boom, checked.case.models
     with_loads = case.model_copy(update={name: getattr(original, name) for name in _LOADS})
@@ -268,13 +262,7 @@ def _calibration(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration
 
 
 def boom_figure(case: Case, boom: Boom, rest: StaticResult) -> dict[str, Any]:
-    """Return the figure of the deflected boom at its luffing angle.
-
-    Args:
-        case: case with supports and loads.
-        boom: boom of the case.
-        rest: static results of a beam.
-    """
+    """Return the figure of the deflected boom at its luffing angle, from results of a beam."""
     visible = _SHOWN * boom.length / max(abs(rest.tip), 1e-12)
     factor = max(1.0, float(f"{min(visible, 1e6):.1g}"))
     angle = 0.0 if case.gravity is None else case.gravity.angle

@@ -16,14 +16,7 @@ from geometry.arrays import Array
 from geometry.typography import join_words
 from runs.report import theme
 from runs.report.formatting import number
-from runs.report.scene import (
-    DISPLACEMENT_DRAWN,
-    SAME_PLACE,
-    SECTION_DRAWN,
-    Instant,
-    Numbers,
-    Scene,
-)
+from runs.report.scene import DISPLACEMENT_DRAWN, SAME_PLACE, SECTION_DRAWN, Instant, Numbers, Scene
 from runs.report.sheet import MATTE, SHEET, UNLIT, Camera, Sheet, sharp_edges, stage, surface
 from runs.report.symbols import marker_style
 

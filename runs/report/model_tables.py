@@ -12,6 +12,7 @@ from geometry.boom import Boom
 from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
 from runs.pipeline.metrics import metrics
 from runs.pipeline.results import Results
+from runs.pipeline.strength import utilisation
 from runs.pipeline.summary import CalibrationCard, ModelSummary
 from runs.report.formatting import number, percent
 from runs.report.tables import Cell, Column, Table
@@ -287,10 +288,8 @@ def _largest(boom: Boom, stress: StressSummary) -> str:
 def _yield_utilisation(boom: Boom, stress: StressSummary | LargestPatch) -> str:
     """Return the utilisation of the yield strength as text; empty without a strength."""
     (segment,) = (one for one in boom.segments if one.name == stress.segment)
-    strength = segment.yield_strength
-    if strength is None:
-        return ""
-    return f" ({percent(stress.von_mises / strength)} of the yield strength)"
+    part = utilisation(segment, stress.von_mises)
+    return "" if part is None else f" ({percent(part)} of the yield strength)"
 
 
 def calibration_tables(results: Results) -> list[Table]:

@@ -14,22 +14,13 @@ from runs.pipeline.comparison import Comparison, PeakDifferences
 from runs.pipeline.low_pass import SlowPeaks
 from runs.pipeline.model_quality import SCOPES
 from runs.pipeline.results import Results
-from runs.pipeline.summary import (
-    Ensembles,
-    ModelSummary,
-    Predictability,
-    WholeRun,
-)
+from runs.pipeline.summary import Ensembles, ModelSummary, Predictability, WholeRun
 from runs.report.formatting import NONE, fixed, number, percent, scientific
 from runs.report.model_tables import horizon_column
 from runs.report.tables import Column, Table
 
 # Text in tables for each kind of limit.
-LIMITS = {
-    "physics": "the motion",
-    "step": "the step",
-    "nothing": "nothing in the run",
-}
+LIMITS = {"physics": "the motion", "step": "the step", "nothing": "nothing in the run"}
 # Number format and unit of times.
 _TIME = ".2f", "s"
 VARIED_DATA = {"load": "loads", "clearance": "clearances", "velocity": "initial velocities"}

@@ -70,16 +70,10 @@ Render = Callable[[Sequence[Scene], Path, Times], list[Path]]
 
 
 def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw a shell at given times.
+    """Draw a shell at times in s, by default at the :func:`characteristic_instants`.
 
-    Args:
-        views: scenes of its motion, see :meth:`Scene.views`.
-        folder: folder of the files ``boom-WHEN.png``, ``overlap-WHEN.png`` (from the second joint
-            on ``overlap-2-WHEN.png``), ``stress-WHEN.png``, in 3-D also ``boom-above-WHEN.png``.
-        times: times in s; unless given, from :func:`characteristic_instants`.
-
-    Returns:
-        The paths of the files.
+    The files are ``boom-WHEN.png``, ``overlap-WHEN.png`` (from the second joint on
+    ``overlap-2-WHEN.png``), ``stress-WHEN.png``, in 3-D also ``boom-above-WHEN.png``.
 
     Raises:
         ValueError: a time lies outside the run.

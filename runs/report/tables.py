@@ -132,16 +132,10 @@ class Table:
         notes: Sequence[str] = (),
         sparse: bool = False,
     ) -> Table:
-        """Return a table from rows.
+        """Return a table from rows with a cell for each column.
 
-        Args:
-            name: name of the anchor in the report.
-            title: title above the table.
-            columns: title of each column, or title, number format and unit as in :class:`Column`;
-                or number formats by title.
-            rows: rows with a cell for each column.
-            notes: sentences below the table.
-            sparse: True to leave out columns without values.
+        Columns are titles, titles with number format and unit as in :class:`Column`, or number
+        formats by title. With ``sparse``, columns without values are left out.
         """
         pairs = columns.items() if isinstance(columns, Mapping) else columns
         parts = [
