@@ -261,8 +261,7 @@ def _draw_stations(panel: Panel, joint: Joint) -> None:
     color = theme.PLAY_FREE if joint.bonded else theme.INK
     bar: dict[str, Any] = {"color": color, "linewidth": 4.0, "solid_capstyle": "butt"}
     for x in joint.stations:
-        both = edges(panel.boom, inner, x), edges(panel.boom, outer, x)
-        for ends in zip(*both, strict=True):
+        for ends in zip(edges(panel.boom, inner, x), edges(panel.boom, outer, x), strict=True):
             panel.line([(x, z) for z in ends], **bar)
     touching = "slide pads" if joint.padded else "contact stations"
     panel.meanings["bonded joint" if joint.bonded else touching] = Line2D([], [], **bar)

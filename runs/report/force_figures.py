@@ -38,7 +38,7 @@ LOG_MARGIN = 1.2
 
 def first_contacts(run: FigureContext) -> list[Figure]:
     """Draw the mean contact force at each station during the first contacts."""
-    if not _has_contacts(run):
+    if not run.with_play or not run.data.sizes["station"]:
         return []
     end = run.first_peak_window
     in_window = run.time <= end
@@ -65,7 +65,7 @@ def first_contacts(run: FigureContext) -> list[Figure]:
 
 def contact_peaks(run: FigureContext) -> list[Figure]:
     """Draw the maximum contact force at each station in each interval of the run."""
-    if not _has_contacts(run):
+    if not run.with_play or not run.data.sizes["station"]:
         return []
     bins = np.array_split(np.arange(run.time.size), min(FORCE_BINS, run.time.size))
     middle = np.array([run.time[part].mean() for part in bins])
@@ -129,10 +129,6 @@ def running_mean(run: FigureContext, force: Array) -> Array:
     window = np.ones(width)
     counts = np.convolve(np.ones(force.size), window, mode="same")
     return np.convolve(force, window, mode="same") / counts
-
-
-def _has_contacts(run: FigureContext) -> bool:
-    return bool(run.with_play) and bool(run.data.sizes["station"])
 
 
 def _log_scale(panels: Sequence[Axes], values: Array) -> None:
