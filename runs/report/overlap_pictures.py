@@ -149,13 +149,9 @@ class OverlapView:
         between = min(self.overlap.centres), max(self.overlap.centres)
         return self.scene.relative_displacements(time, self.overlap.outer, between)
 
-    def flange(self, places: Array, segment: int, side: int) -> Array:
-        """Return points (num_points, 3) of a flange in the plane of bending, from base to tip."""
-        return places[self.scene.flange_in_plane(segment, side)]
-
     def ends(self, places: Array) -> tuple[float, float]:
         """Return the lowest and highest z in m of the outer segment's flanges at the stations."""
-        flanges = [self.flange(places, self.overlap.outer, side) for side in (-1, 1)]
+        flanges = [places[self.scene.flange_in_plane(self.overlap.outer, side)] for side in (-1, 1)]
         heights = [_point_at(line, x)[2] for line in flanges for x in self.overlap.centres]
         return min(heights), max(heights)
 
@@ -197,7 +193,7 @@ class OverlapView:
                 look = scale.look
             plotter.add_mesh(half, **(MATTE | MESHED | look))
             for side in (-1, 1):
-                cut = _band(self.flange(places, number, side), wall)
+                cut = _band(places[self.scene.flange_in_plane(number, side)], wall)
                 plotter.add_mesh(cut, color=color, **UNLIT)
                 plotter.add_mesh(sharp_edges(cut), color=theme.INK, line_width=4.0, **UNLIT)
         sheet.show(camera.render(plotter))
@@ -213,7 +209,7 @@ class OverlapView:
             if force == 0.0:
                 continue
             side = int(np.sign(force))
-            outside = _point_at(self.flange(places, self.overlap.outer, side), x)
+            outside = _point_at(places[self.scene.flange_in_plane(self.overlap.outer, side)], x)
             outside[2] += 0.5 * side * wall
             length = SHORTEST + (LONGEST - SHORTEST) * abs(force) / strongest
             text = f"{digits(1e-3 * abs(force))} kN"
