@@ -92,9 +92,8 @@ def render(
 
 def tables_by_part(results: Results) -> dict[str, list[Table]]:
     """Return the tables of each part of the report, without empty ones."""
-    first_screen = [summary_table(results), limit_table(results)]
     tables: dict[str, list[Table]] = {
-        "summary": [table for table in first_screen if table],
+        "summary": [*filter(None, (summary_table(results), limit_table(results)))],
         "results": result_tables(results),
         "predictability": predictability_tables(results),
         "compared": comparison_tables(results),

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
 from itertools import cycle
@@ -126,14 +126,6 @@ class FigureContext:
         color, linestyle = astuple(self.strokes[name])
         shown = name in self.main_models
         return Curve(self.labels[name], values, color, linestyle, shown, panel, **more)
-
-    def plot(
-        self, axes: Axes, values: Mapping[str, Array], panel: int = 0, linewidth: float = 1.5
-    ) -> list[Curve]:
-        """Draw a line over time for each model, and return the curves for the chart."""
-        for name, curve in values.items():
-            self.line(axes, name, self.time, curve, linewidth)
-        return [self.curve(name, curve, panel) for name, curve in values.items()]
 
     def over_time(
         self, panels: int, height: float, end: float | None = None, share_y: bool = False

@@ -248,7 +248,9 @@ def _draw_panels(
     curves = []
     for panel, (axes, (label, values)) in enumerate(zip(panels, quantities.items(), strict=True)):
         axes.set_ylabel(label)
-        curves += run.plot(axes, values, panel, linewidth=1.0)
+        for name, of_model in values.items():
+            run.line(axes, name, run.time, of_model, linewidth=1.0)
+            curves.append(run.curve(name, of_model, panel))
     chart = Chart(run.time, heading, curves, list(quantities))
     return run.finish(sheet, panels[0], stem, title, caption, chart=chart)
 

@@ -111,15 +111,12 @@ def horizon_column(models: list[ModelSummary], share: float, duration: float) ->
 
     A cell is ``> 10`` if the difference stays smaller during a run of 10 s.
     """
-
-    def horizon(model: ModelSummary) -> Cell:
-        if model.ensemble is None:
-            return None
-        time = model.ensemble.horizon(share)
-        return f"> {duration:g}" if time is None else time
-
-    title = f"horizon {TO_PERCENT * share:g} %"
-    return Column(title, [horizon(model) for model in models], ".2f", "s")
+    times = [None if one.ensemble is None else one.ensemble.horizon(share) for one in models]
+    cells: list[Cell] = [
+        f"> {duration:g}" if model.ensemble and time is None else time
+        for model, time in zip(models, times, strict=True)
+    ]
+    return Column(f"horizon {TO_PERCENT * share:g} %", cells, ".2f", "s")
 
 
 def step_table(results: Results) -> Table:
