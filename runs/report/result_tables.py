@@ -193,11 +193,14 @@ def times(peak: Peak) -> str:
     return "" if peak.factor is None else f" (× {number(peak.factor)})"
 
 
-# Names of support reactions.
-_REACTIONS = {
-    "reaction": "transverse reaction",
-    "reaction along the boom": "axial reaction",
-    "reaction, across and along": "foot reaction",
+# Names of results at a place.
+_NAMES = {
+    "deflection": "maximum dynamic {} deflection",
+    "deflection at rest": "static tip deflection (maximum load)",
+    "reaction": "transverse reaction, {}",
+    "reaction along the boom": "axial reaction, {}",
+    "reaction, across and along": "foot reaction, {}",
+    "stress": "bending stress, {}",
 }
 
 
@@ -210,16 +213,9 @@ def _station(place: str) -> str:
 def _named(what: str, where: str) -> str:
     if what == "contact force":
         return f"{what}, {_station(where)}"
-    if what == "deflection":
-        return f"maximum dynamic {where} deflection"
-    if what == "deflection at rest":
-        return "static tip deflection (maximum load)"
-    what = _REACTIONS.get(what, what)
-    if what == "stress":
-        return f"bending stress, {where}"
     if what == "cylinder force":
         return where.replace("_", " ").replace("-", " ")
-    return f"{what}, {where}" if where else what
+    return _NAMES.get(what, f"{what}, {{}}" if where else what).format(where)
 
 
 def drive_table(results: Results) -> Table:

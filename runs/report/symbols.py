@@ -145,10 +145,9 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
     yield from _support_symbols(boom)
     for index, segment in enumerate(boom.segments):
         segment_table = case.segments[index]
-        if segment_table.load:
-            yield _spread(boom, index, segment.ends, segment_table.load, "z", "")
-        if segment_table.lateral_load:
-            yield _spread(boom, index, segment.ends, segment_table.lateral_load, "y", "")
+        for load, direction in ((segment_table.load, "z"), (segment_table.lateral_load, "y")):
+            if load:
+                yield _spread(boom, index, segment.ends, load, direction, "")
         for one in segment_table.masses:
             yield _mass(index, at(one.x, *segment.ends), f"mass, {number(one.mass, 4)} kg")
     if case.payload is not None:
