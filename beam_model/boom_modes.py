@@ -70,9 +70,8 @@ class BoomModes:
     def __init__(self, boom: Boom, models: Sequence[SegmentModel]) -> None:
         self._models = models
         self._shapes: dict[_Part, tuple[slice, Array]] = {}
-        omega2: list[Array] = []
-        load: list[Array] = []
-        damping: list[Array] = []
+        # ω², load and damping of each group.
+        of_groups: list[tuple[Array, Array, Array]] = []
         first = 0
         for group in _coupled_groups(boom, models):
             modes = group.modes()
@@ -87,15 +86,11 @@ class BoomModes:
             parts = np.split(modes.shapes, sizes[:-1])
             for one, part in zip(group.parts, parts, strict=True):
                 self._shapes[one] = columns, part
-            omega2.append(modes.omega2)
-            load.append(np.concatenate([c.load for c in group.components]) @ modes.shapes)
+            load = np.concatenate([c.load for c in group.components]) @ modes.shapes
             rates = block_diag(*(c.damping for c in group.components))
-            damping.append(
-                np.einsum("ki,kl,li->i", modes.shapes, rates, modes.shapes, optimize=True)
-            )
-        self.omega2 = np.concatenate(omega2)
-        self.load = np.concatenate(load)
-        self.damping = np.concatenate(damping)
+            damping = np.einsum("ki,kl,li->i", modes.shapes, rates, modes.shapes, optimize=True)
+            of_groups.append((modes.omega2, load, damping))
+        self.omega2, self.load, self.damping = map(np.concatenate, zip(*of_groups, strict=True))
         self.beams = [self._beam(number) for number in range(len(boom.segments))]
 
     def displacement(

@@ -188,9 +188,8 @@ def _bending(segment: Segment, probed: ProbeResponses, motion: ProbedMotion) -> 
     """Return E J in N·m² and G A_s in N of a segment in one plane of bending."""
     assert segment.shear_stiffness is not None
     if segment.head_section is not None:
-        return segment.bending_stiffness, segment.prismatic_at(
-            0.5 * sum(segment.ends)
-        ).shear_stiffness or 0.0
+        middle = segment.prismatic_at(0.5 * sum(segment.ends))
+        return segment.bending_stiffness, middle.shear_stiffness or 0.0
     bending, shear = _fit(segment, probed, motion, 2)
     return float(bending * segment.bending_stiffness), float(shear * segment.shear_stiffness)
 

@@ -41,11 +41,11 @@ class FrameMotion:
 
     def slew_angle(self, time: Array, order: int = 0) -> Array:
         """Return ψ (…) in rad, or its derivative of the order 1 or 2, at times (…) in s."""
-        return _angle(self.slew, time, order)
+        return np.deg2rad(self.slew.rate(time, order) if order else self.slew(time))
 
     def luff_angle(self, time: Array, order: int = 0) -> Array:
         """Return α (…) in rad, or its derivative of the order 1 or 2, at times (…) in s."""
-        change = _angle(self.luff, time, order)
+        change = np.deg2rad(self.luff.rate(time, order) if order else self.luff(time))
         return change if order else np.deg2rad(self.angle) + change
 
     def position(self, time: Array, x: float, extension: MotionLaw) -> tuple[Array, Array]:
@@ -169,7 +169,3 @@ class PathAcceleration(FrameAcceleration):
         out = along * np.cos(luffed) - across * np.sin(luffed)
         first, second = (out, -aside) if self.direction == "x" else (aside, out)
         return np.asarray(first * np.cos(slewed) + second * np.sin(slewed))
-
-
-def _angle(law: MotionLaw, time: Array, order: int) -> Array:
-    return np.deg2rad(law.rate(time, order) if order else law(time))

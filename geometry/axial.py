@@ -18,7 +18,7 @@ import numpy as np
 
 from geometry.arrays import Array
 from geometry.joint import Joint, sample_times
-from geometry.load import Body
+from geometry.load import LoadedSegment
 from geometry.section import Direction
 from geometry.segment import NO_COMPRESSION, SAME_PLACE, Compression, PointMass, Segment
 from geometry.taper import mean_area
@@ -128,7 +128,7 @@ def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: in
     return segment.compression.transferred
 
 
-def pin_moments(boom: Boom, bodies: Sequence[Body]) -> Iterator[tuple[int, Array]]:
+def pin_moments(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[tuple[int, Array]]:
     """Yield (segment, load vector) of the moment of axial forces, for each pin below the axis.
 
     The pin, at the depth d, does not move. So a slope w′ at the pin moves the segment along x by

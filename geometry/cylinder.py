@@ -13,7 +13,7 @@ from pydantic.dataclasses import dataclass
 
 from geometry.arrays import Array
 from geometry.fields import PART, BoomError, In, NotNegative, Number, Place, Positive, SegmentRef
-from geometry.load import Body
+from geometry.load import LoadedSegment
 from geometry.support import Pin, Support
 
 if TYPE_CHECKING:
@@ -114,7 +114,7 @@ class Cylinder:
                 "joints lateral_play",
             )
 
-    def load_vectors(self, body: Body, foot: Support | None) -> Iterator[Array]:
+    def load_vectors(self, body: LoadedSegment, foot: Support | None) -> Iterator[Array]:
         """Yield the load vectors (num_dofs,) of one cylinder, or of two side by side.
 
         The first vector is for a cylinder force of 1 N. For two cylinders a second one follows,
@@ -171,7 +171,7 @@ def forces(boom: Boom) -> dict[str, str]:
     return observations
 
 
-def ground_lines(boom: Boom, bodies: Sequence[Body]) -> Iterator[GroundLine]:
+def ground_lines(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[GroundLine]:
     """Yield springs and dashpots of cylinders, then dashpots of supports."""
     names = iter(forces(boom))
     for one in boom.cylinders:

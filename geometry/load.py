@@ -12,8 +12,8 @@ from geometry.fields import SegmentRef
 from geometry.section import Direction
 
 
-class Body(Protocol):
-    """Segment of a model. The methods return load vectors (num_dofs,) of unit point loads.
+class LoadedSegment(Protocol):
+    """Segment of a model. The methods return load vectors (num_dofs,).
 
     The load vector of a unit force is also the row of the displacement at the point of the force.
     """
@@ -26,10 +26,6 @@ class Body(Protocol):
 
     def torque(self, x: float) -> Array:
         """Return the load vector of a torque of 1 N·m at x in m."""
-
-
-class LoadedSegment(Body, Protocol):
-    """Segment of a model. The methods return load vectors (num_dofs,) of all kinds of loads."""
 
     def uniform(self, direction: Direction, span: tuple[float, float] | None) -> Array:
         """Return the load vector of 1 N/m between the x in m of ``span``, by default everywhere."""

@@ -132,12 +132,18 @@ def check_drives(boom: Boom) -> None:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
         _check_travel(f"joints[{number}].drive", joint, outer, inner)
         check_pads_in_travel(f"joints[{number}]", joint, boom)
-        _check_taper(f"joints[{number}].drive", boom, outer, inner)
+        for segment in (outer, inner):
+            if boom.spatial and segment.head_section is not None:
+                raise BoomError(
+                    f"joints[{number}].drive",
+                    f"{segment.name!r} tapers, and in space its corners would move away from the "
+                    "pads; leave drive or head_section out",
+                )
         _check_lock(f"joints[{number}].locked_at", joint, outer, inner)
     _check_order(boom)
-    for segment in range(len(boom.segments)):
-        if drives_below(boom.joints, segment):
-            _check_unsupported(boom, segment)
+    for number in range(len(boom.segments)):
+        if drives_below(boom.joints, number):
+            _check_unsupported(boom, number)
 
 
 def _check_travel(where: str, joint: Joint, outer: Segment, inner: Segment) -> None:
@@ -213,16 +219,6 @@ def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> Non
                 where,
                 f"{x:g} m leaves the overlap as {inner.name!r} telescopes by {extension:g} m; "
                 "make the travel shorter, or move the place",
-            )
-
-
-def _check_taper(where: str, boom: Boom, outer: Segment, inner: Segment) -> None:
-    for segment in (outer, inner):
-        if boom.spatial and segment.head_section is not None:
-            raise BoomError(
-                where,
-                f"{segment.name!r} tapers, and in space its corners would move away from the pads; "
-                "leave drive or head_section out",
             )
 
 
