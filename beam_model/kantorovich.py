@@ -109,7 +109,7 @@ def kantorovich_bending(
 
     Arguments as in :func:`kantorovich_segment`.
     """
-    basis = _Basis(segment, bending_basis(segment, terms, base))
+    basis = _SegmentBasis(segment, bending_basis(segment, terms, base))
     # The basis as printed also fixes the slope at the first support.
     printed = int(bool(segment.supports) and base == "as printed")
     stiffness_weights, mass_weights, rotary_weights = (
@@ -168,7 +168,7 @@ def kantorovich_twist(segment: Segment, terms: int) -> Component:
     lateral = segment.lateral
     assert lateral is not None
     conditions = [(support.x, 0) for support in segment.supports]
-    basis = _Basis(segment, complete_basis(segment, conditions, terms))
+    basis = _SegmentBasis(segment, complete_basis(segment, conditions, terms))
     twisting_stiffness = segment.material.shear_modulus * lateral.torsion_constant
     stiffness_weights, mass_weights = (
         basis.weights * segment.property_ratio(attrgetter(f"lateral.{number}"), basis.x)
@@ -248,7 +248,7 @@ def complete_basis(
     return [Legendre(coefficients * column, domain=domain) for column in admitted.T]
 
 
-class _Basis:
+class _SegmentBasis:
     """Functions on a segment, and their values at quadrature points.
 
     Attributes:

@@ -158,7 +158,7 @@ def _geometric_stiffness(shell: Shell, forces: Array) -> PETSc.Mat:
 
 
 @dataclass(frozen=True, slots=True)
-class StaticState:
+class ShellState:
     """Static state of the shells of a boom."""
 
     #: membrane forces (num_triangles, 3) of each segment in N/m, as for :func:`buckling_modes`; the
@@ -175,7 +175,7 @@ class StaticState:
         system: GapSystem,
         position: Array,
         extensions: Mapping[int, float] = MappingProxyType({}),
-    ) -> StaticState:
+    ) -> ShellState:
         """Return the state of a reduced shell at an equilibrium, on rank 0.
 
         Args:
@@ -210,7 +210,7 @@ class SegmentBuckling:
 def buckle_segments(
     boom: Boom,
     meshes: Sequence[PlatedMesh | None],
-    state: StaticState,
+    state: ShellState,
     options: ShellOptions,
     count: int,
     comm: MPI.Comm,
@@ -250,7 +250,7 @@ def buckle_segments(
 def _modes_on(
     boom: Boom,
     meshes: Sequence[PlatedMesh | None],
-    state: StaticState,
+    state: ShellState,
     options: ShellOptions,
     count: int,
     comm: MPI.Comm,

@@ -34,7 +34,7 @@ _ANGLES = {"deg": 1.0, "°": 1.0, "rad": 180.0 / pi}
 
 
 @dataclass(frozen=True, slots=True)
-class Column:
+class FileColumn:
     """Quantity and unit that a column must contain."""
 
     name: str  #: name of the column in messages
@@ -71,7 +71,11 @@ class Pairs:
 
 
 def read_pairs(
-    path: str, key: str, file: str, names: Sequence[str] | None, columns: tuple[Column, Column]
+    path: str,
+    key: str,
+    file: str,
+    names: Sequence[str] | None,
+    columns: tuple[FileColumn, FileColumn],
 ) -> Pairs:
     """Read two columns of a CSV file.
 
@@ -130,7 +134,7 @@ class _FileError(Exception):
 
 
 @dataclass(frozen=True, slots=True)
-class _Row:
+class _FileLine:
     """Cells of a line of the file that is neither empty nor a comment."""
 
     line: int  #: line number, from 1
@@ -156,7 +160,7 @@ class _Row:
         raise _FileError(f"has no finite number in line {self.line}, column {column + 1}")
 
 
-def _rows(text: str) -> list[_Row]:
+def _rows(text: str) -> list[_FileLine]:
     """Return the cells of all lines except empty lines and comments."""
     numbered = enumerate(text.splitlines(), start=1)
     lines = [(number, line.partition("#")[0].strip()) for number, line in numbered]
@@ -169,9 +173,9 @@ def _rows(text: str) -> list[_Row]:
         # The last line decides, since a heading may have spaces between words.
         last = _SPACES.split(lines[-1][1]) if lines else []
         if separator == "," and len(last) > 1 and all(map(_is_number, last)):
-            return [_Row(number, _SPACES.split(line)) for number, line in lines]
+            return [_FileLine(number, _SPACES.split(line)) for number, line in lines]
     return [
-        _Row(number, [cell.strip() for cell in next(csv.reader([cut], delimiter=separator))])
+        _FileLine(number, [cell.strip() for cell in next(csv.reader([cut], delimiter=separator))])
         for number, line in lines
         if (cut := line.rstrip(separator))
     ]
@@ -189,7 +193,7 @@ def _is_number(cell: str) -> bool:
 
 
 def _choose_columns(
-    headings: Sequence[_Row], names: Sequence[str] | None, columns: Sequence[Column]
+    headings: Sequence[_FileLine], names: Sequence[str] | None, columns: Sequence[FileColumn]
 ) -> tuple[list[int], list[float], bool]:
     """Return indices, unit factors and ``has_unit`` (see :class:`Pairs`) of the two columns.
 

@@ -23,7 +23,7 @@ from geometry.boom import Boom, BoomError
 from geometry.fields import describe, is_number
 from geometry.typography import choices
 from runs.case.build import build_boom, check_ensemble_data, check_names
-from runs.case.columns import Column, read_pairs
+from runs.case.columns import FileColumn, read_pairs
 from runs.case.combinations import check_combinations
 from runs.case.contact import ContactTable, table_law
 from runs.case.kinds.model import ModelBoom
@@ -279,14 +279,16 @@ def _pairs_of_file(path: str, key: str, table: Any, system: System) -> dict[str,
     return changes
 
 
-def _columns(table: Any, system: System) -> tuple[Column, Column]:
+def _columns(table: Any, system: System) -> tuple[FileColumn, FileColumn]:
     if isinstance(table, HistoryTable):
         (unit,) = units_of(table, table.amount)
-        return Column("time", system.unit("s")), Column("factor", system.unit(unit), factor=True)
+        return FileColumn("time", system.unit("s")), FileColumn(
+            "factor", system.unit(unit), factor=True
+        )
     contact = isinstance(table, ContactTable)
     names = ("penetration", "force") if contact else ("time", "length")
     first, second = units_of(table, "force_table" if contact else "table")
-    return Column(names[0], system.unit(first)), Column(names[1], system.unit(second))
+    return FileColumn(names[0], system.unit(first)), FileColumn(names[1], system.unit(second))
 
 
 def _unreadable(error: Exception, text: str) -> tuple[str, str]:

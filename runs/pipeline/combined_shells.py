@@ -163,7 +163,7 @@ def _with_buckling(
 
     The governing state has the lowest buckling factor by panel formulas.
     """
-    from shell_model.buckling import StaticState
+    from shell_model.buckling import ShellState
     from shell_model.standard import with_plays_and_loads
 
     assert case.buckling is not None
@@ -181,7 +181,7 @@ def _with_buckling(
             _, governing, position = min(factors, key=lambda entry: entry[0])
             shell = with_plays_and_loads(built.shell, shared[1 + governing])
             extensions = dict.fromkeys(range(len(shared[0].joints)), 0.0)
-            state = StaticState.from_fields(built.shell.fields, shell.system, position, extensions)
+            state = ShellState.from_fields(built.shell.fields, shell.system, position, extensions)
     buckled = buckle_shell(shared[0], model, built, state, case.buckling.modes, context.comm)
     if buckled is not None:
         states[governing] = states[governing]._replace(buckling=buckled.segments)

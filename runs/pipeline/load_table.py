@@ -23,7 +23,7 @@ _CONSTANT, _ALL = "constant", "all masses"
 _AXIAL = "to the base"
 
 
-class _Row(NamedTuple):
+class _LoadRow(NamedTuple):
     """Row of a load, with its largest value in an SI unit and the time of this value in s."""
 
     key: str
@@ -52,16 +52,16 @@ def release_note(case: Case) -> str:
     return "Static results at t = 0 are those before the release." if released else ""
 
 
-def _rows(case: Case, boom: Boom) -> Iterator[_Row]:
+def _rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
     if case.gravity is not None:
         for direction, acceleration in (("z", -case.gravity.across), (_AXIAL, case.gravity.along)):
             if acceleration:
-                yield _Row("gravity", _ALL, direction, _CONSTANT, acceleration * boom.mass, "N")
+                yield _LoadRow("gravity", _ALL, direction, _CONSTANT, acceleration * boom.mass, "N")
     for i, segment in enumerate(case.segments, start=1):
         for key, direction in (("load", "z"), ("lateral_load", "y")):
             if load := getattr(segment, key):
                 key = f"segment[{i}].{key}"
-                yield _Row(key, segment.name, direction, _CONSTANT, load, "N/m")
+                yield _LoadRow(key, segment.name, direction, _CONSTANT, load, "N/m")
     for i, (table, load) in enumerate(zip(case.loads, boom.loads, strict=False), start=1):
         place = _place(boom, load, case.system)
         direction = f"{table.direction}, moment" if table.moment else table.direction
@@ -69,13 +69,13 @@ def _rows(case: Case, boom: Boom) -> Iterator[_Row]:
     if case.payload is not None and case.gravity is None and case.payload.gravity != 0.0:
         weight = boom.loads[len(case.loads)]
         place = _place(boom, weight, case.system)
-        yield _Row("payload", place, "z", _CONSTANT, weight.magnitude, "N")
+        yield _LoadRow("payload", place, "z", _CONSTANT, weight.magnitude, "N")
     for i, base in enumerate(case.base, start=1):
         yield _history_row(f"base[{i}]", _ALL, base.direction, base, case.time.duration)
     for i, thrust in enumerate(thrusts(case, boom.segments), start=1):
         name = boom.segments[thrust.segment].name
         place = f"{name} at {case.system.text(thrust.x, 'm', 5)}"
-        yield _Row(f"axial[{i}]", place, _AXIAL, _CONSTANT, thrust.force, "N")
+        yield _LoadRow(f"axial[{i}]", place, _AXIAL, _CONSTANT, thrust.force, "N")
 
 
 def _place(boom: Boom, load: Load, system: System) -> str:
@@ -88,7 +88,7 @@ def _place(boom: Boom, load: Load, system: System) -> str:
 
 def _history_row(
     key: str, place: str, direction: str, table: HistoryTable, duration: float
-) -> _Row:
+) -> _LoadRow:
     """Return the row of a load with a time history, in a run of the given duration in s."""
     unit, amplitude = table.declared_units(table.amount)[0], getattr(table, table.amount)
     history = build_history(key, table)
@@ -107,4 +107,4 @@ def _history_row(
         description = f"half sine of {table.half_sine:g} s"
     elif table.table is not None:
         description = f"{len(table.table)} values"
-    return _Row(key, place, direction, description, amplitude * float(values[step]), unit, time)
+    return _LoadRow(key, place, direction, description, amplitude * float(values[step]), unit, time)

@@ -18,7 +18,7 @@ from geometry.cylinder import forces
 from geometry.section import Direction
 from runs.pipeline.section_forces import LoadedModel, round_values
 from runs.pipeline.static_results import StaticResult, place_names
-from runs.pipeline.strength import Fibres, FibreStress, StressHistory, WallStress, largest_stresses
+from runs.pipeline.strength import Fibres, FibreStress, StressCurve, WallStress, largest_stresses
 
 # Smallest static value for which a dynamic factor is given, as a fraction of the maximum in motion.
 LEAST_STATIC = 1.0e-3
@@ -90,7 +90,7 @@ def evaluate_motion(
     positions: Array,
     rests: Sequence[StaticResult],
     jumps: bool,
-) -> tuple[MotionResult, list[StressHistory]]:
+) -> tuple[MotionResult, list[StressCurve]]:
     """Return extreme values of a motion without wall stresses, and stress histories for fatigue.
 
     The stress history of a segment belongs to the point where the stress varies most. Static states

@@ -100,7 +100,7 @@ class Life:
     life_damage: float | None
 
 
-class StressHistory(NamedTuple):
+class StressCurve(NamedTuple):
     """Stress history (num_times,) of a segment in Pa at (x, y, z) in m."""
 
     segment: str
@@ -194,7 +194,7 @@ def largest_stresses(
     curves: Mapping[Quantity, Array],
     forces_at_rest: Mapping[Quantity, Array],
     time: Array,
-) -> tuple[FibreStress, StressHistory]:
+) -> tuple[FibreStress, StressCurve]:
     """Return the largest stress of a segment, and the stress history with the largest variation.
 
     Section forces are (num_times, num_places) in motion and (num_rests, num_places) at rest.
@@ -208,7 +208,7 @@ def largest_stresses(
             largest, where = float(stress[step, place]), (fibre, int(step), int(place))
         widest = int(np.ptp(stress, axis=0).argmax())
         at = float(fibres.x[widest]), float(fibres.y[fibre, widest]), float(fibres.z[fibre, widest])
-        histories.append(StressHistory(segment.name, at, stress[:, widest].copy()))
+        histories.append(StressCurve(segment.name, at, stress[:, widest].copy()))
         at_rest.append(np.abs(fibres.stress(fibre, forces_at_rest)).max(initial=0.0))
     fibre, at_step, at_place = where
     largest_stress = FibreStress(
@@ -279,7 +279,7 @@ def endurance(sizes: Array, category: float) -> Array:
     return np.asarray(np.where(sizes >= cut_off, cycles, np.inf))
 
 
-def life(stress_history: StressHistory, table: LifeTable) -> Life:
+def life(stress_history: StressCurve, table: LifeTable) -> Life:
     """Return the fatigue damage of a segment at the fibre with the largest stress variation."""
     sizes, counts = count_stress_ranges(stress_history.stress)
     damage = None

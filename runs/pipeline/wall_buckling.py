@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from geometry.plating import PlatedMesh
-    from shell_model.buckling import SegmentBuckling, StaticState
+    from shell_model.buckling import SegmentBuckling, ShellState
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def buckle_shell(
     boom: Boom,
     model: Shell,
     built: BuiltModel,
-    state: StaticState | None,
+    state: ShellState | None,
     count: int,
     comm: MPI.Comm,
 ) -> BuckledShell | None:
@@ -83,13 +83,13 @@ def buckle_shell(
     return BuckledShell(segments, _first_shapes(results))
 
 
-def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | None:
+def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> ShellState | None:
     """Return the static state with the largest tip deflection, None without an equilibrium.
 
     In space, the tip deflection is the resultant of both directions. ``boom`` has the contacts of
     the model, and the fields of the shell are on this rank.
     """
-    from shell_model.buckling import StaticState
+    from shell_model.buckling import ShellState
 
     system, duration = built.system.gather_loads(), case.time.duration
     equilibria = positions(system, instants(system, duration))
@@ -106,7 +106,7 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> StaticState | N
     }
     assert built.shell is not None
     assert built.shell.fields is not None
-    return StaticState.from_fields(
+    return ShellState.from_fields(
         built.shell.fields, system.at_time(time), equilibria[time], extensions
     )
 

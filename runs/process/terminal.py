@@ -139,7 +139,7 @@ def display(models: Sequence[str] = ()) -> Iterator[Progress]:
     """Yield a function that displays the progress of each stage of these models on stderr."""
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield Lines(models)
+        yield ProgressLines(models)
         return
     columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     bars: dict[str, TaskID] = {}
@@ -154,7 +154,7 @@ def display(models: Sequence[str] = ()) -> Iterator[Progress]:
         yield update
 
 
-class Lines:
+class ProgressLines:
     """Progress reporter that prints lines with model, stage and time."""
 
     def __init__(

@@ -154,7 +154,7 @@ def pack_view(view: View, angle: float) -> dict[str, Any]:
     }
 
 
-class Lines(NamedTuple):
+class StyledLines(NamedTuple):
     """Lines of one style. Each vertex follows a mesh point.
 
     ``anchor`` has the point numbers, -1 for fixed vertices and for gaps. ``offset``
@@ -169,7 +169,7 @@ class Lines(NamedTuple):
 
 def symbol_lines(
     scene: Scene, rest: Array, rotation: Array, angle: float, scale: float
-) -> list[Lines]:
+) -> list[StyledLines]:
     """Return the lines of cylinders, and of symbols of supports and loads.
 
     The boom at rest has displayed points (num_points, 3) in m. The rotation matrix (3, 3) belongs
@@ -200,12 +200,12 @@ def symbol_lines(
         anchor = np.array([near, -1, -1])
         lines.setdefault((theme.INK, 8.0), []).append((anchor, np.concatenate([ends, gap])))
     return [
-        Lines(*look, *(np.concatenate(parts) for parts in zip(*several, strict=True)))
+        StyledLines(*look, *(np.concatenate(parts) for parts in zip(*several, strict=True)))
         for look, several in lines.items()
     ]
 
 
-def _figure(view: View, lines: Sequence[Lines], reach: Array) -> dict[str, Any]:
+def _figure(view: View, lines: Sequence[StyledLines], reach: Array) -> dict[str, Any]:
     """Return the figure of plotly; ``reach`` (2, 3) has the limits of all points in m."""
     from plotly.graph_objects import Figure
 

@@ -115,7 +115,7 @@ def reduce_class(
     forces, rows = _independent(inputs), rows[:, rows.any(axis=0)]
     order, tests = list(options.order), options.tests
     stages = len(order) + len(tests)
-    basis = _Basis(shell, forces, options.most)
+    basis = _KrylovBasis(shell, forces, options.most)
     solve = ShiftedSolver(shell, PROBE_FREQUENCY)
     probe_compliance = probes.T @ solve(probes)
     if options.tolerance is not None:
@@ -183,7 +183,7 @@ class _FullResponse(NamedTuple):
         )
 
 
-class _Basis:
+class _KrylovBasis:
     """M-orthonormal basis, rigid motions first, and the projected stiffness."""
 
     def __init__(self, shell: Shell, forces: Array, most: int | None) -> None:

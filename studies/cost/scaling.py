@@ -232,7 +232,7 @@ def _buckle(size: str) -> None:
 
     from geometry.boom import Boom
     from shell_model.boom_shell import ShellOptions, segment_mesh
-    from shell_model.buckling import StaticState, buckle_segments
+    from shell_model.buckling import ShellState, buckle_segments
 
     comm = MPI.COMM_WORLD
     case = case_file.load(str(CASES / SIZED["paper"]))
@@ -242,7 +242,7 @@ def _buckle(size: str) -> None:
         mesh = segment_mesh(boom, 0, options)
         x, _, z = mesh.points[mesh.triangles].mean(axis=1).T
         forces = np.outer((boom.segments[0].end - x) * z, [1.0e6, 0.0, 0.0])
-    state = StaticState([comm.bcast(forces)], np.zeros(0), {})
+    state = ShellState([comm.bcast(forces)], np.zeros(0), {})
     comm.barrier()
     start, begin = perf_counter(), process_time()
     (found,) = buckle_segments(boom, [mesh], state, options, 4, comm)

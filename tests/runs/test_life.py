@@ -7,7 +7,7 @@ import pytest
 pytest.importorskip("rainflow", reason="the cycles are counted by it")
 
 from runs.case.schema import LifeTable
-from runs.pipeline.strength import StressHistory, count_stress_ranges, endurance, life
+from runs.pipeline.strength import StressCurve, count_stress_ranges, endurance, life
 
 
 def test_cycles_are_those_of_the_standard() -> None:
@@ -29,7 +29,7 @@ def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
     time = np.linspace(0.0, 10.0, 10 * 400 + 1)
     stress = 50e6 * np.cos(2.0 * np.pi * time)
     table = LifeTable(detail_category=71.0, partial_factor=1.15, repeats=20_000)
-    found = life(StressHistory("arm", (2.0, 0.0, 0.1), stress), table)
+    found = life(StressCurve("arm", (2.0, 0.0, 0.1), stress), table)
     assert (found.segment, found.x, found.z) == ("arm", 2.0, 0.1)
     assert found.cycles == pytest.approx(10.0)
     assert found.damage == pytest.approx(10.0 / 2e6 * (115.0 / 71.0) ** 3, rel=1e-9)
@@ -38,5 +38,5 @@ def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
     assert found.counts[-1] == pytest.approx(10.0)
     assert sum(found.counts) == pytest.approx(found.cycles)
     # Without a category ranges are counted alone.
-    still = life(StressHistory("arm", (2.0, 0.0, 0.1), np.zeros(5)), LifeTable())
+    still = life(StressCurve("arm", (2.0, 0.0, 0.1), np.zeros(5)), LifeTable())
     assert (still.cycles, still.largest, still.equivalent, still.damage) == (0.0, 0.0, 0.0, None)

@@ -83,7 +83,7 @@ def test_progress_shows_stage_and_remaining_time(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr(terminal, "EVERY", every)
     said: list[str] = []
     times: list[float] = [0.0]
-    lines = terminal.Lines(["beam", "shell"], said.append, lambda: times[-1])
+    lines = terminal.ProgressLines(["beam", "shell"], said.append, lambda: times[-1])
     for now, model, stage, part in (
         (0.0, "beam", "build", 0.0),
         (0.1, "beam", "build", 1.0),

@@ -11,7 +11,7 @@ from dynamics.equilibrium import equilibrium_at
 from dynamics.failure import NumericsError
 from geometry.boom import Boom, Support
 from shell_model.boom_shell import ShellOptions
-from shell_model.buckling import SegmentBuckling, StaticState, buckle_segments, buckling_modes
+from shell_model.buckling import SegmentBuckling, ShellState, buckle_segments, buckling_modes
 from shell_model.reduced_shell import ReducedShell, reduce_boom
 from shell_model.stress.stresses import triangle_areas
 from studies.reference_models.finite_strip import Strips
@@ -115,10 +115,10 @@ def test_an_unheld_segment_is_refused() -> None:
         buckling_modes(shell, forces, 1)
 
 
-def at_rest(boom: Boom, options: ShellOptions) -> tuple[ReducedShell, StaticState]:
+def at_rest(boom: Boom, options: ShellOptions) -> tuple[ReducedShell, ShellState]:
     """Return the reduced shell of a boom and its state at rest."""
     shell = reduce_boom(boom, options, MPI.COMM_SELF)
-    return shell, StaticState.from_fields(shell.fields, shell.system, equilibrium_at(shell.system))
+    return shell, ShellState.from_fields(shell.fields, shell.system, equilibrium_at(shell.system))
 
 
 def buckled(boom: Boom, options: ShellOptions, count: int = 1) -> list[SegmentBuckling]:

@@ -12,7 +12,7 @@ from mpi4py import MPI
 from dynamics.failure import NumericsError
 from geometry.boom import Boom
 from shell_model.boom_shell import ShellOptions, assemble_boom
-from shell_model.buckling import StaticState, buckle_segments
+from shell_model.buckling import ShellState, buckle_segments
 from shell_model.reduced_shell import reduce_boom
 from shell_model.reduction.krylov import KrylovOptions
 from shell_model.reduction.symmetry import run_collectively
@@ -103,7 +103,7 @@ def buckled(comm: MPI.Comm) -> list[float]:
     along = comm.bcast(None if shell.mesh is None else shell.mesh.along)
     forces = np.outer(along - 10.0, [1.0e5, 0.0, 2.0e4])
     boom = Boom((shell.segment,), ())
-    state = StaticState([forces], np.zeros(0), {})
+    state = ShellState([forces], np.zeros(0), {})
     (found,) = buckle_segments(boom, [shell.mesh], state, ShellOptions(0.5), 2, comm)
     return [float(factor) for factor in found.factors]
 
