@@ -39,11 +39,11 @@ def draw(plot: Plot, folder: Path) -> Figure:
         sheet = Sheet(figsize=(theme.WIDTH, 4.2 + 0.16 * len(plot.curves)))
         FigureCanvasAgg(sheet)
         axes = sheet.add_subplot()
-        strokes = theme.strokes(list(plot.curves), [])
+        line_styles = theme.line_styles(list(plot.curves), [])
         for label, (x, y) in plot.curves.items():
             # Many points are drawn as a curve, few points as markers.
-            marker, stroke = "o" if len(x) <= 20 else "", strokes[label]
-            color, dashes = stroke.color, stroke.linestyle
+            marker, style = "o" if len(x) <= 20 else "", line_styles[label]
+            color, dashes = style.color, style.linestyle
             axes.plot(x, y, color, ls=dashes, marker=marker, markersize=5.0, label=label)
         axes.set(xlabel=plot.x, ylabel=plot.y)
         if plot.logarithmic:

@@ -56,7 +56,7 @@ def render(
     pictures |= {"snapshots": [*snapshots]}
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
     names = list(results.summary.models)
-    strokes = theme.strokes(names, [m.name for m in results.case.models if m.bonded])
+    line_styles = theme.line_styles(names, [m.name for m in results.case.models if m.bonded])
     return page(
         addition.template,
         [figure.path for figure in (*figures, *snapshots)],
@@ -69,7 +69,7 @@ def render(
             for kind, several in (("Table", texts), ("Figure", pictures))
             for i, thing in enumerate(chain(*several.values()), start=1)
         },
-        colors={name: strokes[name].color for name in names},
+        colors={name: line_styles[name].color for name in names},
         adds=play_effect(results),
         of=results.play.model if results.play else "",
         strength=utilisation_verdict(results),

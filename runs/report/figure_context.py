@@ -73,7 +73,7 @@ class FigureContext:
         self.models = [str(name) for name in self.data["model"].values]
         self.bonded = [model.name for model in results.case.models if model.bonded]
         self.with_play = [name for name in self.models if name not in self.bonded]
-        self.strokes = theme.strokes(self.models, self.bonded)
+        self.line_styles = theme.line_styles(self.models, self.bonded)
         self.labels = {name: name for name in self.models} | {
             model.name: f"{model.name} ({'shell' if model.meshed else 'beam'})"
             for model in results.case.models
@@ -107,13 +107,13 @@ class FigureContext:
         alone: bool = False,
     ) -> None:
         """Draw the curve of a model, without dashes if it is ``alone`` in its panel."""
-        stroke = self.strokes[name]
+        style = self.line_styles[name]
         behind = not alone and name not in self.main_models
         axes.plot(
             x,
             y,
-            color=stroke.color,
-            linestyle="-" if alone else stroke.linestyle,
+            color=style.color,
+            linestyle="-" if alone else style.linestyle,
             linewidth=BACKGROUND_WIDTH * linewidth if behind else linewidth,
             zorder=1.9 if behind else 2.0,
             marker=marker,
@@ -123,7 +123,7 @@ class FigureContext:
 
     def curve(self, name: str, values: Array, panel: int = 0, **more: Any) -> Curve:
         """Return the curve of a model for a chart, with values in the unit of the axis."""
-        color, linestyle = astuple(self.strokes[name])
+        color, linestyle = astuple(self.line_styles[name])
         shown = name in self.main_models
         return Curve(self.labels[name], values, color, linestyle, shown, panel, **more)
 

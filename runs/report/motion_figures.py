@@ -65,7 +65,7 @@ def close_up(run: FigureContext) -> list[Figure]:
     for name in run.models:
         deflection = TO_MILLI * run.result(name, place)
         run.line(axes, name, run.time[in_window], deflection[in_window])
-        color = run.strokes[name].color
+        color = run.line_styles[name].color
         contact = run.summary[name].first_contact
         if contact and contact <= end:
             contacts.append(contact)
@@ -111,7 +111,7 @@ def _head(run: FigureContext, place: str) -> Figure:
                 run.line(axes, other, run.time, curves[other], linewidth=0.9)
         run.line(axes, name, run.time, curves[name], linewidth=1.1, alone=True)
         _members(run, axes, name, place)
-        axes.set_title(name, color=run.strokes[name].color)
+        axes.set_title(name, color=run.line_styles[name].color)
     sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
     number = int(place.partition("-")[2] or 1)
     which = run.case.joints[number - 1].outer if run.case.joints else run.case.segments[0].name
@@ -158,7 +158,7 @@ def _members(run: FigureContext, axes: Axes, name: str, place: str) -> None:
     band = _band(run, name, place)
     if band is None:
         return
-    color = run.strokes[name].color
+    color = run.line_styles[name].color
     low, high = band
     shade = min(0.25, SHADE / len(run.with_play))
     axes.fill_between(run.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
@@ -218,14 +218,14 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
         return []
     sheet, (axes,) = new_sheet(1, 3.9)
     for name, peaks in peaks_of_models.items():
-        stroke = run.strokes[name]
+        style = run.line_styles[name]
         axes.errorbar(
             peaks.time,
             TO_MILLI * np.array(peaks.height),
             xerr=peaks.time_spread,
             yerr=TO_MILLI * np.array(peaks.height_spread),
-            color=stroke.color,
-            linestyle=stroke.linestyle,
+            color=style.color,
+            linestyle=style.linestyle,
             linewidth=0.7,
             elinewidth=1.6,
             marker="o",
@@ -255,7 +255,7 @@ def horizons(run: FigureContext) -> list[Figure]:
     sheet, (axes,) = new_sheet(1, 3.9)
     shares: dict[float, str] = {}
     for name, horizons_of_model in measured.items():
-        color = run.strokes[name].color
+        color = run.line_styles[name].color
         logs = np.log10(horizons_of_model.relatives)
         times = np.array(horizons_of_model.times, dtype=float)
         for i, (share, dashes) in enumerate(zip(horizons_of_model.shares, DASHES, strict=False)):
@@ -289,7 +289,7 @@ def energies(run: FigureContext) -> list[Figure]:
     held = {energy: columns.pop(energy) for energy in STORED}
     lost = {energy: values for energy, values in columns.items() if values.any()}
     parts = held | lost
-    color = run.strokes[name].color
+    color = run.line_styles[name].color
     tints = [theme.tint(color, strength) for strength in STORED.values()]
     tints += [theme.tint(theme.LOSS, strength) for strength in DISSIPATED[: len(lost)]]
     sheet, (axes,) = run.over_time(1, 3.9)

@@ -50,7 +50,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
     curves = [
         curve
         for name, rest in rests.items()
-        for curve in rest_curves(rest, name, run.strokes[name].color)
+        for curve in rest_curves(rest, name, run.line_styles[name].color)
     ]
     # The boom without play has no static state at the end of telescoping.
     bonded = [
@@ -80,7 +80,7 @@ def at_rest(run: FigureContext) -> list[Figure]:
 def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the envelopes of the section forces in motion."""
     curves = [
-        _curve(what, name, envelope.x, side[what], run.strokes[name].color)
+        _curve(what, name, envelope.x, side[what], run.line_styles[name].color)
         for name, design in _main_designs(run)
         if design.motion is not None
         for envelope in design.motion.envelopes

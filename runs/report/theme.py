@@ -97,19 +97,19 @@ def tint(color: str, strength: float) -> tuple[float, float, float]:
 
 
 @dataclass(frozen=True, slots=True)
-class Stroke:
+class LineStyle:
     """Colour and dash pattern of one model's lines."""
 
     color: str
     linestyle: str = "-"
 
 
-def strokes(models: Sequence[str], bonded: Sequence[str]) -> dict[str, Stroke]:
+def line_styles(models: Sequence[str], bonded: Sequence[str]) -> dict[str, LineStyle]:
     """Return colour and dashes of each model, the same in all figures.
 
     Names are in the order of the case. The curves of ``bonded`` models, without play, are grey and
     dashed.
     """
     # If the palette is too short, its colours are repeated with dashes.
-    looks = cycle(Stroke(color, dashes) for dashes in ("-", "-.", ":") for color in PALETTE)
-    return {name: Stroke(PLAY_FREE, "--") if name in bonded else next(looks) for name in models}
+    looks = cycle(LineStyle(color, dashes) for dashes in ("-", "-.", ":") for color in PALETTE)
+    return {name: LineStyle(PLAY_FREE, "--") if name in bonded else next(looks) for name in models}

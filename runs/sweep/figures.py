@@ -69,7 +69,7 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
     """
     data = in_display_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
-    strokes = _strokes(data, bonded)
+    line_styles = _line_styles(data, bonded)
     with matplotlib.rc_context(theme.RC):
         if len(keys) == 2:
             for quantity in _varying_quantities(data):
@@ -79,7 +79,7 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
             part = data.sel(selection)
             # Nothing to draw if all points failed.
             if changing := _varying_quantities(part):
-                sheet, panels = _lines(data[keys[0]], _model_lines(part, changing, strokes))
+                sheet, panels = _lines(data[keys[0]], _model_lines(part, changing, line_styles))
                 for axes, quantity in zip(panels, changing, strict=True):
                     axes.set_yscale("log" if quantity.logarithmic else "linear")
                     if (permitted := _permitted(part, quantity)) is not None:
@@ -89,7 +89,7 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
                 name = f"sweep-lines-{count}.png" if selection else "sweep-lines.png"
                 _finish(sheet, f"Sweep over {_quantity(keys[0])}{where}", folder / name)
         if len(keys) == 1:
-            draw_vibration(data, strokes, folder / "sweep-residual-vibration.png")
+            draw_vibration(data, line_styles, folder / "sweep-residual-vibration.png")
 
 
 def _permitted(data: xr.Dataset, quantity: Metric) -> float | None:
@@ -136,12 +136,12 @@ def draw_frequencies(data: xr.Dataset, path: Path) -> None:
     """Draw frequencies over one varied key, a panel for each mode."""
     data = in_display_units(data)
     (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
-    colors = {name: one.color for name, one in _strokes(data, ()).items()}
+    colors = {name: one.color for name, one in _line_styles(data, ()).items()}
     lines_of_modes = {
         f"mode {mode} (Hz)": {
             f"{name}, joints {joints}": (
                 data["frequency"].sel(model=name, joints=joints, mode=mode).values,
-                theme.Stroke(color, dashes),
+                theme.LineStyle(color, dashes),
             )
             for name, color in colors.items()
             for joints, dashes in (("in contact", "-"), ("bonded", "--"))
@@ -172,7 +172,7 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
                 _distance_maps(data, quantity, keys, reference, folder)
         elif available:
             floor = {one.name: np.maximum(data[one.name], _LEAST / one.factor) for one in available}
-            lines_of_models = _model_lines(data.assign(floor), available, _strokes(data, ()))
+            lines_of_models = _model_lines(data.assign(floor), available, _line_styles(data, ()))
             sheet, panels = _lines(data[keys[0]], lines_of_models)
             for axes in panels:
                 for level in LEVELS:
@@ -183,32 +183,32 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
             _finish(sheet, title, folder / "sweep-distances.png")
 
 
-def _strokes(data: xr.Dataset, bonded: Sequence[str]) -> dict[str, theme.Stroke]:
-    return theme.strokes([str(name) for name in data["model"].values], bonded)
+def _line_styles(data: xr.Dataset, bonded: Sequence[str]) -> dict[str, theme.LineStyle]:
+    return theme.line_styles([str(name) for name in data["model"].values], bonded)
 
 
 def _model_lines(
-    data: xr.Dataset, quantities: Sequence[Metric], strokes: Mapping[str, theme.Stroke]
-) -> dict[str, dict[str, tuple[Array, theme.Stroke]]]:
+    data: xr.Dataset, quantities: Sequence[Metric], line_styles: Mapping[str, theme.LineStyle]
+) -> dict[str, dict[str, tuple[Array, theme.LineStyle]]]:
     """Return the values and the line style of each line, by titles of quantities and by models."""
     return {
         f"{one.title} ({one.shown_unit})": {
-            name: (one.factor * data[one.name].sel(model=name).values, stroke)
-            for name, stroke in strokes.items()
+            name: (one.factor * data[one.name].sel(model=name).values, style)
+            for name, style in line_styles.items()
         }
         for one in quantities
     }
 
 
 def _lines(
-    along: xr.DataArray, lines_of_panels: Mapping[str, Mapping[str, tuple[Array, theme.Stroke]]]
+    along: xr.DataArray, lines_of_panels: Mapping[str, Mapping[str, tuple[Array, theme.LineStyle]]]
 ) -> tuple[Sheet, list[Axes]]:
     """Return a figure with a legend, and its panels of lines, one for each quantity."""
     sheet, panels = new_sheet(len(lines_of_panels), 1.2 + 1.8 * len(lines_of_panels))
     for axes, (title, lines) in zip(panels, lines_of_panels.items(), strict=True):
-        for label, (values, stroke) in lines.items():
+        for label, (values, style) in lines.items():
             (line,) = axes.plot(along.values, values, marker="o", markersize=4.0, label=label)
-            line.set(color=stroke.color, linestyle=stroke.linestyle)
+            line.set(color=style.color, linestyle=style.linestyle)
         axes.set_title(title)
     _scale_axis(panels[-1], "x", along)
     handles, labels = panels[0].get_legend_handles_labels()

@@ -96,14 +96,16 @@ def describe(name: str, curve: VibrationCurve) -> Iterator[str]:
             yield f"{name}: vibration within {level_text} up to {fastest:.3g} m/s{last}"
 
 
-def draw_vibration(data: xr.Dataset, strokes: Mapping[str, theme.Stroke], path: Path) -> None:
+def draw_vibration(
+    data: xr.Dataset, line_styles: Mapping[str, theme.LineStyle], path: Path
+) -> None:
     """Draw the residual vibration over the mean speed of the drive, if the sweep varies it."""
     curves = vibration_curves(data)
     if not curves:
         return
     sheet, (axes,) = new_sheet(1, 4.6)
     for name, one in curves.items():
-        line: dict[str, Any] = {"color": strokes[name].color, "label": f"{name}, telescoping"}
+        line: dict[str, Any] = {"color": line_styles[name].color, "label": f"{name}, telescoping"}
         axes.plot(one.speed, TO_MILLI * one.vibration, marker="o", markersize=4.0, **line)
         for end, level in one.levels.items():
             where, dashes = _ENDS[end]

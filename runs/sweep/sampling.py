@@ -170,7 +170,7 @@ def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[
 def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
     """Draw the cumulative distribution of each main result."""
     metrics = {one: None for frame in results.values() for one, _ in _main_statistics(frame)}
-    strokes = theme.strokes(list(results), [])
+    line_styles = theme.line_styles(list(results), [])
     with matplotlib.rc_context(theme.RC):
         sheet, _ = new_sheet(1, 0.9 + 1.7 * max(1, len(metrics)))
         sheet.clear()
@@ -180,7 +180,7 @@ def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
                 if one.name in frame:
                     axes.ecdf(
                         one.factor * frame[one.name].dropna(),
-                        color=strokes[model].color,
+                        color=line_styles[model].color,
                         label=model,
                     )
             axes.set(xlabel=f"{one.title} ({one.shown_unit})", ylabel="share", ylim=(0.0, 1.0))

@@ -393,11 +393,11 @@ def test_a_chart_says_how_fast_it_may_be_drawn_out(
     )
     saved: list[Sheet] = []
     monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: saved.append(sheet))
-    draw_vibration(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
+    draw_vibration(data, theme.line_styles(["beam"], ()), tmp_path / "swing.png")
     curve, *levels = saved[0].axes[0].get_lines()
     np.testing.assert_allclose(curve.get_xydata(), [[1.0, 20.0], [2.0, 50.0]])
     assert [line.get_ydata()[0] for line in levels] == [30.0, 60.0]
     # Without speeds there is no chart.
     data = swept().isel(key=[0])
-    draw_vibration(data, theme.strokes(["beam"], ()), tmp_path / "swing.png")
+    draw_vibration(data, theme.line_styles(["beam"], ()), tmp_path / "swing.png")
     assert not list(tmp_path.iterdir())

@@ -180,5 +180,5 @@ def test_colours_are_distinct() -> None:
         assert 1.05 / (luminance + 0.05) > 3.0, colour
     # More models than colours still differ.
     names = [f"model {i}" for i in range(3 * len(theme.PALETTE))]
-    drawn = theme.strokes([*names, "bonded"], ["bonded"])
+    drawn = theme.line_styles([*names, "bonded"], ["bonded"])
     assert len(set(drawn.values())) == len(names) + 1
