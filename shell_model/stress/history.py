@@ -279,7 +279,7 @@ def _patches(shell: ShellStress, band: Indices) -> Array:
     # A level wall is divided at its middle, a steep wall or a diaphragm at half its height.
     flat = np.abs(shell.outward[band, 2]) > np.sqrt(0.5)
     along = np.where(flat, *places.T)
-    lowest, highest = (np.zeros(wall.max() + 1) for _ in range(2))
+    lowest, highest = (np.full(wall.max() + 1, end) for end in (np.inf, -np.inf))
     np.minimum.at(lowest, wall, along)
     np.maximum.at(highest, wall, along)
     patch = 2 * wall + (along > 0.5 * (lowest + highest)[wall])

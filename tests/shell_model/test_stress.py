@@ -322,6 +322,22 @@ def test_bands_see_the_spot_and_patches_its_mean(shell: ShellStress) -> None:
     assert history["von_mises"].sel(place=9.0).isnull().all()
 
 
+def test_a_patch_is_half_of_a_chamfer() -> None:
+    """Reference: by hand, a triangle's share of the area of half the wall within the band."""
+    section = octagon(0.5, 0.4, chamfer=0.1, top=0.006, bottom=0.006, web=0.006)
+    mesh = mesh_segment(section, {"start": 0.0, "end": 2.0}, 0.05)
+    mesh = add_thickness(box_segment("tube", 0.0, 2.0, section), mesh)
+    x, y, z = mesh.points[mesh.triangles].mean(axis=1).T
+    # The middle of the chamfer is at y = 0.15 m and z = 0.2 m.
+    half = np.flatnonzero((np.abs(x - 1.0) <= 0.25) & (np.abs(y + z - 0.35) < 1e-9) & (z > 0.2))
+    modes = np.zeros((1, len(mesh.triangles), 6), dtype=np.float32)
+    modes[0, half[0], 3] = 8.0e6
+    shell = ShellStress.at_rest(mesh, modes)
+    patch = stress_near_places(shell, [1.0], ["tube"])["von_mises_patch"]
+    share = shell.areas[half[0]] / shell.areas[half].sum()
+    assert float(patch.max()) == pytest.approx(8.0e6 * share, rel=1e-5)
+
+
 @pytest.mark.parametrize("noise", [0.0, 1.0e-4, 1.0])
 def test_triangles_without_the_largest_stress_alone_are_left_out(
     shell: ShellStress, noise: float
