@@ -264,6 +264,7 @@ class SCurve:
         return np.asarray(self.travel * (part - np.sin(2.0 * np.pi * part) / (2.0 * np.pi)))
 
     def rate(self, time: Array, order: int) -> Array:
+        """Return the derivative of the order 1 or 2."""
         phase = 2.0 * np.pi * np.clip((np.asarray(time) - self.start) / self.duration, 0.0, 1.0)
         shape = 1.0 - np.cos(phase) if order == 1 else self.fastest * np.sin(phase)
         return np.asarray(self.travel / self.duration * shape)
@@ -370,6 +371,7 @@ class HistorySum:
         return sum((part(time) for part in self.parts), np.zeros(np.shape(time)))
 
     def rate(self, time: Array, order: int) -> Array:
+        """Return the derivative of the order 1 or 2, if the parts have one."""
         return sum((part.rate(time, order) for part in self.parts), np.zeros(np.shape(time)))
 
 

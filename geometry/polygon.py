@@ -88,18 +88,22 @@ class PolygonSection(Section):
 
     @cached_property
     def area(self) -> float:
+        """The cross-sectional area in m²."""
         return float(sum(plate.length * plate.thickness for plate in self.plates))
 
     @cached_property
     def second_moment_of_area(self) -> float:
+        """The second moment about y (bending in the plane x-z) in m⁴."""
         return float(_moments(trapezoids(self.plates))[3])
 
     @cached_property
     def lateral_second_moment_of_area(self) -> float:
+        """The second moment about z (bending in the plane x-y) in m⁴."""
         return float(_moments(trapezoids(self.plates))[2])
 
     @cached_property
     def torsion_constant(self) -> float:
+        """The torsion constant in m⁴ (Bredt 1896)."""
         around = sum(plate.length / plate.thickness for plate in self.plates)
         return 4.0 * self.enclosed_area**2 / around
 
