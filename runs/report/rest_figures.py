@@ -162,9 +162,10 @@ def _draw_panels(
 def chart_along(curves: Sequence[Curve]) -> Chart:
     """Return the chart of curves along the boom, with a panel for each quantity that is not zero.
 
-    The panel of a curve is the number of its quantity, as in :func:`rest_curves`.
+    The panel of a curve is the number of its quantity, as in :func:`rest_curves`. If all are zero,
+    the first quantity has a panel.
     """
-    kept = sorted({curve.panel for curve in curves if curve.values.any()})
+    kept = sorted({curve.panel for curve in curves if curve.values.any()}) or [0]
     shown = [
         replace(curve, panel=panel)
         for panel, number in enumerate(kept)

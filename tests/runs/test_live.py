@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
+import numpy as np
 import pytest
 
 from dynamics.equilibrium import equilibrium
@@ -95,6 +96,16 @@ def check_results(
     assert own.design.models["beam"].motion == other.design.models["beam"].motion
     assert own.pads == other.pads
     return dict(found[0]["rows"])
+
+
+def test_a_boom_without_loads_has_a_chart() -> None:
+    """Reference: theory, no load and no deflection."""
+    draft = Draft.load(str(COARSE))
+    unloaded = draft.changed({key: 0.0 for key in draft.keys if key.endswith("].load")})
+    at_rest = next(beam.beam_results(draft.beam(unloaded), draft, lambda: None))
+    curves = at_rest["forces"]["data"]
+    assert curves
+    assert not any(np.any(curve["y"]) for curve in curves)
 
 
 @pytest.mark.slow
