@@ -43,7 +43,7 @@ from shell_model import compat
 from shell_model.boom_shell import ShellOptions
 from shell_model.contact.rows import ShellContacts, ties
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.shell import RIGID_TURN, Attachments, Shell
+from shell_model.segment.shell import RIGID_TURN, Attachments, ShellMatrices
 from shell_model.stress.fields import vertex_displacements, wall_frame
 from shell_model.stress.stresses import ShellStress
 
@@ -72,7 +72,7 @@ class BucklingModes(NamedTuple):
     shapes: Array
 
 
-def buckling_modes(shell: Shell, forces: Array, count: int) -> BucklingModes:
+def buckling_modes(shell: ShellMatrices, forces: Array, count: int) -> BucklingModes:
     """Return the lowest buckling modes of a shell. Collective.
 
     Args:
@@ -136,7 +136,7 @@ def with_springs(springs: Attachments, rows: Array, stiffness: Array) -> Attachm
     return Attachments(np.hstack([springs.rows, rows]), np.append(springs.factors, stiffness))
 
 
-def _geometric_stiffness(shell: Shell, forces: Array) -> PETSc.Mat:
+def _geometric_stiffness(shell: ShellMatrices, forces: Array) -> PETSc.Mat:
     """Return −K_n (num_dofs, num_dofs) of membrane forces (num_triangles, 3). Collective."""
     domain = shell.space.mesh
     along, around, _ = wall_frame(domain)

@@ -24,7 +24,7 @@ from shell_model.contact.wall_rows import gauss
 from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass
 from shell_model.reduction.symmetry import SymmetryReduction
 from shell_model.segment.cross_section import Row, SectionNodes
-from shell_model.segment.shell import Shell
+from shell_model.segment.shell import ShellMatrices
 from shell_model.segment.solver import ShiftedSolver
 from studies.reference_models.plates import STEEL
 from studies.reference_models.shell_readings import flange_deflection
@@ -89,7 +89,9 @@ PROBES: tuple[Sequence[Probe], Sequence[Probe]] = (
 class Quarter(NamedTuple):
     """Quarter of a segment, for one symmetry class of its motions."""
 
-    model: Shell  #: a quarter of a shell or of a solid, with the energies of the whole segment
+    model: (
+        ShellMatrices  #: a quarter of a shell or of a solid, with the energies of the whole segment
+    )
     rows: Mapping[str, Array]  #: name of a probe → (num_dofs,)
 
     def measure(self) -> dict[str, float]:

@@ -16,7 +16,7 @@ from dynamics.failure import NumericsError
 from geometry.arrays import Array, Mask
 from geometry.probe_responses import PROBE_FREQUENCY
 from shell_model.reduction.symmetry import Job, SymmetryCell
-from shell_model.segment.shell import Shell
+from shell_model.segment.shell import ShellMatrices
 from shell_model.segment.solver import ShiftedSolver, times
 
 # Fraction of a vector's length below which the part beyond the basis is round-off.
@@ -186,7 +186,7 @@ class _FullResponse(NamedTuple):
 class _KrylovBasis:
     """M-orthonormal basis, rigid motions first, and the projected stiffness."""
 
-    def __init__(self, shell: Shell, forces: Array, most: int | None) -> None:
+    def __init__(self, shell: ShellMatrices, forces: Array, most: int | None) -> None:
         self._shell, self._forces = shell, forces
         rigid = _independent(shell.rigid_motions() * shell.free[:, None])
         self._most = shell.free.size if most is None else max(most, rigid.shape[1] + 1)
@@ -311,7 +311,9 @@ def _independent(block: Array) -> Array:
     return basis
 
 
-def _find_accurate(shell: Shell, omega2: Array, shapes: Array, solve: ShiftedSolver) -> Mask:
+def _find_accurate(
+    shell: ShellMatrices, omega2: Array, shapes: Array, solve: ShiftedSolver
+) -> Mask:
     """Return the mask (num_modes,) of modes with ω within 0.1 % of a natural frequency.
 
     Modes above the first inaccurate one are not tested.

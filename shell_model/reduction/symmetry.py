@@ -39,7 +39,7 @@ from shell_model.segment.segment_shell import SegmentShell
 from shell_model.segment.shell import (
     Attachments,
     Plates,
-    Shell,
+    ShellMatrices,
     assemble_plates,
     dirichlet_condition,
 )
@@ -118,7 +118,7 @@ class _FreeMatrix(NamedTuple):
 
 
 @dataclass(frozen=True)
-class _ClassShell(Shell):
+class _ClassShell(ShellMatrices):
     """Shell of a symmetry class on one rank, with the matrices of its cell.
 
     Matrices omit zeros in the sparsity pattern of their forms, since factors would store them.
@@ -156,7 +156,7 @@ class Job:
     springs: Attachments
     masses: Attachments
 
-    def shell(self, cell: SymmetryCell) -> Shell:
+    def shell(self, cell: SymmetryCell) -> ShellMatrices:
         """Return the shell of a cell in this symmetry class, with the energy of the segment."""
         conditions = [
             dirichlet_condition(cell.plates.space, kind, component, partial(on_plane, axis=axis))

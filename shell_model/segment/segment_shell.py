@@ -18,7 +18,7 @@ from shell_model import compat
 from shell_model.segment.cross_section import Row, SectionNodes
 from shell_model.segment.shell import (
     Attachments,
-    Shell,
+    ShellMatrices,
     assemble_plates,
     free_rows,
     masses,
@@ -31,7 +31,7 @@ _ROUND_OFF = 1.0e-10
 
 
 @dataclass(frozen=True)
-class SegmentShell(Shell):
+class SegmentShell(ShellMatrices):
     """Shell of one segment, and its load vectors; a :class:`geometry.load.LoadedSegment`."""
 
     segment: Segment  #: the segment

@@ -131,7 +131,7 @@ class Plates:
 
 
 @dataclass(frozen=True)
-class Shell:
+class ShellMatrices:
     """Matrices of a shell, distributed by rows and assembled on first use.
 
     Args:

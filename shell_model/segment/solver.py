@@ -8,7 +8,7 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from geometry.arrays import Array
-from shell_model.segment.shell import Shell
+from shell_model.segment.shell import ShellMatrices
 
 
 def dense(matrix: PETSc.Mat, block: Array) -> PETSc.Mat:
@@ -95,7 +95,7 @@ def squared(frequency: float) -> float:
 class ShiftedSolver:
     """Direct solver for K + σ M with the shift σ = (2π f)² of a frequency f in Hz. Collective."""
 
-    def __init__(self, shell: Shell, frequency: float) -> None:
+    def __init__(self, shell: ShellMatrices, frequency: float) -> None:
         self._mass = shell.mass
         self.sigma = squared(frequency)
         self._matrix = shell.stiffness.copy()

@@ -17,7 +17,7 @@ from geometry.plating import add_thickness
 from geometry.segment import Segment
 from shell_model.segment.cross_section import Row
 from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.shell import Shell
+from shell_model.segment.shell import ShellMatrices
 from shell_model.segment.solver import ShiftedSolver, gram
 
 # Frequency in Hz, far below all elastic modes, for the statics of a segment that can move along x.
@@ -58,7 +58,7 @@ def compliances(shell: SegmentShell, *rows: Row) -> list[float]:
     ]
 
 
-def natural_frequencies(shell: Shell, count: int) -> Array:
+def natural_frequencies(shell: ShellMatrices, count: int) -> Array:
     """Return the lowest natural frequencies (count,) in Hz, with rigid motions. Collective.
 
     The method is shift-and-invert with a negative shift σ, so that K − σ M is positive definite for

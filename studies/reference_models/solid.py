@@ -26,7 +26,7 @@ from geometry.section import BoxSection
 from shell_model import compat
 from shell_model.reduction.mirror import SymmetryClass, on_plane
 from shell_model.segment.cross_section import Row, SectionNodes
-from shell_model.segment.shell import ON_LINE, Attachments, Plates, Shell
+from shell_model.segment.shell import ON_LINE, Attachments, Plates, ShellMatrices
 
 # Length ratios of successive edges along x and around; effects decay more slowly along x.
 _GROWTH_ALONG = 3.0
@@ -122,7 +122,7 @@ class _SolidPlates(Plates):
 
 
 @dataclass(frozen=True)
-class SolidFamily(Shell):
+class SolidFamily(ShellMatrices):
     """Solid model of a quarter of a segment: stiffness and mass, on one process.
 
     Energies are those of the whole segment. A solid has no rotations.

@@ -21,7 +21,7 @@ from geometry.arrays import Array, Indices, Mask
 from geometry.boom import Material
 from shell_model import compat
 from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
-from shell_model.segment.shell import ON_LINE, Attachments, Plates, Shell
+from shell_model.segment.shell import ON_LINE, Attachments, Plates, ShellMatrices
 from shell_model.segment.solver import times
 
 # Permitted residual of a solution as a fraction of the load.
@@ -179,13 +179,13 @@ class StaticShell:
         """Return K times a solution (num_dofs,): forces in N and moments in N m."""
         return np.asarray(times(self.stiffness, solution[:, None])[:, 0])
 
-    def held(self, dofs: Held) -> Shell:
+    def held(self, dofs: Held) -> ShellMatrices:
         """Return the shell with fixed degrees of freedom, for vibration."""
         rows = np.fromiter(dofs, dtype=np.int32, count=len(dofs))
         zero = fem.Function(self._plates.space)
         conditions = [fem.dirichletbc(zero, np.sort(rows))]
         nothing = Attachments.from_rows([], [], self.num_dofs)
-        return Shell(MPI.COMM_SELF, self._plates, conditions, nothing, nothing)
+        return ShellMatrices(MPI.COMM_SELF, self._plates, conditions, nothing, nothing)
 
 
 def hold(dofs: Indices, values: float | Array = 0.0) -> dict[int, float]:
