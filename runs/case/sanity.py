@@ -10,6 +10,7 @@ import numpy as np
 
 from geometry.boom import Boom, BoomError, Segment
 from geometry.material import Material
+from geometry.section import Direction
 from runs.case.actions import STANDARD_GRAVITY
 from runs.case.contact import JointTable
 from runs.case.motion_tables import max_speed
@@ -139,8 +140,10 @@ def _section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
         where, what = f"{where}.second_moment_of_area", f"the second moment of area of {name}"
         yield UsualRange(where, what, segment.second_moment_of_area, "m^4", least, most, 25.0)
         return
-    height = max(segment.section_at(x).size("z") for x in segment.ends)
-    yield UsualRange(f"{where}.section", f"the height of {name}", height, "m", low, high, 5.0)
+    directions: tuple[tuple[Direction, str], ...] = ("z", "height"), ("y", "width")
+    for direction, side in directions:
+        size = max(segment.section_at(x).size(direction) for x in segment.ends)
+        yield UsualRange(f"{where}.section", f"the {side} of {name}", size, "m", low, high, 5.0)
     walls = [wall for x in segment.ends for wall in segment.section_at(x).plates]
     wall = min(walls, key=lambda wall: wall.thickness / wall.length)
     what = f"the thickness of the {wall.name} of {name}"

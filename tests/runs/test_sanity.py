@@ -69,6 +69,9 @@ LOAD = '{ segment = "fly", x = "head", magnitude = -1595.0, ramp = 0.1 }'
          "height = 300.0, width = 220.0, flange = 6.0, web = 5.0",
          "segment[1].section: the height of 'base' is 300 m, usual is from 0.013 up to 1.3 m; if "
          "it is in mm, give 0.3 m"),
+        ("width = 0.22", "width = 220.0",
+         "segment[1].section: the width of 'base' is 220 m, usual is from 0.013 up to 1.3 m; if "
+         "it is in mm, give 0.22 m"),
         ("flange = 0.005", "flange = 1e-9",
          "segment[2].section: the thickness of the bottom of 'fly' is 1e-09 m, usual is from "
          "0.00018 m"),
