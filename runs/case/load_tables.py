@@ -50,6 +50,12 @@ class HistoryTable(CaseTable):
     # Key of the quantity that the history multiplies.
     amount: ClassVar[str]
 
+    @property
+    def description(self) -> str:
+        """The history in words; empty if it is constant."""
+        given = ((text, getattr(self, key)) for key, (_, text) in _HISTORIES.items())
+        return next((text(value) for text, value in given if value is not None), "")
+
     @model_validator(mode="after")
     def _has_an_amount(self) -> Self:
         # A file with the unit of the quantity makes this key superfluous.
@@ -58,12 +64,14 @@ class HistoryTable(CaseTable):
         return self
 
 
-_HISTORIES: Mapping[str, Callable[[Any], History]] = {
-    "ramp": Ramp,
-    "frequency": Sine,
-    "half_sine": lambda duration: Sine(0.5 / duration, end=duration),
-    "table": lambda pairs: PiecewiseLinear(*zip(*pairs, strict=True)),
-}
+# History of each key, and the description of its value.
+_HISTORIES: Mapping[str, tuple[Callable[[Any], History], Callable[[Any], str]]] = {
+    "ramp": (Ramp, "ramp of {:g} s".format),
+    "frequency": (Sine, "sine of {:g} Hz".format),
+    "half_sine": (lambda t: Sine(0.5 / t, end=t), "half sine of {:g} s".format),
+    "table": (lambda pairs: PiecewiseLinear(*zip(*pairs, strict=True)),
+              lambda pairs: f"{len(pairs)} values"),
+}  # fmt: skip
 
 
 def build_history(where: str, table: HistoryTable) -> History:
@@ -77,7 +85,7 @@ def build_history(where: str, table: HistoryTable) -> History:
         raise BoomError(f"{where}.{given[1][0]}", f"{given[0][0]} is given; leave one of them out")
     for key, value in given:
         try:
-            return _HISTORIES[key](value)
+            return _HISTORIES[key][0](value)
         except ValueError as error:
             raise BoomError(f"{where}.{key}", str(error)) from None
     return Step()

@@ -96,15 +96,7 @@ def _history_row(
     values = history(times)
     step = int(np.abs(values).argmax())
     time = float(times[step]) if np.ptp(values) else None
-    description = _CONSTANT
+    description = table.description or _CONSTANT
     if isinstance(table, LoadTable) and table.released:
         description = "until t = 0"
-    elif table.ramp is not None:
-        description = f"ramp of {table.ramp:g} s"
-    elif table.frequency is not None:
-        description = f"sine of {table.frequency:g} Hz"
-    elif table.half_sine is not None:
-        description = f"half sine of {table.half_sine:g} s"
-    elif table.table is not None:
-        description = f"{len(table.table)} values"
     return _LoadRow(key, place, direction, description, amplitude * float(values[step]), unit, time)

@@ -371,7 +371,7 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
                 f"{where}: if {force:g} N at the tip is the weight of the payload, it acts "
                 "already; leave it out"
             )
-        elif isclose(-force, mass, rel_tol=SAME_WEIGHT):
+        elif mass and isclose(-force, mass, rel_tol=SAME_WEIGHT):
             yield (
                 f"{where}: {force:g} N at the tip is a tenth of the weight of the payload of "
                 f"{mass:g} kg; if it is in kg, give {force * STANDARD_GRAVITY:.4g} N"

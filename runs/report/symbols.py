@@ -18,7 +18,7 @@ from geometry.boom import Boom, Segment
 from geometry.fields import at
 from geometry.section import Direction
 from runs.case import actions
-from runs.case.load_tables import HistoryTable, LoadTable
+from runs.case.load_tables import LoadTable
 from runs.case.schema import Case
 from runs.report import theme
 from runs.report.formatting import number
@@ -191,7 +191,10 @@ def _mass(index: int, x: float, meaning: str) -> Symbol:
 
 def _load(table: LoadTable, boom: Boom, index: int) -> Symbol:
     ends = boom.segments[index].ends
-    how = _history(table) + (", let go" if table.released else "")
+    how = f", {table.description}" if table.description else ""
+    if table.table is not None:
+        how = " at most"
+    how += ", let go" if table.released else ""
     largest = table.magnitude * max((abs(f) for _, f in table.table or ()), default=1.0)
     if table.x is None:
         start = ends[0] if table.start is None else at(table.start, *ends)
@@ -228,13 +231,3 @@ def _force(
     sign, side = (FORCE_UP, "upper") if value > 0.0 else (FORCE_DOWN, "lower")
     meaning = f"{size} perpendicular to the boom, towards its {side} side{how}"
     return Symbol("loads", index, places, edge, sign, meaning)
-
-
-def _history(table: HistoryTable) -> str:
-    if table.ramp is not None:
-        return f", ramp of {table.ramp:g} s"
-    if table.frequency is not None:
-        return f", {table.frequency:g} Hz"
-    if table.half_sine is not None:
-        return f", half sine of {table.half_sine:g} s"
-    return " at most" if table.table is not None else ""

@@ -114,7 +114,7 @@ def test_wall_times_are_this_run_s_but_for_the_motion(monkeypatch: pytest.Monkey
         sleep(0.2 + first["build"])
         return gap_system(*arguments)
 
-    monkeypatch.setattr("beam_model.segment_model.gap_system", build)
+    monkeypatch.setattr("runs.case.kinds.model.gap_system", build)
     second = seconds()
     assert second["motion"] == first["motion"]
     assert second["build"] > 0.2 + first["build"]
