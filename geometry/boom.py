@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
-from typing import TypeVar
+from typing import TYPE_CHECKING, TypeVar
 
 from geometry.axial import AxialChange, moving_force_places
 from geometry.boom_checks import check_boom
@@ -26,7 +26,10 @@ from geometry.support import Support
 from geometry.telescoping import drives_of, reach, station_positions
 from geometry.typography import choices
 
-_Part = TypeVar("_Part")
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+_Part = TypeVar("_Part", bound="DataclassInstance")
 
 __all__ = [
     "SAME_PLACE",
@@ -266,7 +269,6 @@ def resolve_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _P
         if isinstance(name, str):
             if name not in names:
                 raise BoomError(f"{where}.{key}", f"{name!r} is no segment; give {choices(names)}")
-            # Hints cannot restrict a type variable to dataclasses, which all parts are.
-            part = replace(part, **{key: names.index(name)})  # type: ignore[type-var] # see above
+            part = replace(part, **{key: names.index(name)})
     outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
     return resolve_distances(part, segments[inner].start, segments[outer].end)

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, replace
-from typing import Annotated, Any, Literal, TypeVar, get_args
+from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import (
     BeforeValidator,
@@ -164,7 +164,10 @@ Place = Annotated[float, _AnyPlace(), In("m")]
 # Type of the segment of a part: its name, or its index if the part is in a boom.
 SegmentRef = Annotated[Any, WithJsonSchema({"type": "string"})]
 
-_Part = TypeVar("_Part")
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+_Part = TypeVar("_Part", bound="DataclassInstance")
 
 
 def at(place: float | Distance, tail: float, head: float) -> float:
@@ -179,12 +182,11 @@ def at(place: float | Distance, tail: float, head: float) -> float:
 
 def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
     """Return a part with x in m instead of distances from the ends ``tail`` and ``head`` in m."""
-    # Hints cannot restrict a type variable to dataclasses, which all parts are.
     resolved: dict[str, Any] = {}
-    for field in fields(part):  # type: ignore[arg-type] # see above
+    for field in fields(part):
         value = getattr(part, field.name)
         if isinstance(value, Distance):
             resolved[field.name] = at(value, tail, head)
         elif isinstance(value, tuple) and any(isinstance(one, Distance) for one in value):
             resolved[field.name] = tuple(at(one, tail, head) for one in value)
-    return replace(part, **resolved) if resolved else part  # type: ignore[type-var] # see above
+    return replace(part, **resolved) if resolved else part

@@ -56,8 +56,9 @@ def combined_cases(case: Case) -> Iterator[CombinedCase]:
             factors = {group: combination.factors.of(group) or 0.0 for group in UNIT}
         for one in case.load_cases or (_PLAIN,):
             if combination.load_cases is None or one.name in combination.load_cases:
-                names = [combination.name] * bool(case.combinations)
-                names += [one.name] * (one is not _PLAIN or not names)
+                names = [combination.name] if case.combinations else []
+                if one is not _PLAIN or not names:
+                    names.append(one.name)
                 yield CombinedCase(", ".join(names), combine(case, one, factors), combination)
 
 

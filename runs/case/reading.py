@@ -253,15 +253,15 @@ def _read_files(case: Case, path: str) -> Case:
 def _pairs_of_file(path: str, key: str, table: Any, system: System) -> dict[str, Any]:
     """Return the changed values of a table after reading its CSV file, if any."""
     prefix = "force_" if isinstance(table, ContactTable) else ""
-    names = file_key, columns_key, table_key = f"{prefix}file", f"{prefix}columns", f"{prefix}table"
-    file, headings, pairs = (getattr(table, name) for name in names)
+    file_key, columns_key, table_key = (prefix + key for key in ("file", "columns", "table"))
+    file, headings = getattr(table, file_key), getattr(table, columns_key)
     if file is None:
         if headings is not None:
             what = "there is no file whose columns these are; leave it out"
             raise BadInput(path, f"{key}.{columns_key}", what)
         return {}
     key_of_file = f"{key}.{file_key}"
-    if pairs is not None:
+    if getattr(table, table_key) is not None:
         raise BadInput(path, key_of_file, "table is given; leave one of them out")
     read = read_pairs(path, key_of_file, file, headings, _columns(table, system))
     changes = {file_key: None, columns_key: None, table_key: read.values}

@@ -88,7 +88,7 @@ def _s1(run: RunQuery) -> Finding:
     Measure: their largest difference over the range with five terms. Threshold: 1e-6. Until then
     the inner segment moves rigidly, and the series differ only by round-off.
     """
-    run.check_friction(False)
+    run.check_friction(present=False)
     four, five = run.four_terms(), run.five_terms()
     first = min(run.first_contact(model) for model in (four, five))
     before = run.time <= first
@@ -110,7 +110,7 @@ def _s2(run: RunQuery) -> Finding:
     confidence interval of 95 %. Threshold: 0.20, as in the statement. The run in the paper is one
     sample of these chaotic motions. The run must be as long as the paper's interval.
     """
-    run.check_friction(False)
+    run.check_friction(present=False)
     run.last_until(INTERVAL)
     four, five = run.members(run.four_terms(), run.five_terms())
     spans = final_differences(four, five, run.time >= run.time[-1] - 1.0)
@@ -138,7 +138,7 @@ def _s3(run: RunQuery) -> Finding:
     infinitely. A member without peaks in one of the two intervals does not count there. Values at
     equal times cannot be compared, since six seconds are far beyond the horizon of a single run.
     """
-    run.check_friction(False)
+    run.check_friction(present=False)
     run.last_until(CONFORMITY)
     models = run.with_play()
     curves = run.members(*models).swapaxes(0, 1)
@@ -180,7 +180,7 @@ def _s4(run: RunQuery) -> Finding:
     small change of load or step changes a peak. The statement is reproduced if every rise is
     larger, contradicted if one is below -0.5 %, and otherwise undecided.
     """
-    run.check_friction(False)
+    run.check_friction(present=False)
     models = [run.four_terms(), run.five_terms(), run.beam_elements(), run.shell()]
     peaks = [run.peak_height(model) for model in models]
     rises = [after / before - 1.0 for before, after in pairwise(peaks)]
@@ -204,7 +204,7 @@ def _s5(run: RunQuery) -> Finding:
     Measure: the smallest ratio. Threshold: 2, at which play adds as much as the whole deflection
     without play. Models with play differ by less than a tenth, and first peaks scatter by 0.5 %.
     """
-    run.check_friction(False)
+    run.check_friction(present=False)
     bonded = run.peak_height(run.bonded())
     models = [model for model in run.case.models if not model.bonded]
     if not models:
@@ -228,7 +228,7 @@ def _s6(run: RunQuery) -> Finding:
     the ranges. The statement is reproduced if the ratio is between 1/5 and 5, and the difference
     over the local range is larger at the head.
     """
-    run.check_friction(False)
+    run.check_friction(present=False)
     models = run.with_play()
     end = min(run.peak_time(model) for model in models)
     until = run.time <= end
@@ -263,7 +263,7 @@ def _s7(run: RunQuery) -> Finding:
     0.20 from the model without play, and the difference is larger at the head than at the tip. With
     friction, runs do not diverge, and one trajectory of each model is enough.
     """
-    run.check_friction(True)
+    run.check_friction(present=True)
     run.last_until(INTERVAL)
     models = run.with_play()
     within_interval = run.time <= CONFORMITY
@@ -298,7 +298,7 @@ def _s8(run: RunQuery) -> Finding:
     stable run shows that the system itself is stable. A shorter run decides nothing, since a run
     with unbounded energy has no results here.
     """
-    run.check_friction(True)
+    run.check_friction(present=True)
     model = run.beam_elements()
     run.curve(model)
     run.last_until(INTERVAL)
@@ -347,7 +347,7 @@ def _s10(run: RunQuery) -> Finding:
     ensemble, the larger number of the two series. Threshold: 2000; beam elements must need more
     than 4000. The paper's 2000 steps cover its whole interval, a longer one than the three peaks.
     """
-    run.check_friction(False)
+    run.check_friction(present=False)
     series = [run.four_terms(), run.five_terms()]
     needed = {model.name: run.fewest_steps(model) for model in (*series, run.beam_elements())}
     *of_series, of_elements = needed.values()

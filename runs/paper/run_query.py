@@ -148,7 +148,7 @@ class RunQuery:
             raise MissingData("It takes two models with play to compare.")
         return models
 
-    def check_friction(self, present: bool) -> None:
+    def check_friction(self, *, present: bool) -> None:
         """Check that the case has friction if ``present``, else that it has none."""
         if any(joint.friction > 0.0 for joint in self.case.joints) == present:
             return
