@@ -15,7 +15,7 @@ from itertools import product
 import numpy as np
 from scipy.linalg import block_diag, null_space
 
-from beam_model.component import (
+from protractile.beam_model.component import (
     BeamSegment,
     Modes,
     Motion,
@@ -23,15 +23,15 @@ from beam_model.component import (
     SegmentModel,
     natural_modes,
 )
-from dynamics.excitation import HistorySum
-from dynamics.gap_builder import GapBuilder
-from dynamics.second_order import buckling_factor, soften_modes
-from dynamics.travel import MovingAxialForce, RowTable, Travel
-from geometry.arrays import Array
-from geometry.axial import joint_thrust, largest_change, moving_force
-from geometry.boom import SAME_PLACE, Boom, Direction
-from geometry.cylinder import ground_lines
-from geometry.telescoping import (
+from protractile.dynamics.excitation import HistorySum
+from protractile.dynamics.gap_builder import GapBuilder
+from protractile.dynamics.second_order import buckling_factor, soften_modes
+from protractile.dynamics.travel import MovingAxialForce, RowTable, Travel
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import joint_thrust, largest_change, moving_force
+from protractile.geometry.boom import SAME_PLACE, Boom, Direction
+from protractile.geometry.cylinder import ground_lines
+from protractile.geometry.telescoping import (
     TelescopingStations,
     drives_below,
     reach,

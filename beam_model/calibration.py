@@ -20,14 +20,14 @@ import numpy as np
 from scipy.linalg import null_space
 from scipy.optimize import least_squares
 
-from beam_model.component import Component, SegmentModel, natural_modes
-from beam_model.finite_element import finite_element_segment
-from beam_model.segment_model import EACH_SIDE, gap_system
-from dynamics.gap_system import GapSystem
-from dynamics.reduction import with_coordinates
-from geometry.arrays import Array
-from geometry.boom import Boom, Segment
-from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
+from protractile.beam_model.component import Component, SegmentModel, natural_modes
+from protractile.beam_model.finite_element import finite_element_segment
+from protractile.beam_model.segment_model import EACH_SIDE, gap_system
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.reduction import with_coordinates
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 
 # Weight in the least squares that keeps a factor near 1 if it has no influence on the responses.
 _PRIOR = 1.0e-4

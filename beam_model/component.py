@@ -15,8 +15,8 @@ from typing import Literal, NamedTuple, Protocol
 import numpy as np
 from scipy.linalg import eigh
 
-from geometry.arrays import Array
-from geometry.section import Direction
+from protractile.geometry.arrays import Array
+from protractile.geometry.section import Direction
 
 # Motions: deflection along z or y in m, rotation about x in rad.
 Motion = Literal["z", "y", "twist"]
@@ -69,7 +69,7 @@ class Component:
         return BeamSegment(lambda motion, rule: rule(self) if motion == "z" else nothing)
 
     def uniform(self, span: tuple[float, float] | None) -> Array:
-        """Return the load vector (num_dofs,) of 1 N/m, see :class:`geometry.load.LoadedSegment`."""
+        """Return the load vector (num_dofs,) of 1 N/m, see :class:`.load.LoadedSegment`."""
         if span is None:
             return self.unit_load
         start, end = span
@@ -92,7 +92,7 @@ Rule = Callable[[Component], Array]
 
 @dataclass(frozen=True, slots=True)
 class BeamSegment:
-    """Rows and load vectors of a segment, a :class:`geometry.load.LoadedSegment`."""
+    """Rows and load vectors of a segment, a :class:`.geometry.load.LoadedSegment`."""
 
     #: function (motion, row of a component) that returns the row (num_coordinates,); the second
     #: argument is a function that returns the row of a :class:`Component`

@@ -17,9 +17,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from beam_model.component import products
-from geometry.arrays import Array
-from geometry.segment import Segment
+from protractile.beam_model.component import products
+from protractile.geometry.arrays import Array
+from protractile.geometry.segment import Segment
 
 Theory = Literal["euler-bernoulli", "timoshenko"]
 

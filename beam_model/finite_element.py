@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Beams of two-node elements, see :mod:`beam_model.elements`, in each plane of bending.
+"""Beams of two-node elements, see :mod:`.beam_model.elements`, in each plane of bending.
 
 With linear elements for twist, they are 3D frame elements without axial strain (Przemieniecki
 1968).
@@ -13,12 +13,12 @@ from operator import attrgetter
 
 import numpy as np
 
-from beam_model.component import Component, Motion, SegmentModel, products
-from beam_model.elements import GAUSS, Theory, element, quadrature
-from geometry.arrays import Array
-from geometry.boom import SAME_PLACE, Boom, BoomError, Segment
-from geometry.contact_places import load_places
-from geometry.segment import APART
+from protractile.beam_model.component import Component, Motion, SegmentModel, products
+from protractile.beam_model.elements import GAUSS, Theory, element, quadrature
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import SAME_PLACE, Boom, BoomError, Segment
+from protractile.geometry.contact_places import load_places
+from protractile.geometry.segment import APART
 
 # Distance from another node, as a fraction of a segment's length, within which a mass or a jump of
 # the axial force has no node of its own: eigenvalues lose digits with the inverse fourth power of

@@ -19,10 +19,10 @@ import numpy as np
 from numpy.polynomial import Legendre, Polynomial
 from scipy.linalg import null_space, rq
 
-from beam_model.component import Component, Motion, SegmentModel, products
-from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Segment
-from geometry.segment import Compression
+from protractile.beam_model.component import Component, Motion, SegmentModel, products
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, BoomError, Segment
+from protractile.geometry.segment import Compression
 
 # Number of additional quadrature points for tapered segments.
 _TAPERING = 6

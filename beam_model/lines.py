@@ -17,12 +17,12 @@ from operator import attrgetter
 import numpy as np
 from scipy.interpolate import interp1d
 
-from beam_model.boom_modes import BoomModes
-from beam_model.component import SegmentModel
-from dynamics.line import Line, Quantity
-from geometry.arrays import Array
-from geometry.boom import Boom, Direction
-from geometry.contact_places import load_places
+from protractile.beam_model.boom_modes import BoomModes
+from protractile.beam_model.component import SegmentModel
+from protractile.dynamics.line import Line, Quantity
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Direction
+from protractile.geometry.contact_places import load_places
 
 # Number of pieces of a segment without elements.
 _PIECES = 40

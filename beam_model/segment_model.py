@@ -7,18 +7,18 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from beam_model.boom_modes import BoomModes, travel
-from beam_model.component import Motion, SegmentModel
-from dynamics.gap_builder import GapBuilder, OutputOperator
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.axial import pin_moments
-from geometry.boom import Boom
-from geometry.contact_places import pads
-from geometry.cylinder import ground_lines
-from geometry.observation import Displacement, Observation, Quantity
-from geometry.section import Side
-from geometry.telescoping import drives_below, telescoping_stations
+from protractile.beam_model.boom_modes import BoomModes, travel
+from protractile.beam_model.component import Motion, SegmentModel
+from protractile.dynamics.gap_builder import GapBuilder, OutputOperator
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import pin_moments
+from protractile.geometry.boom import Boom
+from protractile.geometry.contact_places import pads
+from protractile.geometry.cylinder import ground_lines
+from protractile.geometry.observation import Displacement, Observation, Quantity
+from protractile.geometry.section import Side
+from protractile.geometry.telescoping import drives_below, telescoping_stations
 
 # Sides of the contact rows of a flat joint or a stop: one row for both sides, or one row per side.
 BOTH_SIDES: Sequence[Side] = (0,)

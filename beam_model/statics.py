@@ -15,19 +15,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beam_model.boom_modes import BoomModes, critical_factor
-from beam_model.component import Component, SegmentModel
-from beam_model.elements import Theory
-from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
-from beam_model.wall_compliance import station_compliance, with_wall_springs
-from dynamics.equilibrium import equilibrium_at
-from dynamics.excitation import InitialImpulse, ReleasedLoad
-from dynamics.failure import NUMERICAL_ERRORS
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.contact_places import contact_centres, pad_places
+from protractile.beam_model.boom_modes import BoomModes, critical_factor
+from protractile.beam_model.component import Component, SegmentModel
+from protractile.beam_model.elements import Theory
+from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
+from protractile.beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
+from protractile.beam_model.wall_compliance import station_compliance, with_wall_springs
+from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.contact_places import contact_centres, pad_places
 
 # Minimum number of elements of the longest segment in a boom with axial forces or tapers.
 ELEMENTS_WITH_AXIAL_FORCE = 20
@@ -110,7 +110,7 @@ def static_state(
         boom: boom with its loads.
         elements: elements of the boom, if available.
         walls: factor of the compliance of walls under pads, see
-            :mod:`beam_model.wall_compliance`; 0 for rigid walls.
+            :mod:`.beam_model.wall_compliance`; 0 for rigid walls.
         time: time of the loads in s.
 
     Raises:

@@ -21,14 +21,14 @@ from scipy.linalg import block_diag
 from scipy.sparse import csc_matrix, kron
 from scipy.sparse.linalg import splu
 
-from beam_model.calibration import with_springs
-from beam_model.segment_model import EACH_SIDE
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.contact_places import Pad, pads
-from geometry.section import Direction, Side
-from geometry.segment import NO_COMPRESSION, Segment
+from protractile.beam_model.calibration import with_springs
+from protractile.beam_model.segment_model import EACH_SIDE
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.contact_places import Pad, pads
+from protractile.geometry.section import Direction, Side
+from protractile.geometry.segment import NO_COMPRESSION, Segment
 
 # Length of wall beyond a pad that is modelled, as a fraction of the larger side of the section.
 _REACH = 1.5
@@ -87,7 +87,7 @@ def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> Gap
     """Return the system of a beam with springs for the compliance of walls under pads.
 
     Args:
-        system: gap system with a contact row for each side, ``beam_model.segment_model.EACH_SIDE``.
+        system: gap system with a contact row for each side, :data:`.segment_model.EACH_SIDE`.
         factor: factor of the compliance, 0 for rigid walls.
     """
     walls = factor * contact_compliance(boom) if factor else np.zeros(0)
@@ -104,7 +104,7 @@ def contact_compliance(boom: Boom) -> Array:
 
     Args:
         boom: boom of beams with a contact row for each side,
-            ``beam_model.segment_model.EACH_SIDE``.
+            ``protractile.beam_model.segment_model.EACH_SIDE``.
     """
     rows = _contact_rows(boom)
     stops = sum(len(stop.sides) for _, stop in boom.numbered_stops)

@@ -9,8 +9,8 @@ from typing import Any
 
 import typer
 
-from runs import cli
-from runs.case.schema import case_schema
+from protractile.runs import cli
+from protractile.runs.case.schema import case_schema
 
 SCHEMA = case_schema()
 FOLDER = Path(__file__).parent / "generated"

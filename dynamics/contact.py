@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.arrays import Array
+from protractile.dynamics.arrays import Array
 
 # A negligible force in N, and logarithms of penetrations in m between which forces are
 # interpolated.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, Term
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import ContactLaw, Term
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,10 +22,10 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import eigh, null_space, pinv
 
-from dynamics.arrays import Array
-from dynamics.equilibrium import equilibrium
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
 
 # Number of modes with the given damping ratio: in 3D, three per direction and two of twist.
 DAMPED_MODES = 8

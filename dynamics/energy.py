@@ -5,8 +5,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.failure import NumericsError
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.failure import NumericsError
 
 # Largest energy residual of a valid run, as a fraction of the input energy. The time step leaves
 # only round-off, below 1e-9 of the work.

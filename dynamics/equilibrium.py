@@ -11,10 +11,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import LinAlgError, cho_solve, cholesky, eigh, solve_triangular
 
-from dynamics.arrays import Array
-from dynamics.contact import OfTerm, Term, Terms, contact_terms, force_of, slope_of
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import OfTerm, Term, Terms, contact_terms, force_of, slope_of
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
 
 # Permitted unbalanced force, as a fraction of the load or the force of shims; the search aims at a
 # hundredth of it.

@@ -12,7 +12,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from dynamics.arrays import Array
+from protractile.dynamics.arrays import Array
 
 
 @runtime_checkable

@@ -14,11 +14,11 @@ from typing import Any, Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, DryFriction
-from dynamics.excitation import Excitation, History, InitialImpulse, ReleasedLoad
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.travel import RowKind
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import ContactLaw, DryFriction
+from protractile.dynamics.excitation import Excitation, History, InitialImpulse, ReleasedLoad
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.travel import RowKind
 
 R = TypeVar("R")
 L = TypeVar("L")
@@ -50,7 +50,7 @@ class Dashpot(NamedTuple, Generic[R]):
 
 
 class OutputOperator(NamedTuple, Generic[R]):
-    """Displacement operator of an output; arguments as in :class:`dynamics.gap_system.Observer`."""
+    """Displacement operator of an output; arguments as in :class:`.gap_system.Observer`."""
 
     operator: R
     unit: str = "m"

@@ -21,11 +21,11 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from dynamics.arrays import Array, Indices
-from dynamics.contact import ContactLaw, DryFriction
-from dynamics.excitation import Excitation, is_constant
-from dynamics.second_order import soften_modes
-from dynamics.travel import ROW_KINDS, Travel
+from protractile.dynamics.arrays import Array, Indices
+from protractile.dynamics.contact import ContactLaw, DryFriction
+from protractile.dynamics.excitation import Excitation, is_constant
+from protractile.dynamics.second_order import soften_modes
+from protractile.dynamics.travel import ROW_KINDS, Travel
 
 
 class Observer(NamedTuple):

@@ -26,13 +26,13 @@ from typing import Literal
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, PowerContact
-from dynamics.excitation import Excitation, History, MotionLaw, PiecewiseLinear
-from dynamics.frame_motion import FrameMotion, PathAcceleration
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.trajectory import Trajectory
-from dynamics.travel import RowKind, RowTable, Travel
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import ContactLaw, PowerContact
+from protractile.dynamics.excitation import Excitation, History, MotionLaw, PiecewiseLinear
+from protractile.dynamics.frame_motion import FrameMotion, PathAcceleration
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.trajectory import Trajectory
+from protractile.dynamics.travel import RowKind, RowTable, Travel
 
 # Ratio of the stiffnesses of ground and rope.
 _GROUND = 100.0

@@ -10,12 +10,12 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from dynamics.arrays import Array
-from dynamics.gap_system import GapSystem
-from dynamics.kernels.march import State
-from dynamics.motion import MOST_STEPS, Motion
-from dynamics.time_step import Integration
-from dynamics.trajectory import Output, Trajectory
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.kernels.march import State
+from protractile.dynamics.motion import MOST_STEPS, Motion
+from protractile.dynamics.time_step import Integration
+from protractile.dynamics.trajectory import Output, Trajectory
 
 # Default permitted error of the time step, as a fraction of the range of observed deflections.
 TOLERANCE = 1.0e-3

@@ -9,7 +9,7 @@ from typing import Literal
 
 import numpy as np
 
-from dynamics.arrays import Array
+from protractile.dynamics.arrays import Array
 
 # Quantities along a segment in m, rad, N and N·m. Section forces act on the part of smaller x,
 # along and across the straight axis. A positive normal force is tension; a positive moment causes

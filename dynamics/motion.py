@@ -7,10 +7,10 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.damping import with_modal_damping
-from dynamics.equilibrium import equilibrium
-from dynamics.gap_system import GapSystem
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.damping import with_modal_damping
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.gap_system import GapSystem
 
 # Maximum number of steps at the default tolerance. In chaotic motion, no step meets a tolerance.
 MOST_STEPS = 250_000

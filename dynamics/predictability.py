@@ -25,10 +25,10 @@ from typing import Literal
 import numpy as np
 import xarray as xr
 
-from dynamics.arrays import Array
-from dynamics.integrator import AdaptiveStep, Integrator
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.integrator import AdaptiveStep, Integrator
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
 
 Vary = Literal["load", "clearance", "velocity"]
 
@@ -315,12 +315,12 @@ def measure_horizons(
     Args:
         motion: motion without changes.
         relatives: ε, each between 0 and 1.
-        vary: changed data, see :func:`dynamics.predictability.integrate_ensemble`.
+        vary: changed data, see :func:`.dynamics.predictability.integrate_ensemble`.
         partners: number of runs for each size, with changes between ε/2 and ε of either sign; the
             first change is ε.
         integrator: integrator of the unchanged run, :class:`AdaptiveStep` unless given. The other
             runs use its steps; the run with a finer step uses half of each.
-        executor: executor as in :func:`dynamics.predictability.run_members`.
+        executor: executor as in :func:`.dynamics.predictability.run_members`.
         observer: name of the compared output.
         progress: callback that receives the completed fraction, 0 to 1.
         unchanged: trajectory of the motion, if it is available.

@@ -15,8 +15,8 @@ from dataclasses import replace
 import numpy as np
 from scipy.linalg import eigh
 
-from dynamics.arrays import Array, Indices
-from dynamics.gap_system import GapSystem
+from protractile.dynamics.arrays import Array, Indices
+from protractile.dynamics.gap_system import GapSystem
 
 # Fraction of a load vector's size below which its remainder is round-off.
 _DEPENDENT = 1.0e-6

@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh
 
-from dynamics.arrays import Array
+from protractile.dynamics.arrays import Array
 
 # Fraction of the largest change of rigid motions' stiffness below which a change is round-off.
 _ROUND_OFF = 1.0e-9

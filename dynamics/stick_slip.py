@@ -17,8 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.excitation import History
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.excitation import History
 
 # Largest step, as a phase angle in rad of the vibrating mass or a fraction of its decay time.
 _PART = 0.1
@@ -125,7 +125,7 @@ def move_segment(
         time: (num_times,) in s, evenly spaced from 0 on.
         friction: R (num_times,) in N, the mean over the output interval that ends at each time.
     """
-    from dynamics.kernels import stick_slip as kernel
+    from protractile.dynamics.kernels import stick_slip as kernel
 
     fastest = max(2.0 * np.pi * drive.frequency, drive.dashpot / drive.mass)
     output_step = float(time[1] - time[0])

@@ -6,7 +6,7 @@ exact. A contact force is the discrete gradient of the contact energy (Gonzalez 
 obeys the set-valued law for the displacement in the step (Moreau 1988). A dashpot resists the mean
 rate of its row. The energy balance holds to round-off for every h. The scheme has second order
 (first order with stick-slip), and is reversible without losses. The time loop is
-:func:`dynamics.kernels.march.march`.
+:func:`.dynamics.kernels.march.march`.
 """
 
 from __future__ import annotations
@@ -16,13 +16,13 @@ from functools import cached_property
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.contact import contact_limits
-from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, check_energy
-from dynamics.excitation import History
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
-from dynamics.kernels.march import (
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import contact_limits
+from protractile.dynamics.energy import DRIVEN_ENERGIES, ENERGIES, check_energy
+from protractile.dynamics.excitation import History
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.kernels.march import (
     CHANGES,
     FIRST_CONTACT,
     STEPS,
@@ -32,13 +32,17 @@ from dynamics.kernels.march import (
     State,
     march,
 )
-from dynamics.kernels.modal_flow import Flow, compliance, modal_flow
-from dynamics.kernels.row_forces import row_laws, row_problem
-from dynamics.kernels.telescoping import add_axial_forces, moving_axial_forces, moving_rows
-from dynamics.motion import Motion
-from dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES, move_segment
-from dynamics.trajectory import DRIVE_VARIABLES, Output, Trajectory
-from dynamics.travel import Travel
+from protractile.dynamics.kernels.modal_flow import Flow, compliance, modal_flow
+from protractile.dynamics.kernels.row_forces import row_laws, row_problem
+from protractile.dynamics.kernels.telescoping import (
+    add_axial_forces,
+    moving_axial_forces,
+    moving_rows,
+)
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES, move_segment
+from protractile.dynamics.trajectory import DRIVE_VARIABLES, Output, Trajectory
+from protractile.dynamics.travel import Travel
 
 # Maximum number of halvings of a step whose forces do not converge.
 _HALVINGS = 10
@@ -156,7 +160,7 @@ class Integration:
         lag, speed and acceleration, and the :class:`StickSlip` in the attribute ``stick_slip``.
 
         Args:
-            substeps, window: as in :class:`dynamics.integrator.StepSchedule`.
+            substeps, window: as in :class:`.dynamics.integrator.StepSchedule`.
             step_error: error of the observed deflections due to the time step, as a fraction of
                 their range; NaN if unknown.
 

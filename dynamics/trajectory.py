@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.energy import DRIVEN_ENERGIES, ENERGIES, energy_residual
-from dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.energy import DRIVEN_ENERGIES, ENERGIES, energy_residual
+from protractile.dynamics.gap_system import GapSystem, Observer
 
 # xarray is imported only where it is needed, since the import takes a second.
 if TYPE_CHECKING:
@@ -53,7 +53,7 @@ class Output(NamedTuple):
 
     Args:
         states, velocities: modal coordinates and velocities; velocities may have no columns.
-        energies: energies in J, as in ``dynamics.energy.ENERGIES``.
+        energies: energies in J, as in ``protractile.dynamics.energy.ENERGIES``.
         gaps: relative displacements y of the contacts in m.
         means, peaks: means and peaks of contact forces within the interval in N.
         frictions: mean friction forces in N.
@@ -142,7 +142,7 @@ class Trajectory:
             output: output at these times.
             attributes: attributes of the data, which include ``step``, ``steps``,
                 ``first_contact`` and ``contact_changes``.
-            energy_floor: least input energy in J, as in :func:`dynamics.energy.energy_residual`.
+            energy_floor: least input energy in J, as in :func:`.dynamics.energy.energy_residual`.
         """
         stations = np.arange(len(system.stations))
         at_station = np.equal.outer(system.station_of_row, stations)

@@ -26,9 +26,9 @@ from typing import Literal, get_args
 import numpy as np
 from scipy.linalg import eigh
 
-from dynamics.arrays import Array
-from dynamics.excitation import History
-from dynamics.stick_slip import ElasticDrive
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.excitation import History
+from protractile.dynamics.stick_slip import ElasticDrive
 
 # Kinds of rows of a gap system that may change with time, in the order of the compiled loops.
 RowKind = Literal["rows", "friction_rows", "dashpots"]

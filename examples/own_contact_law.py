@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 import protractile as pt
-from dynamics.contact import Term
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import simulate
+from protractile.dynamics.contact import Term
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import simulate
 
 
 @dataclass(frozen=True, slots=True)

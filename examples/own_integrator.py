@@ -8,7 +8,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 import protractile as pt
-from dynamics.motion import Motion
+from protractile.dynamics.motion import Motion
 
 
 @dataclass(frozen=True, slots=True)

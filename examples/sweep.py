@@ -4,8 +4,8 @@
 import numpy as np
 
 import protractile as pt
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import simulate
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.integrator import simulate
 
 SPEED = 2.0
 

@@ -16,15 +16,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.joint import Joint, sample_times
-from geometry.load import LoadedSegment
-from geometry.section import Direction
-from geometry.segment import NO_COMPRESSION, SAME_PLACE, Compression, PointMass, Segment
-from geometry.taper import mean_area
+from protractile.geometry.arrays import Array
+from protractile.geometry.joint import Joint, sample_times
+from protractile.geometry.load import LoadedSegment
+from protractile.geometry.section import Direction
+from protractile.geometry.segment import NO_COMPRESSION, SAME_PLACE, Compression, PointMass, Segment
+from protractile.geometry.taper import mean_area
 
 if TYPE_CHECKING:
-    from geometry.boom import Boom
+    from protractile.geometry.boom import Boom
 
 # Number of steps of uniform weight in a tapered segment. Forces are exact at the ends of steps;
 # between them the error is some thousandths of the weight of a step.
@@ -182,7 +182,7 @@ class AxialChange:
     history, P the axial force, m a point mass and w its deflection.
     """
 
-    history: Any  #: factor g_e over time, see :mod:`dynamics.excitation`
+    history: Any  #: factor g_e over time, see :mod:`.dynamics.excitation`
     #: axial force P of each segment in N at the factor 1; none unless given
     compressions: Sequence[Compression] = ()
     #: point masses m of each segment in kg; none unless given

@@ -11,20 +11,20 @@ from dataclasses import dataclass, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, TypeVar
 
-from geometry.axial import AxialChange, moving_force_places
-from geometry.boom_checks import check_boom
-from geometry.cylinder import Cylinder
-from geometry.fields import BoomError, resolve_distances
-from geometry.joint import Joint, PadSize, SlidePad, Stop
-from geometry.load import Load
-from geometry.material import Material
-from geometry.observation import Observation, Quantity
-from geometry.section import Direction
-from geometry.segment import SAME_PLACE, Lateral, PointMass, Segment
-from geometry.stiffeners import Collar, Diaphragm
-from geometry.support import Support
-from geometry.telescoping import drives_of, reach, station_positions
-from geometry.typography import choices
+from protractile.geometry.axial import AxialChange, moving_force_places
+from protractile.geometry.boom_checks import check_boom
+from protractile.geometry.cylinder import Cylinder
+from protractile.geometry.fields import BoomError, resolve_distances
+from protractile.geometry.joint import Joint, PadSize, SlidePad, Stop
+from protractile.geometry.load import Load
+from protractile.geometry.material import Material
+from protractile.geometry.observation import Observation, Quantity
+from protractile.geometry.section import Direction
+from protractile.geometry.segment import SAME_PLACE, Lateral, PointMass, Segment
+from protractile.geometry.stiffeners import Collar, Diaphragm
+from protractile.geometry.support import Support
+from protractile.geometry.telescoping import drives_of, reach, station_positions
+from protractile.geometry.typography import choices
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance

@@ -7,19 +7,19 @@ from collections.abc import Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from geometry.cylinder import forces
-from geometry.fields import BoomError
-from geometry.fit import check_contact_faces, check_pads, check_room
-from geometry.joint import Joint, Stop
-from geometry.load import PartialLoad
-from geometry.observation import KINDS, SPATIAL_QUANTITIES
-from geometry.section import Direction
-from geometry.segment import SAME_PLACE
-from geometry.support_check import check_supported
-from geometry.telescoping import check_drives
+from protractile.geometry.cylinder import forces
+from protractile.geometry.fields import BoomError
+from protractile.geometry.fit import check_contact_faces, check_pads, check_room
+from protractile.geometry.joint import Joint, Stop
+from protractile.geometry.load import PartialLoad
+from protractile.geometry.observation import KINDS, SPATIAL_QUANTITIES
+from protractile.geometry.section import Direction
+from protractile.geometry.segment import SAME_PLACE
+from protractile.geometry.support_check import check_supported
+from protractile.geometry.telescoping import check_drives
 
 if TYPE_CHECKING:
-    from geometry.boom import Boom
+    from protractile.geometry.boom import Boom
 
 # Minimum overlap as a fraction of the length of the inner segment.
 LEAST_OVERLAP = 1.0e-4
@@ -29,7 +29,7 @@ def check_boom(boom: Boom) -> None:
     """Check that the parts of a boom are compatible.
 
     Raises:
-        BoomError: they are not; see :class:`geometry.boom.Boom`.
+        BoomError: they are not; see :class:`.geometry.boom.Boom`.
     """
     for number, segment in enumerate(boom.segments):
         segment.check(f"segments[{number}]")

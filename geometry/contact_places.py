@@ -14,12 +14,12 @@ from typing import Literal
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.boom import Boom, Direction, Joint, Stop
-from geometry.joint import Carrier
-from geometry.section import Face, Offset, Side
-from geometry.segment import Segment
-from geometry.telescoping import drives_of, reach
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Direction, Joint, Stop
+from protractile.geometry.joint import Carrier
+from protractile.geometry.section import Face, Offset, Side
+from protractile.geometry.segment import Segment
+from protractile.geometry.telescoping import drives_of, reach
 
 ContactLine = Literal["near webs", "across", "surface"]
 

@@ -11,13 +11,22 @@ from typing import TYPE_CHECKING, Annotated, NamedTuple
 import numpy as np
 from pydantic.dataclasses import dataclass
 
-from geometry.arrays import Array
-from geometry.fields import PART, BoomError, In, NotNegative, Number, Place, Positive, SegmentRef
-from geometry.load import LoadedSegment
-from geometry.support import Pin, Support
+from protractile.geometry.arrays import Array
+from protractile.geometry.fields import (
+    PART,
+    BoomError,
+    In,
+    NotNegative,
+    Number,
+    Place,
+    Positive,
+    SegmentRef,
+)
+from protractile.geometry.load import LoadedSegment
+from protractile.geometry.support import Pin, Support
 
 if TYPE_CHECKING:
-    from geometry.boom import Boom
+    from protractile.geometry.boom import Boom
 
 
 @dataclass(frozen=True, slots=True, config=PART)

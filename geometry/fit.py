@@ -7,14 +7,14 @@ from collections.abc import Mapping, Sequence
 from itertools import combinations, product
 from typing import TYPE_CHECKING
 
-from geometry.fields import BoomError
-from geometry.joint import SIDES, Joint, PadSize, SlidePad
-from geometry.section import Direction, Side
-from geometry.segment import SAME_PLACE, Segment
-from geometry.walls import free_room
+from protractile.geometry.fields import BoomError
+from protractile.geometry.joint import SIDES, Joint, PadSize, SlidePad
+from protractile.geometry.section import Direction, Side
+from protractile.geometry.segment import SAME_PLACE, Segment
+from protractile.geometry.walls import free_room
 
 if TYPE_CHECKING:
-    from geometry.boom import Boom
+    from protractile.geometry.boom import Boom
 
 _WHERE: Mapping[tuple[Direction, Side], str] = {
     ("z", 1): "top",

@@ -22,10 +22,10 @@ from itertools import pairwise
 
 import numpy as np
 
-from geometry.arrays import Array, Indices, Mask
-from geometry.mesh import SegmentMesh, mesh_segment
-from geometry.refinement import RefinementZone
-from geometry.section import COMPONENT, Direction, Section
+from protractile.geometry.arrays import Array, Indices, Mask
+from protractile.geometry.mesh import SegmentMesh, mesh_segment
+from protractile.geometry.refinement import RefinementZone
+from protractile.geometry.section import COMPONENT, Direction, Section
 
 # Tolerance of lengths as a fraction of the length of a mesh: below any edge, above round-off.
 _ROUNDED = 1.0e-9

@@ -12,8 +12,8 @@ import numpy as np
 from pydantic import Field, SkipValidation
 from pydantic.dataclasses import dataclass as part
 
-from geometry.arrays import Array
-from geometry.fields import (
+from protractile.geometry.arrays import Array
+from protractile.geometry.fields import (
     MOST_STATIONS,
     PART,
     BoomError,
@@ -27,7 +27,7 @@ from geometry.fields import (
     Positive,
     SegmentRef,
 )
-from geometry.section import Direction, Side
+from protractile.geometry.section import Direction, Side
 
 PadSide = Literal["above", "below", "left", "right"]
 
@@ -131,7 +131,7 @@ class Drive:
     (0.0, 1.5)
 
     Args:
-        history: extension in m over time, 0 at t = 0; see :mod:`dynamics.excitation`.
+        history: extension in m over time, 0 at t = 0; see :mod:`.dynamics.excitation`.
         carriers: segment to which each station of the joint is fixed.
         least_overlap: minimum overlap in m.
         locked: segment to which the lock is fixed, where the inner segment transfers its axial
@@ -227,7 +227,7 @@ class Joint(BareJoint):
     ((6.0, 8.0), (0.005, 0.005))
 
     Args:
-        contact: law of each station across the play, a :class:`dynamics.contact.ContactLaw`; not
+        contact: law of each station across the play, a :class:`.dynamics.contact.ContactLaw`; not
             needed for a bonded joint.
         lateral_contact: law along y; as ``contact`` unless given.
         drive: drive that telescopes the inner segment during the motion; without it the extension
@@ -305,7 +305,7 @@ class Stop(BareStop):
     (14.0, 'z')
 
     Args:
-        contact: law across the play, a :class:`dynamics.contact.ContactLaw`; one-sided if the stop
+        contact: law across the play, a :class:`.dynamics.contact.ContactLaw`; one-sided if the stop
             is on one side only.
     """
 

@@ -7,9 +7,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any, Protocol
 
-from geometry.arrays import Array
-from geometry.fields import SegmentRef
-from geometry.section import Direction
+from protractile.geometry.arrays import Array
+from protractile.geometry.fields import SegmentRef
+from protractile.geometry.section import Direction
 
 
 class LoadedSegment(Protocol):
@@ -56,7 +56,7 @@ class Load:
         direction: direction of the force.
         magnitude: magnitude in N/m along the whole segment, or in N at one place.
         x: position in m; None for the whole segment.
-        history: factor of the magnitude over time, see :mod:`dynamics.excitation`.
+        history: factor of the magnitude over time, see :mod:`.dynamics.excitation`.
         inertial: True for the inertia load of an acceleration of the whole segment, which also
             acts on collars and diaphragms.
     """

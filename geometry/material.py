@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass as part
 from pydantic_core import PydanticCustomError
 
-from geometry.fields import PART, In, Positive
+from protractile.geometry.fields import PART, In, Positive
 
 
 @part(frozen=True, slots=True, config=PART)

@@ -24,9 +24,9 @@ import meshio
 import numpy as np
 import numpy.typing as npt
 
-from geometry.arrays import Array, Indices, Mask
-from geometry.boom import SAME_PLACE, Segment
-from geometry.section import Offset, Plate, Section
+from protractile.geometry.arrays import Array, Indices, Mask
+from protractile.geometry.boom import SAME_PLACE, Segment
+from protractile.geometry.section import Offset, Plate, Section
 
 # Fraction of a mesh's extent below which a coordinate is 0.
 _ROUND_OFF = 1.0e-12

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 
 from pydantic.dataclasses import dataclass
 
-from geometry.fields import PART, Name, Place, SegmentRef
+from protractile.geometry.fields import PART, Name, Place, SegmentRef
 
 # Quantities that a case may request.
 Recorded = Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"]

@@ -7,11 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.mesh import SegmentMesh
-from geometry.section import Section
-from geometry.segment import Segment
-from geometry.taper import areas
+from protractile.geometry.arrays import Array
+from protractile.geometry.mesh import SegmentMesh
+from protractile.geometry.section import Section
+from protractile.geometry.segment import Segment
+from protractile.geometry.taper import areas
 
 # Tolerance for x as a fraction of a segment's length: below any triangle, above round-off.
 _DIGITS = 9

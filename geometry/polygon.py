@@ -16,8 +16,8 @@ from functools import cached_property
 
 import numpy as np
 
-from geometry.arrays import Array, Indices
-from geometry.section import (
+from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.section import (
     COMPONENT,
     OUTWARDS,
     BoxSection,
@@ -28,7 +28,7 @@ from geometry.section import (
     Section,
     SectionError,
 )
-from geometry.walls import trapezoids
+from protractile.geometry.walls import trapezoids
 
 # Fraction of a section's size below which two places are the same.
 _SAME = 1.0e-9
@@ -53,7 +53,7 @@ class PolygonSection(Section):
     """Closed section of flat plates, described by the corners of their mid-lines.
 
     Area, centroid and second moments include the thickness of plates, with mitred corners as in
-    :class:`geometry.section.BoxSection`. Shear areas follow from the shear flow of the mid-lines.
+    :class:`.geometry.section.BoxSection`. Shear areas follow from the shear flow of the mid-lines.
 
     >>> corners = ((-0.15, -0.3), (0.15, -0.3), (0.2, 0.3), (-0.2, 0.3))
     >>> trapezoid = pt.PolygonSection(corners, thicknesses=(0.01, 0.006, 0.008, 0.006))

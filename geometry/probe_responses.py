@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-from geometry.arrays import Array
-from geometry.boom import Boom
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
 
 ProbedMotion = Literal["z", "y", "twist"]
 

@@ -10,9 +10,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.polygon import PolygonSection
-from geometry.section import SectionError
+from protractile.geometry.arrays import Array
+from protractile.geometry.polygon import PolygonSection
+from protractile.geometry.section import SectionError
 
 
 def hexagon(

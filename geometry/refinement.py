@@ -15,10 +15,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.contact_places import ContactInterval, ContactLine, Pad, pads, stop_patches
-from geometry.section import Direction, Face, Section
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.contact_places import (
+    ContactInterval,
+    ContactLine,
+    Pad,
+    pads,
+    stop_patches,
+)
+from protractile.geometry.section import Direction, Face, Section
 
 # Tolerance for which the fractions below are calibrated.
 CALIBRATION_TOLERANCE = 0.01

@@ -19,7 +19,7 @@ from typing import Literal, NamedTuple, Protocol
 import numpy as np
 from numpy.polynomial import Polynomial
 
-from geometry.arrays import Array, Mask
+from protractile.geometry.arrays import Array, Mask
 
 Direction = Literal["z", "y"]
 Side = Literal[-1, 0, 1]

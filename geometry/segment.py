@@ -14,14 +14,20 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic.dataclasses import dataclass as part
 
-from geometry.arrays import Array
-from geometry.fields import PART, BoomError, In, Place, Positive, resolve_distances
-from geometry.material import Material
-from geometry.section import COMPONENT, Direction, Section, SectionError
-from geometry.stiffeners import Collar, Diaphragm
-from geometry.support import Support, check_support
-from geometry.taper import areas, check_alike, interpolate_section, mean_area, middle_section
-from geometry.typography import choices
+from protractile.geometry.arrays import Array
+from protractile.geometry.fields import PART, BoomError, In, Place, Positive, resolve_distances
+from protractile.geometry.material import Material
+from protractile.geometry.section import COMPONENT, Direction, Section, SectionError
+from protractile.geometry.stiffeners import Collar, Diaphragm
+from protractile.geometry.support import Support, check_support
+from protractile.geometry.taper import (
+    areas,
+    check_alike,
+    interpolate_section,
+    mean_area,
+    middle_section,
+)
+from protractile.geometry.typography import choices
 
 # Fraction of a segment's length below which two x are equal: far below any part, above round-off.
 SAME_PLACE = 1.0e-10
@@ -125,7 +131,7 @@ class Segment:
         lateral: additional properties for a boom in space.
         collars, diaphragms: stiffeners of the plates, whose mass beams include; the properties
             above exclude them.
-        compression: axial force, see :func:`geometry.axial.with_compression`.
+        compression: axial force, see :func:`.geometry.axial.with_compression`.
         shear_stiffnesses: G A_s in N along z and along y, if they differ from the values of the
             section.
     """

@@ -9,8 +9,17 @@ import numpy as np
 from pydantic import Field
 from pydantic.dataclasses import dataclass as part
 
-from geometry.fields import PART, Category, In, Length, Name, NotNegative, Place, Positive
-from geometry.section import COMPONENT, Direction, Section
+from protractile.geometry.fields import (
+    PART,
+    Category,
+    In,
+    Length,
+    Name,
+    NotNegative,
+    Place,
+    Positive,
+)
+from protractile.geometry.section import COMPONENT, Direction, Section
 
 
 class Strip(NamedTuple):

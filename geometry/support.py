@@ -10,8 +10,8 @@ from typing import Annotated, Literal
 from pydantic import Field
 from pydantic.dataclasses import dataclass
 
-from geometry.fields import PART, BoomError, In, NotNegative, Number, Place, Positive
-from geometry.section import Direction
+from protractile.geometry.fields import PART, BoomError, In, NotNegative, Number, Place, Positive
+from protractile.geometry.section import Direction
 
 
 @dataclass(frozen=True, slots=True, config=PART)

@@ -16,16 +16,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.axial import foot_thrust, pin_moments
-from geometry.cylinder import ground_lines
-from geometry.fields import BoomError
-from geometry.load import LoadedSegment
-from geometry.section import Direction
-from geometry.segment import Segment
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import foot_thrust, pin_moments
+from protractile.geometry.cylinder import ground_lines
+from protractile.geometry.fields import BoomError
+from protractile.geometry.load import LoadedSegment
+from protractile.geometry.section import Direction
+from protractile.geometry.segment import Segment
 
 if TYPE_CHECKING:
-    from geometry.boom import Boom
+    from protractile.geometry.boom import Boom
 
 # Fraction of the largest row or force below which a remainder is round-off.
 _ROUND_OFF = 1.0e-9

@@ -6,13 +6,13 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from geometry.section import Section, SectionError
+from protractile.geometry.section import Section, SectionError
 
 
 def interpolate_section(tail: Section, head: Section, part: float) -> Section:
     """Return the section at a fraction of the length between the sections at tail and head.
 
-    >>> from geometry.taper import interpolate_section
+    >>> from protractile.geometry.taper import interpolate_section
     >>> deep = pt.BoxSection(height=0.4, width=0.3, flange=0.01, web=0.006)
     >>> round(interpolate_section(deep, replace(deep, height=0.2), 0.25).height, 6)
     0.35

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from geometry.fields import BoomError
-from geometry.fit import check_pads_in_travel, check_room
-from geometry.joint import Drive, Joint
-from geometry.segment import SAME_PLACE, Segment
+from protractile.geometry.fields import BoomError
+from protractile.geometry.fit import check_pads_in_travel, check_room
+from protractile.geometry.joint import Drive, Joint
+from protractile.geometry.segment import SAME_PLACE, Segment
 
 if TYPE_CHECKING:
-    from geometry.boom import Boom
+    from protractile.geometry.boom import Boom
 
 # Number of times at which a boom with drives is checked.
 _SAMPLES = 9

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.section import Plate, Section, distance_from_line
-from geometry.segment import Segment
+from protractile.geometry.arrays import Array
+from protractile.geometry.section import Plate, Section, distance_from_line
+from protractile.geometry.segment import Segment
 
 # Sine of the angle between plates below which they have a butt joint instead of a mitre, which
 # would be long between different thicknesses.

@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from runs.process.ending import leave, listen
+from protractile.runs.process.ending import leave, listen
 
 
 def main() -> None:
     """Run the command line of this process, and exit."""
     listen()
-    from runs import cli
+    from protractile.runs import cli
 
     try:
         cli.main()

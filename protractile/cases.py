@@ -11,25 +11,25 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
-from runs.case import reading
-from runs.case.messages import BadInput, refusing
-from runs.case.reading import CheckedCase
-from runs.case.schema import Case
-from runs.client import judge
-from runs.folder.cache import Cache
-from runs.folder.files import atomic_folder
-from runs.pipeline.model_run import RunContext, ignore_progress
-from runs.pipeline.results import Results, prepare
-from runs.pipeline.run import run_case as run_models
-from runs.process import workers
-from runs.process.ranks import single_rank
-from runs.sweep import points
-from runs.sweep.variation import InvalidVariation, find
+from protractile.runs.case import reading
+from protractile.runs.case.messages import BadInput, refusing
+from protractile.runs.case.reading import CheckedCase
+from protractile.runs.case.schema import Case
+from protractile.runs.client import judge
+from protractile.runs.folder.cache import Cache
+from protractile.runs.folder.files import atomic_folder
+from protractile.runs.pipeline.model_run import RunContext, ignore_progress
+from protractile.runs.pipeline.results import Results, prepare
+from protractile.runs.pipeline.run import run_case as run_models
+from protractile.runs.process import workers
+from protractile.runs.process.ranks import single_rank
+from protractile.runs.sweep import points
+from protractile.runs.sweep.variation import InvalidVariation, find
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from runs.check import Check
+    from protractile.runs.check import Check
 
 # Name of a case without a file in messages.
 _CASE = "case"
@@ -65,7 +65,7 @@ def check(case: Case) -> Check:
     >>> [round(mass) for mass in result.frames["Masses"]["own mass, kg"]]
     [832, 551, 1382]
     """
-    from runs.check import check_case
+    from protractile.runs.check import check_case
 
     return check_case(CheckedCase(case))
 
@@ -131,7 +131,7 @@ def run_case(
     assert run is not None
     run.evaluate()
     if path is not None:
-        from runs.report.output import write
+        from protractile.runs.report.output import write
 
         with atomic_folder(path) as part:
             write(run, judge(run.results), part)
@@ -151,7 +151,7 @@ def report(folder: str | Path, *, excel: bool = False) -> Results:
     Raises:
         BadInput: the folder is not that of a run, or openpyxl is missing for the workbook.
     """
-    from runs.report.output import rerender_report
+    from protractile.runs.report.output import rerender_report
 
     with rerender_report(str(folder), "excel" if excel else None) as (results, _, _):
         return results
@@ -162,7 +162,7 @@ def tables(results: Results) -> dict[str, pd.DataFrame]:
 
     :attr:`Results.quantities` has the main numbers in SI units.
     """
-    from runs.report.document import tables_by_part
+    from protractile.runs.report.document import tables_by_part
 
     of_parts = tables_by_part(results).values()
     return {table.name: table.flat_frame for several in of_parts for table in several}
@@ -198,8 +198,8 @@ def sweep(
     Raises:
         BadInput: a key, a value, a model or the bound is invalid.
     """
-    from runs.sweep import output, search
-    from runs.sweep.run import prepare as prepare_sweep
+    from protractile.runs.sweep import output, search
+    from protractile.runs.sweep.run import prepare as prepare_sweep
 
     plan_of = partial(
         points.plan, _CASE, models=models, mesh_size=None, reference=against, whole=case
@@ -237,7 +237,7 @@ def frequencies(
     Raises:
         BadInput: a key, a value or a model is invalid.
     """
-    from runs.sweep import frequencies
+    from protractile.runs.sweep import frequencies
 
     plan = points.plan(_CASE, _options(vary or {}), models, None, whole=case)
     cases = [point.case for point in plan.points]

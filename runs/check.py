@@ -17,57 +17,57 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.console import Console
 
-from beam_model.statics import StaticState
-from dynamics.damping import closed_contact_damping, closed_contact_modes
-from dynamics.failure import NUMERICAL_ERRORS
-from dynamics.gap_system import GapSystem
-from dynamics.motion import constant_load_equilibrium
-from geometry.arrays import Array
-from geometry.axial import axial_force, moving_force_places
-from geometry.boom import Boom
-from runs.case import actions
-from runs.case.reading import CheckedCase
-from runs.case.schema import Case, Model
-from runs.case.units import System
-from runs.pipeline.combinations import combination_results, combination_tables
-from runs.pipeline.drives import (
+from protractile.beam_model.statics import StaticState
+from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.motion import constant_load_equilibrium
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import axial_force, moving_force_places
+from protractile.geometry.boom import Boom
+from protractile.runs.case import actions
+from protractile.runs.case.reading import CheckedCase
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.case.units import System
+from protractile.runs.pipeline.combinations import combination_results, combination_tables
+from protractile.runs.pipeline.drives import (
     drive_lines,
     stick_slip_cautions,
     stick_slip_estimates,
     stick_slip_lines,
 )
-from runs.pipeline.estimates import Preview, run_cost
-from runs.pipeline.largest_loads import (
+from protractile.runs.pipeline.estimates import Preview, run_cost
+from protractile.runs.pipeline.largest_loads import (
     BeamStates,
     beam_note,
     overload_cautions,
     static_table,
 )
-from runs.pipeline.load_table import load_table
-from runs.pipeline.pad_walls import deflection_advice, pad_wall_lines, rigid_wall_note
-from runs.pipeline.panels import panel_cautions, panel_table, weakest_panels
-from runs.pipeline.proportions import (
+from protractile.runs.pipeline.load_table import load_table
+from protractile.runs.pipeline.pad_walls import deflection_advice, pad_wall_lines, rigid_wall_note
+from protractile.runs.pipeline.panels import panel_cautions, panel_table, weakest_panels
+from protractile.runs.pipeline.proportions import (
     buckling_cautions,
     period_cautions,
     proportion_cautions,
     tip_cautions,
 )
-from runs.pipeline.static_results import bulge_cautions
-from runs.pipeline.statics import (
+from protractile.runs.pipeline.static_results import bulge_cautions
+from protractile.runs.pipeline.statics import (
     Statics,
     contact_and_support_reactions,
     cylinder_force,
     statics,
 )
-from runs.pipeline.turning import shaper_lines, turning_lines
-from runs.report.boom_tables import (
+from protractile.runs.pipeline.turning import shaper_lines, turning_lines
+from protractile.runs.report.boom_tables import (
     joint_table,
     mass_table,
     segment_table,
     stiffener_table,
 )
-from runs.report.formatting import milli, number, without_round_off
-from runs.report.tables import WIDE, Cell, Column, Table, print_text
+from protractile.runs.report.formatting import milli, number, without_round_off
+from protractile.runs.report.tables import WIDE, Cell, Column, Table, print_text
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -159,7 +159,7 @@ def check_case(checked: CheckedCase) -> Check:
     ]
     if case.limits is not None:
         # Imported late, since the results of a run take half a second.
-        from runs.pipeline.quantities import static_limit_lines
+        from protractile.runs.pipeline.quantities import static_limit_lines
 
         lines += static_limit_lines(case.limits, extremes)
     lines.append(f"A run may take {run_cost(case, preview)}.")

@@ -20,8 +20,8 @@ from typing import Annotated
 import typer
 
 # Each command imports its own libraries, since all libraries together take seconds to load.
-from runs.process import ending, ranks, terminal
-from runs.process.terminal import Terminal, printable
+from protractile.runs.process import ending, ranks, terminal
+from protractile.runs.process.terminal import Terminal, printable
 
 app = typer.Typer(
     add_completion=False,
@@ -70,7 +70,7 @@ Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.
 
 def _print_version(requested: bool) -> None:
     if requested:
-        from runs.folder.versions import installed_version
+        from protractile.runs.folder.versions import installed_version
 
         print(f"protractile {installed_version('protractile') or '(not installed)'}")
         raise typer.Exit
@@ -105,26 +105,26 @@ def run(
     no_pictures: Annotated[bool, typer.Option("--no-pictures", help="Draw no snapshots.")] = False,
 ) -> int:
     """Run the models of a case, compare them, and write the results to a folder."""
-    from runs.case import reading
+    from protractile.runs.case import reading
 
     effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
     # These imports are slow, and follow the check of the case, so that its errors appear at once.
-    from runs.process import workers
-    from runs.report import opengl
+    from protractile.runs.process import workers
+    from protractile.runs.report import opengl
 
     with workers.helper(opengl.silence_stderr) as helper:
         if helper and not ending.launched_rank() and any(m.needs_shell for m in effective.models):
             # The helper imports FEniCSx while this process imports other modules.
-            helper.submit(import_module, "shell_model.reduced_shell")
-        from runs.client import judge
-        from runs.folder.cache import Cache
-        from runs.folder.files import atomic_folder
-        from runs.pipeline import estimates
-        from runs.pipeline.model_run import RunContext
-        from runs.pipeline.results import prepare
-        from runs.pipeline.run import run_case
-        from runs.report import output
-        from runs.report.terminal_tables import print_failures, print_runs
+            helper.submit(import_module, "protractile.shell_model.reduced_shell")
+        from protractile.runs.client import judge
+        from protractile.runs.folder.cache import Cache
+        from protractile.runs.folder.files import atomic_folder
+        from protractile.runs.pipeline import estimates
+        from protractile.runs.pipeline.model_run import RunContext
+        from protractile.runs.pipeline.results import prepare
+        from protractile.runs.pipeline.run import run_case
+        from protractile.runs.report import output
+        from protractile.runs.report.terminal_tables import print_failures, print_runs
 
         if not large:
             estimates.refuse_large(estimates.run_cost(effective), case)
@@ -142,7 +142,9 @@ def run(
                 atomic_folder(folder) as part,
                 terminal.display([model.name for model in effective.models]) as report_progress,
             ):
-                renderers = () if no_pictures else ("runs.report.snapshots", "pyvista.plotting")
+                renderers = (
+                    () if no_pictures else ("protractile.runs.report.snapshots", "pyvista.plotting")
+                )
                 context = RunContext(comm, report_progress, cache, cache, helper, renderers)
                 finished = run_case(effective, case, context)
                 assert finished is not None
@@ -166,8 +168,8 @@ def report(
     ] = False,
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
-    from runs.report.output import rerender_report
-    from runs.report.terminal_tables import print_runs
+    from protractile.runs.report.output import rerender_report
+    from protractile.runs.report.terminal_tables import print_runs
 
     runs, judged = {}, {}
     for folder in folders:
@@ -184,11 +186,11 @@ def snapshot(
     ] = None,
 ) -> int:
     """Render the deformed shells of a run, and add the pictures to its report."""
-    from runs.case.messages import BadInput
-    from runs.pipeline.results import TRAJECTORIES
-    from runs.report import snapshots
-    from runs.report.opengl import RenderingUnavailable
-    from runs.report.output import rerender_report
+    from protractile.runs.case.messages import BadInput
+    from protractile.runs.pipeline.results import TRAJECTORIES
+    from protractile.runs.report import snapshots
+    from protractile.runs.report.opengl import RenderingUnavailable
+    from protractile.runs.report.output import rerender_report
 
     with rerender_report(folder) as (results, _, part):
         last = results.case.time.duration
@@ -254,13 +256,13 @@ def sweep(
     the case file, not with a varied play. Under mpirun all ranks except the first run points;
     otherwise all cores run them. Ensembles are not run.
     """
-    from runs.case.messages import BadInput
-    from runs.folder.cache import Cache
-    from runs.pipeline import estimates, members
-    from runs.process import workers
-    from runs.sweep import output as charts
-    from runs.sweep import points, sampling, search
-    from runs.sweep import run as sweep_runs
+    from protractile.runs.case.messages import BadInput
+    from protractile.runs.folder.cache import Cache
+    from protractile.runs.pipeline import estimates, members
+    from protractile.runs.process import workers
+    from protractile.runs.sweep import output as charts
+    from protractile.runs.sweep import points, sampling, search
+    from protractile.runs.sweep import run as sweep_runs
 
     other_options = ["--sensitivity"] * sensitivity + [sampling.OPTION] * (samples is not None)
     if len(other_options) + bool(vary) != 1:
@@ -324,10 +326,10 @@ def frequencies(
 
     The joints are once in contact where they touch at rest under the loads, and once bonded.
     """
-    from runs.folder.cache import Cache
-    from runs.sweep import frequencies as charts
-    from runs.sweep import points
-    from runs.sweep import run as sweep_runs
+    from protractile.runs.folder.cache import Cache
+    from protractile.runs.sweep import frequencies as charts
+    from protractile.runs.sweep import points
+    from protractile.runs.sweep import run as sweep_runs
 
     plan = points.plan(case, vary, _names(models), mesh_size)
     cases = [point.case for point in plan.points]
@@ -351,12 +353,14 @@ def frequencies(
 @app.command()
 def check(case: CaseFile, picture: Picture = None) -> int:
     """Check a case file, and print its loads, static state, stresses and first frequency."""
-    from runs.case.reading import load_checked
-    from runs.check import check_case
+    from protractile.runs.case.reading import load_checked
+    from protractile.runs.check import check_case
 
     checked = load_checked(case)
     if picture is not None:
-        import_module("runs.report.boom_drawing").save_drawing(checked.case, case, picture)
+        import_module("protractile.runs.report.boom_drawing").save_drawing(
+            checked.case, case, picture
+        )
     check_case(checked).show(Terminal())
     return 0
 
@@ -374,10 +378,10 @@ def prove(
 
     The exit status is 1 where a proof fails.
     """
-    from runs.case.kinds.shell import Shell
-    from runs.case.messages import BadInput
-    from runs.case.reading import load
-    from runs.report.terminal_tables import print_proofs
+    from protractile.runs.case.kinds.shell import Shell
+    from protractile.runs.case.messages import BadInput
+    from protractile.runs.case.reading import load
+    from protractile.runs.report.terminal_tables import print_proofs
 
     checked = load(case)
     if shell is None:
@@ -388,8 +392,8 @@ def prove(
         raise BadInput(case, "--shell", what)
     comm = ranks.enter_mpi(checked, case)
     assert comm is not None
-    from runs.case.kinds.model import BuildContext
-    from runs.folder.cache import Cache
+    from protractile.runs.case.kinds.model import BuildContext
+    from protractile.runs.folder.cache import Cache
 
     with ranks.end_all_ranks_on_error(comm), terminal.display([shell]) as report_progress:
         stages = partial(report_progress, shell)
@@ -405,7 +409,7 @@ def live(
     ] = False,
 ) -> None:
     """Serve a page of a case: change its numbers, and see the results of its beam at once."""
-    from runs.live.server import serve
+    from protractile.runs.live.server import serve
 
     serve(case, browser=not no_browser)
 
@@ -427,15 +431,15 @@ def export(
     ] = None,
 ) -> int:
     """Write beam elements as a script for OpenSees, or a shell at rest as a deck for CalculiX."""
-    from geometry.typography import choices
-    from runs.case import reading
-    from runs.case.messages import BadInput
-    from runs.folder.cache import Cache
+    from protractile.geometry.typography import choices
+    from protractile.runs.case import reading
+    from protractile.runs.case.messages import BadInput
+    from protractile.runs.folder.cache import Cache
 
     suffixes = {"opensees": "py", "calculix": "inp"}
     if to not in suffixes:
         raise BadInput(case, "--to", f"must be {choices([*suffixes])}, got {to!r}")
-    program = import_module(f"runs.report.{to}")
+    program = import_module(f"protractile.runs.report.{to}")
     checked = reading.load(case)
     selected = reading.select(checked, case, [program.select_model(checked, case, model).name])
     path = Path(out or f"{Path(case).stem}.{suffixes[to]}")
@@ -448,7 +452,7 @@ def export(
 @app.command()
 def schema() -> int:
     """Print the JSON Schema of a case file."""
-    from runs.case.schema import case_schema
+    from protractile.runs.case.schema import case_schema
 
     # The text is longer than the buffer, so that a closed pipe raises its error here.
     with suppress(BrokenPipeError):

@@ -11,25 +11,25 @@ from functools import cached_property, partial
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.gap_builder import GapBuilder, OutputOperator
-from geometry.arrays import Array
-from geometry.axial import pin_moments
-from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine
-from geometry.cylinder import GroundLine, ground_lines
-from geometry.grading import graded_mesh
-from geometry.load import Load
-from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
-from geometry.observation import Displacement, Quantity
-from geometry.plating import PlatedMesh, add_thickness, tapered_mesh
-from geometry.refinement import refinement_zones
-from shell_model.contact.rows import ShellContacts, ties
-from shell_model.contact.surface import SurfaceOptions
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.cross_section import Operator, Row, SectionNodes
-from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.stages import Stages
+from protractile.dynamics.gap_builder import GapBuilder, OutputOperator
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import pin_moments
+from protractile.geometry.boom import Boom, BoomError, Direction
+from protractile.geometry.contact_places import ContactLine
+from protractile.geometry.cylinder import GroundLine, ground_lines
+from protractile.geometry.grading import graded_mesh
+from protractile.geometry.load import Load
+from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
+from protractile.geometry.observation import Displacement, Quantity
+from protractile.geometry.plating import PlatedMesh, add_thickness, tapered_mesh
+from protractile.geometry.refinement import refinement_zones
+from protractile.shell_model.contact.rows import ShellContacts, ties
+from protractile.shell_model.contact.surface import SurfaceOptions
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.reduction.symmetry import SymmetryReduction
+from protractile.shell_model.segment.cross_section import Operator, Row, SectionNodes
+from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from protractile.shell_model.stages import Stages
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class ShellOptions:
     surface: SurfaceOptions = field(default_factory=SurfaceOptions)  #: options of surface contact
     krylov: KrylovOptions = field(default_factory=KrylovOptions)  #: options of the reduction
     #: permitted relative error of the local compliance at contacts, for a graded mesh
-    #: (:mod:`geometry.refinement`). Without it, and for surface contact, the mesh is uniform.
+    #: (:mod:`.geometry.refinement`). Without it, and for surface contact, the mesh is uniform.
     contact_tolerance: float | None = None
 
     @property
@@ -80,7 +80,7 @@ class BoomShell:
     loads: Sequence[tuple[Load, Array]]
     observed: Mapping[str, OutputOperator[Operator]]  #: outputs of a motion
     lines: Sequence[GroundLine] = ()  #: springs and dashpots to the ground
-    #: (segment, load vector) of moments of axial forces, see :func:`geometry.axial.pin_moments`
+    #: (segment, load vector) of moments of axial forces, see :func:`.geometry.axial.pin_moments`
     pin_moments: Sequence[tuple[int, Array]] = ()
     helper: Executor | None = None  #: second process for the reduction
 

@@ -14,7 +14,7 @@ walls have nearly the same λ; a Krylov space with several vectors for each mode
 
 Each segment buckles separately, on its supports, its cylinders and the tangent stiffness of its
 closed contacts. At these places lateral motion and twist are fixed; at one of them, motion along
-the boom is also fixed. :func:`dynamics.second_order.buckling_factor` covers buckling of the whole
+the boom is also fixed. :func:`.dynamics.second_order.buckling_factor` covers buckling of the whole
 boom, such as column buckling.
 """
 
@@ -33,19 +33,19 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from slepc4py import SLEPc
 
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.cylinder import ground_lines
-from geometry.plating import PlatedMesh
-from shell_model import compat
-from shell_model.boom_shell import ShellOptions
-from shell_model.contact.rows import ShellContacts, ties
-from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.shell import RIGID_TURN, Attachments, ShellMatrices
-from shell_model.stress.fields import vertex_displacements, wall_frame
-from shell_model.stress.stresses import ShellStress
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.cylinder import ground_lines
+from protractile.geometry.plating import PlatedMesh
+from protractile.shell_model import compat
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.contact.rows import ShellContacts, ties
+from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from protractile.shell_model.segment.shell import RIGID_TURN, Attachments, ShellMatrices
+from protractile.shell_model.stress.fields import vertex_displacements, wall_frame
+from protractile.shell_model.stress.stresses import ShellStress
 
 # Relative residual of a mode. The error of its factor is of the order of the square.
 _RESIDUAL = 1.0e-6
@@ -78,7 +78,7 @@ def buckling_modes(shell: ShellMatrices, forces: Array, count: int) -> BucklingM
     Args:
         shell: shell without rigid motions.
         forces: (num_triangles, 3) membrane forces n_x, n_s, n_xs in N/m, positive in tension, in
-            the frame of :func:`shell_model.stress.fields.wall_frame`; the same on every rank.
+            the frame of :func:`.shell_model.stress.fields.wall_frame`; the same on every rank.
         count: number of modes.
 
     Raises:
@@ -179,7 +179,7 @@ class ShellState:
         """Return the state of a reduced shell at an equilibrium, on rank 0.
 
         Args:
-            fields: fields of :func:`shell_model.stress.fields.gather_fields`.
+            fields: fields of :func:`.shell_model.stress.fields.gather_fields`.
             system: gap system of the shell at these extensions.
             position: (num_modes,) equilibrium.
             extensions: extension of each joint in m.

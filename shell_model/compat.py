@@ -21,7 +21,7 @@ from dolfinx import cpp, fem, jit, mesh
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from geometry.arrays import Array, Indices
+from protractile.geometry.arrays import Array, Indices
 
 try:
     import basix.ufl

@@ -13,28 +13,32 @@ import numpy as np
 import xarray as xr
 from mpi4py import MPI
 
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.plating import PlatedMesh
-from geometry.probe_responses import ProbeResponses
-from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
-from shell_model.contact.local_compliance import (
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.plating import PlatedMesh
+from protractile.geometry.probe_responses import ProbeResponses
+from protractile.shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
+from protractile.shell_model.contact.local_compliance import (
     compliance,
     full_compliance,
     local_compliance,
     probe_loads,
     probe_responses,
 )
-from shell_model.contact.rows import ties
-from shell_model.contact.surface import SURFACE_MOMENTS, SURFACE_SHIFTS, without_stiff_modes
-from shell_model.reduction.coordinates import BoomCoordinates
-from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
-from shell_model.reduction.symmetry import result_or_compute
-from shell_model.stages import Stages
-from shell_model.stress.fields import gather_fields
-from shell_model.telescoping import MOMENTS, TelescopingShell
+from protractile.shell_model.contact.rows import ties
+from protractile.shell_model.contact.surface import (
+    SURFACE_MOMENTS,
+    SURFACE_SHIFTS,
+    without_stiff_modes,
+)
+from protractile.shell_model.reduction.coordinates import BoomCoordinates
+from protractile.shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
+from protractile.shell_model.reduction.symmetry import result_or_compute
+from protractile.shell_model.stages import Stages
+from protractile.shell_model.stress.fields import gather_fields
+from protractile.shell_model.telescoping import MOMENTS, TelescopingShell
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,21 +48,21 @@ class ReducedShell:
     system: GapSystem  #: gap system of all segments
     num_dofs: int  #: number of degrees of freedom before the reduction
     #: displacements and stresses of all modes on rank 0, see
-    #: :func:`shell_model.stress.fields.gather_fields`
+    #: :func:`.shell_model.stress.fields.gather_fields`
     fields: xr.Dataset | None
     #: largest reduction errors of all segments: ``contact_compliance``, relative to the local
     #: compliance, NaN without contacts; ``deflections``, of outputs such as the tip. Natural
     #: frequencies are accurate up to ``frequency_limit_in_hz``.
     errors: dict[str, float]
     #: local compliances (num_rows,) of the contacts in m/N, see
-    #: :func:`shell_model.contact.local_compliance.local_compliance`
+    #: :func:`.shell_model.contact.local_compliance.local_compliance`
     local_compliance: Array
     #: largest relative discretisation error of the local compliance; NaN without contacts
     mesh_error: float
     seconds: dict[str, float]  #: wall time of each stage in s
     meshes: Sequence[PlatedMesh]  #: mesh of each segment, on rank 0
     #: buckling factor of the axial forces with bonded joints, see
-    #: :func:`dynamics.second_order.buckling_factor`; infinite without axial forces
+    #: :func:`.dynamics.second_order.buckling_factor`; infinite without axial forces
     critical_factor: float | None = float("inf")
     #: probe responses of the segments, for the calibration of beams
     probe_responses: Sequence[ProbeResponses] = ()

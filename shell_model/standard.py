@@ -12,10 +12,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.excitation import Excitation, InitialImpulse, ReleasedLoad, Step
-from geometry.boom import Boom, Joint, Segment
-from geometry.load import Load
-from shell_model.reduced_shell import ReducedShell
+from protractile.dynamics.excitation import Excitation, InitialImpulse, ReleasedLoad, Step
+from protractile.geometry.boom import Boom, Joint, Segment
+from protractile.geometry.load import Load
+from protractile.shell_model.reduced_shell import ReducedShell
 
 
 def standard_boom(boom: Boom) -> Boom:

@@ -27,23 +27,23 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.excitation import HistorySum
-from dynamics.gap_builder import GapBuilder
-from dynamics.gap_system import GapSystem
-from dynamics.reduction import reduce_modes, with_coordinates
-from dynamics.travel import ROW_KINDS, MovingAxialForce, RowKind, RowTable, Travel
-from geometry.arrays import Array, Mask
-from geometry.axial import joint_thrust, moving_force
-from geometry.boom import SAME_PLACE, Boom
-from geometry.telescoping import TelescopingStations, reach, telescoping_stations
-from shell_model.boom_shell import BoomShell
-from shell_model.reduction.coordinates import BoomCoordinates
-from shell_model.reduction.segment import ReducedSegment
-from shell_model.reduction.symmetry import Job, SymmetryReduction
-from shell_model.segment.cross_section import Operator, Row
-from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver, exact_product, squared, times
-from shell_model.stress.stresses import lines_around
+from protractile.dynamics.excitation import HistorySum
+from protractile.dynamics.gap_builder import GapBuilder
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.reduction import reduce_modes, with_coordinates
+from protractile.dynamics.travel import ROW_KINDS, MovingAxialForce, RowKind, RowTable, Travel
+from protractile.geometry.arrays import Array, Mask
+from protractile.geometry.axial import joint_thrust, moving_force
+from protractile.geometry.boom import SAME_PLACE, Boom
+from protractile.geometry.telescoping import TelescopingStations, reach, telescoping_stations
+from protractile.shell_model.boom_shell import BoomShell
+from protractile.shell_model.reduction.coordinates import BoomCoordinates
+from protractile.shell_model.reduction.segment import ReducedSegment
+from protractile.shell_model.reduction.symmetry import Job, SymmetryReduction
+from protractile.shell_model.segment.cross_section import Operator, Row
+from protractile.shell_model.segment.segment_shell import SegmentShell
+from protractile.shell_model.segment.solver import ShiftedSolver, exact_product, squared, times
+from protractile.shell_model.stress.stresses import lines_around
 
 # Maximum frequency of modes in Hz, frequency in Hz up to which all modes are kept, and minimum
 # contribution of a higher mode as a fraction of the compliance of springs.

@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.damping import closed_contact_modes
-from dynamics.gap_system import GapSystem
-from dynamics.reduction import condense
-from geometry.arrays import Array
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.schema import Case, Model
-from runs.report.tables import Cell, Table
+from protractile.dynamics.damping import closed_contact_modes
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.reduction import condense
+from protractile.geometry.arrays import Array
+from protractile.runs.case.kinds.finite_element import BeamElements
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.report.tables import Cell, Table
 from studies.motions import build_all, friction_case, model_of, run_parallel, shell_of, with_pads
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 from studies.working_load import Point, PointMotion, set_point

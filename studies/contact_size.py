@@ -2,7 +2,7 @@
 """Local compliance of walls under contacts of several sizes, on finer meshes.
 
 The study uses the unreduced shells of the paper's boom with friction, under equal and opposite
-forces at a station (:mod:`shell_model.contact.local_compliance`). The first peak shows the effect
+forces at a station (:mod:`.shell_model.contact.local_compliance`). The first peak shows the effect
 on the motion.
 """
 
@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from geometry.arrays import Array
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.report.tables import Table
+from protractile.geometry.arrays import Array
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.report.tables import Table
 from studies.motions import friction_case, gap_system, move, scale_mesh, shell_of, with_pads
 from studies.refined import Refined, refined_table
 from studies.study import Criterion, Piece, Progress, Verification, define_study
@@ -71,9 +71,9 @@ def contacts_of(case: Case, sizes: Sizes) -> list[Contact]:
 
 def station_compliances(contact: Contact, part: float) -> Array:
     """Return the local compliance (num_stations,) in m/N; ``part`` scales all edge lengths."""
-    from shell_model.boom_shell import assemble_segments
-    from shell_model.contact.local_compliance import full_compliance, local_compliance
-    from shell_model.contact.rows import ShellContacts
+    from protractile.shell_model.boom_shell import assemble_segments
+    from protractile.shell_model.contact.local_compliance import full_compliance, local_compliance
+    from protractile.shell_model.contact.rows import ShellContacts
 
     boom = build_boom(contact.case)
     model = scale_mesh(shell_of(contact.case), part)
@@ -95,9 +95,9 @@ def support_compliance(case: Case, parts: Sequence[float]) -> list[float]:
     same in all meshes, carries half of the opposite force. ``parts`` are ratios of the edge lengths
     to the default ones, descending.
     """
-    from shell_model.boom_shell import assemble_segments
-    from shell_model.contact.local_compliance import shell_compliance
-    from shell_model.reduction.symmetry import SymmetryReduction
+    from protractile.shell_model.boom_shell import assemble_segments
+    from protractile.shell_model.contact.local_compliance import shell_compliance
+    from protractile.shell_model.reduction.symmetry import SymmetryReduction
 
     boom = build_boom(case)
     outer = boom.segments[0]

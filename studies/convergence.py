@@ -23,13 +23,13 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from rich.console import Console
 
-from runs.folder.files import atomic_folder, write_atomically
-from runs.process.terminal import show_notices
-from runs.report import theme
-from runs.report.figure_context import Figure
-from runs.report.formatting import fixed, number
-from runs.report.pages import page
-from runs.report.tables import Table, write
+from protractile.runs.folder.files import atomic_folder, write_atomically
+from protractile.runs.process.terminal import show_notices
+from protractile.runs.report import theme
+from protractile.runs.report.figure_context import Figure
+from protractile.runs.report.formatting import fixed, number
+from protractile.runs.report.pages import page
+from protractile.runs.report.tables import Table, write
 from studies.study import Plot, Study, Verification, wide_console
 
 

@@ -11,16 +11,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import find_peaks
 
-from dynamics.damping import closed_contact_modes, with_modal_damping
-from dynamics.equilibrium import equilibrium
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.report.tables import Table
+from protractile.dynamics.damping import closed_contact_modes, with_modal_damping
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.report.tables import Table
 from studies.motions import gap_system, model_of, without_friction
 from studies.study import Criterion, Piece, Progress, Verification, define_study
 

@@ -8,11 +8,11 @@ from collections.abc import Iterator
 import numpy as np
 from mpi4py import MPI
 
-from runs import CASES
-from runs.case import reading as case_file
-from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.run import run_case
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.run import run_case
 from studies.study import Criterion, Progress, Verification, define_study
 
 # Distributed loads in N/m on both segments of the paper's boom.

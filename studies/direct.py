@@ -18,12 +18,12 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.energy import ENERGY_BOUND
-from geometry.arrays import Array
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.pipeline.models import MotionPlan
-from runs.report.tables import Table
+from protractile.dynamics.energy import ENERGY_BOUND
+from protractile.geometry.arrays import Array
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.models import MotionPlan
+from protractile.runs.report.tables import Table
 from studies.motions import (
     STEP,
     friction_case,
@@ -82,9 +82,9 @@ def runs_of(case: Case, steps: Sequence[float], sizes: Sizes, progress: Progress
 
     The case is planar, with prescribed normal forces. ``steps`` of the full shell in s descend.
     """
-    from shell_model.boom_shell import ShellOptions, assemble_boom
-    from shell_model.reduced_shell import reduce_boom
-    from shell_model.reduction.krylov import KrylovOptions
+    from protractile.shell_model.boom_shell import ShellOptions, assemble_boom
+    from protractile.shell_model.reduced_shell import reduce_boom
+    from protractile.shell_model.reduction.krylov import KrylovOptions
     from studies.reference_models.unreduced import integrate_directly
 
     case = set_duration(case, sizes.duration)

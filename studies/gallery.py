@@ -21,20 +21,27 @@ from matplotlib import rc_context
 from matplotlib.patches import Patch
 from PIL import Image
 
-from geometry.arrays import Array
-from geometry.typography import TO_MILLI, digits
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.messages import BadInput
-from runs.folder.files import atomic_path
-from runs.pipeline.results import FIELDS, Results, read_fields
-from runs.process.terminal import show_notices
-from runs.report import theme
-from runs.report.boom_drawing import draw_boom_of
-from runs.report.opengl import require_opengl
-from runs.report.scene import SAME_PLACE, Instant, Overlap, Scene, rigid_motion, round_scale
-from runs.report.sheet import MATTE, MESHED, SHEET, Camera, Sheet, stage, surface
-from runs.report.snapshots import TITLES, characteristic_instants
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_MILLI, digits
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.messages import BadInput
+from protractile.runs.folder.files import atomic_path
+from protractile.runs.pipeline.results import FIELDS, Results, read_fields
+from protractile.runs.process.terminal import show_notices
+from protractile.runs.report import theme
+from protractile.runs.report.boom_drawing import draw_boom_of
+from protractile.runs.report.opengl import require_opengl
+from protractile.runs.report.scene import (
+    SAME_PLACE,
+    Instant,
+    Overlap,
+    Scene,
+    rigid_motion,
+    round_scale,
+)
+from protractile.runs.report.sheet import MATTE, MESHED, SHEET, Camera, Sheet, stage, surface
+from protractile.runs.report.snapshots import TITLES, characteristic_instants
 
 RUNS, GALLERY = Path("runs/out"), Path("docs/gallery")
 MODEL = "shell"

@@ -19,22 +19,22 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from beam_model.kantorovich import Base
-from dynamics.failure import NumericsError
-from dynamics.predictability import perturbations
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.kinds.kantorovich import Kantorovich
-from runs.case.kinds.model import select_kind
-from runs.case.schema import Case
-from runs.folder.cache import Cache
-from runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
-from runs.paper.verdicts import MARKS, Judgement
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.results import Results
-from runs.pipeline.run import run_case
-from runs.report.formatting import number
-from runs.report.tables import Table
+from protractile.beam_model.kantorovich import Base
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.predictability import perturbations
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.kinds.kantorovich import Kantorovich
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.schema import Case
+from protractile.runs.folder.cache import Cache
+from protractile.runs.paper.rules import CLEAR_INFLUENCE, DIVERGENCE, PEAK_SCATTER, judge
+from protractile.runs.paper.verdicts import MARKS, Judgement
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.run import run_case
+from protractile.runs.report.formatting import number
+from protractile.runs.report.tables import Table
 from studies.study import Progress, define_study
 
 PAPER = CASES / "paper.toml"

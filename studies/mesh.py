@@ -9,10 +9,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.signal import find_peaks
 
-from dynamics.gap_system import GapSystem
-from dynamics.trajectory import Trajectory
-from runs.case.build import build_boom
-from runs.pipeline.models import MotionPlan
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.trajectory import Trajectory
+from protractile.runs.case.build import build_boom
+from protractile.runs.pipeline.models import MotionPlan
 from studies.motions import friction_case, gap_system, scale_mesh, set_duration, shell_of
 from studies.refined import Refined, refined_table
 from studies.study import Piece, Progress, define_study

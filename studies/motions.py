@@ -16,20 +16,20 @@ from typing import TypeVar
 
 import numpy as np
 
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
-from geometry.boom import Boom
-from geometry.joint import PadSize
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext, BuiltModel, select_kind
-from runs.case.kinds.shell import Shell
-from runs.case.schema import Case, Model
-from runs.folder.cache import Cache
-from runs.pipeline.models import MotionPlan, build
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.boom import Boom
+from protractile.geometry.joint import PadSize
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext, BuiltModel, select_kind
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.models import MotionPlan, build
 
 CASE = CASES / "friction-walk.toml"
 

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from runs.report.tables import Table
+from protractile.runs.report.tables import Table
 from studies.study import Kind, Verification
 
 # Safety factor of a grid convergence index of three or more grids (Roache 1998).

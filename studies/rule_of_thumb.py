@@ -23,16 +23,16 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beam_model.segment_model import EACH_SIDE
-from beam_model.wall_compliance import contact_compliance
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.section import BoxSection
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.case.sections import SectionTable
-from runs.pipeline.model_run import static_tip
-from runs.report.tables import Cell, Table
+from protractile.beam_model.segment_model import EACH_SIDE
+from protractile.beam_model.wall_compliance import contact_compliance
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.section import BoxSection
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.case.sections import SectionTable
+from protractile.runs.pipeline.model_run import static_tip
+from protractile.runs.report.tables import Cell, Table
 from studies.calibrated_beams import (
     EULER,
     PLAIN,

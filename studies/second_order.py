@@ -11,19 +11,19 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from beam_model.boom_modes import critical_factor
-from beam_model.elements import Theory
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
-from beam_model.segment_model import gap_system
-from dynamics.excitation import Step
-from dynamics.gap_system import GapSystem
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Material, Segment, Support
-from geometry.load import Load
-from geometry.section import BoxSection
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
+from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.elements import Theory
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import kantorovich_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Material, Segment, Support
+from protractile.geometry.load import Load
+from protractile.geometry.section import BoxSection
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import reduce_boom
 from studies.reference_models.statics import static_response
 from studies.study import Progress, Verification, define_study
 

@@ -9,21 +9,21 @@ from dataclasses import replace
 import numpy as np
 from mpi4py import MPI
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.boom import Boom, Collar, Joint, Segment, Support
-from geometry.contact_places import ContactInterval
-from geometry.polygon import PolygonSection
-from geometry.profiles import hexagon, octagon, u_section
-from geometry.section import Direction, Section
-from runs.report.tables import Table
-from shell_model.boom_shell import ShellOptions
-from shell_model.contact.wall_rows import CornerLines
-from shell_model.reduced_shell import reduce_boom
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.boom import Boom, Collar, Joint, Segment, Support
+from protractile.geometry.contact_places import ContactInterval
+from protractile.geometry.polygon import PolygonSection
+from protractile.geometry.profiles import hexagon, octagon, u_section
+from protractile.geometry.section import Direction, Section
+from protractile.runs.report.tables import Table
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.contact.wall_rows import CornerLines
+from protractile.shell_model.reduced_shell import reduce_boom
 from studies.reference_models.plates import STEEL
 from studies.reference_models.single_segment import compliances, shell_alone
 from studies.reference_models.statics import shear_centre

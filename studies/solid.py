@@ -16,16 +16,16 @@ from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.boom import Segment, Support
-from geometry.section import BoxSection
-from runs.report.tables import Table
-from shell_model.contact.wall_rows import gauss
-from shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass
-from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.cross_section import Row, SectionNodes
-from shell_model.segment.shell import ShellMatrices
-from shell_model.segment.solver import ShiftedSolver
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Segment, Support
+from protractile.geometry.section import BoxSection
+from protractile.runs.report.tables import Table
+from protractile.shell_model.contact.wall_rows import gauss
+from protractile.shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass
+from protractile.shell_model.reduction.symmetry import SymmetryReduction
+from protractile.shell_model.segment.cross_section import Row, SectionNodes
+from protractile.shell_model.segment.shell import ShellMatrices
+from protractile.shell_model.segment.solver import ShiftedSolver
 from studies.reference_models.plates import STEEL
 from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies, shell_alone

@@ -13,16 +13,16 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.excitation import PiecewiseLinear
-from dynamics.trajectory import Trajectory
-from geometry.typography import TO_MILLI, TO_PERCENT
 from protractile.cases import change
-from runs import CASES
-from runs.case import reading
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.pipeline.models import MotionPlan, build
-from runs.report.tables import Table
+from protractile.dynamics.excitation import PiecewiseLinear
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.typography import TO_MILLI, TO_PERCENT
+from protractile.runs import CASES
+from protractile.runs.case import reading
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.report.tables import Table
 from studies.study import Progress, define_study
 
 # Stiffnesses in N/m of the drive of the paper's boom; damping ratio 0.5 %, static friction 0.3.

@@ -16,12 +16,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
-from geometry.section import BoxSection
-from runs.case.build import build_boom
-from runs.report.tables import Cell, Table
-from shell_model.segment.cross_section import Row, SectionNodes
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
+from protractile.geometry.section import BoxSection
+from protractile.runs.case.build import build_boom
+from protractile.runs.report.tables import Cell, Table
+from protractile.shell_model.segment.cross_section import Row, SectionNodes
 from studies.motions import friction_case
 from studies.reference_models.shell_readings import flange_deflection, quadratic_form
 from studies.reference_models.single_segment import compliances, natural_frequencies, shell_alone

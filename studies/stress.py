@@ -13,15 +13,15 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from geometry.boom import Boom
-from geometry.contact_places import pads
-from runs.case.build import build_boom
-from shell_model.boom_shell import ShellOptions
-from shell_model.contact.wall_rows import CornerLines
-from shell_model.reduced_shell import reduce_boom
-from shell_model.stress.fields import gather_stress_modes
-from shell_model.stress.history import stress_near_places
-from shell_model.stress.stresses import ShellStress, wall_forces
+from protractile.geometry.boom import Boom
+from protractile.geometry.contact_places import pads
+from protractile.runs.case.build import build_boom
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.contact.wall_rows import CornerLines
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.stress.fields import gather_stress_modes
+from protractile.shell_model.stress.history import stress_near_places
+from protractile.shell_model.stress.stresses import ShellStress, wall_forces
 from studies.motions import friction_case, model_of
 from studies.reference_models.single_segment import at_rest, shell_alone
 from studies.refined import Refined, refined_table

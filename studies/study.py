@@ -9,7 +9,7 @@ from typing import Literal, NamedTuple, ParamSpec
 
 from rich.console import Console
 
-from runs.report.tables import WIDE, Plain, Table
+from protractile.runs.report.tables import WIDE, Plain, Table
 
 # Callback with the next step of a study.
 Progress = Callable[[str], None]

@@ -13,11 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.gap_system import GapSystem
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.report.formatting import number
-from runs.report.tables import Table
+from protractile.dynamics.gap_system import GapSystem
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.report.formatting import number
+from protractile.runs.report.tables import Table
 from studies.motions import (
     friction_case,
     gap_system,

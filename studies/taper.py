@@ -13,12 +13,12 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import iv, jv, kv, yv
 
-from dynamics.excitation import Step
-from geometry.arrays import Array
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Segment
-from geometry.load import Load
-from geometry.section import BoxSection
+from protractile.dynamics.excitation import Step
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.load import Load
+from protractile.geometry.section import BoxSection
 from studies.reference_models.statics import static_response
 from studies.second_order import (
     BOX,

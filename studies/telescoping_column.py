@@ -11,17 +11,17 @@ from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
 
-from beam_model.boom_modes import critical_factor
-from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.excitation import SCurve
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Joint, Segment
-from geometry.joint import Drive
-from geometry.section import BoxSection
+from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import kantorovich_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.excitation import SCurve
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Joint, Segment
+from protractile.geometry.joint import Drive
+from protractile.geometry.section import BoxSection
 from studies.second_order import (
     BOX,
     CLAMP,

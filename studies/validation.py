@@ -14,17 +14,17 @@ from typing import NamedTuple, cast
 import numpy as np
 from scipy.optimize import brentq, least_squares
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import DryFriction, Gap, PowerContact
-from dynamics.excitation import Excitation, Sine
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
-from geometry.section import BoxSection
-from shell_model.segment.forms import DRILLING_OF_CURVED
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import DryFriction, Gap, PowerContact
+from protractile.dynamics.excitation import Excitation, Sine
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
+from protractile.geometry.section import BoxSection
+from protractile.shell_model.segment.forms import DRILLING_OF_CURVED
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell, hold

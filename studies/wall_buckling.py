@@ -9,14 +9,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.boom import Segment, Support
-from geometry.contact_places import ContactInterval
-from geometry.section import BoxSection, Section
-from shell_model.buckling import BucklingModes, buckling_modes, with_springs
-from shell_model.contact.wall_rows import CornerLines
-from shell_model.segment.segment_shell import SegmentShell
-from shell_model.stress.fields import gather_stress_modes
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Segment, Support
+from protractile.geometry.contact_places import ContactInterval
+from protractile.geometry.section import BoxSection, Section
+from protractile.shell_model.buckling import BucklingModes, buckling_modes, with_springs
+from protractile.shell_model.contact.wall_rows import CornerLines
+from protractile.shell_model.segment.segment_shell import SegmentShell
+from protractile.shell_model.stress.fields import gather_stress_modes
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.finite_strip import StressField, Strips
 from studies.reference_models.plates import STEEL, rectangle

@@ -17,11 +17,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.report.tables import Cell, Table
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.report.tables import Cell, Table
 from studies.mesh import peak_heights
 from studies.motions import (
     friction_case,

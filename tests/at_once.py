@@ -6,7 +6,7 @@ from concurrent.futures import Executor, Future
 from contextlib import contextmanager
 from typing import Any
 
-from runs.report.opengl import render_test_picture
+from protractile.runs.report.opengl import render_test_picture
 
 
 class AtOnce(Executor):
@@ -27,5 +27,5 @@ class AtOnce(Executor):
 
 @contextmanager
 def workers(*_: object) -> Iterator[Executor]:
-    """Stand in for :func:`runs.process.workers.workers`."""
+    """Stand in for :func:`.runs.process.workers.workers`."""
     yield AtOnce()

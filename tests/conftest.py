@@ -15,11 +15,11 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from dynamics.contact import PowerContact
-from geometry.boom import Boom, Joint, Material, Segment, Support
-from geometry.section import infer_inner_section, infer_outer_section
-from runs.folder.cache import VARIABLE
-from runs.process import terminal
+from protractile.dynamics.contact import PowerContact
+from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
+from protractile.geometry.section import infer_inner_section, infer_outer_section
+from protractile.runs.folder.cache import VARIABLE
+from protractile.runs.process import terminal
 from tests.space import in_space
 from tests.unprinted import blank
 
@@ -42,7 +42,7 @@ def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
     workers.
     """
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw0":
-        from dynamics.motion import Motion
+        from protractile.dynamics.motion import Motion
         from studies.numerics_1997.schemes import NEWMARK, integrate
         from tests.modal import oscillator
         from tests.rubbing import compile_loop, compiled_in
@@ -132,13 +132,13 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Points run where patches hold, and no process imports what this one has."""
     from tests import at_once
 
-    monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
+    monkeypatch.setattr("protractile.runs.process.workers.workers", at_once.workers)
 
 
 @pytest.fixture
 def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
     """Draw only one figure per run, since figures take longer than motions of beams."""
-    from runs.report import figures
+    from protractile.runs.report import figures
 
     monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
 
@@ -146,7 +146,7 @@ def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def unprinted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make figures without their layout and printing, which take most of the time."""
-    from runs.report import theme
+    from protractile.runs.report import theme
 
     monkeypatch.setattr(theme.Canvas, "print_figure", blank)
 
@@ -154,7 +154,7 @@ def unprinted(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture(scope="session")
 def opengl() -> None:
     """Skip pictures where OpenGL does not work."""
-    from runs.report.opengl import RenderingUnavailable, require_opengl
+    from protractile.runs.report.opengl import RenderingUnavailable, require_opengl
 
     try:
         require_opengl()

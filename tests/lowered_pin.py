@@ -5,10 +5,10 @@ from math import cos, hypot, radians, sin
 
 import pytest
 
-from dynamics.excitation import Step
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Cylinder, Load, Material, PointMass, Segment, Support
-from geometry.section import BoxSection
+from protractile.dynamics.excitation import Step
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Cylinder, Load, Material, PointMass, Segment, Support
+from protractile.geometry.section import BoxSection
 
 GRAVITY = 9.80665
 LENGTH, DEPTH = 10.0, 0.35

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, PowerContact
-from dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import ContactLaw, PowerContact
+from protractile.dynamics.gap_system import GapSystem, Observer
 
 
 def modal_system(

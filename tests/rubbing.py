@@ -6,11 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.excitation import SCurve
-from dynamics.integrator import FixedStep
-from dynamics.kernels.march import march
-from dynamics.motion import Motion
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.excitation import SCurve
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.kernels.march import march
+from protractile.dynamics.motion import Motion
 from tests.dynamics.test_moving_thrust import pressed_along
 from tests.dynamics.test_telescoping import lossy
 from tests.modal import modal_system

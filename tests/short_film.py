@@ -5,11 +5,11 @@ from pathlib import Path
 from typing import Any
 from unittest.mock import patch
 
-from runs.report import snapshots
+from protractile.runs.report import snapshots
 
 
 def render_short_film(*given: Any) -> list[Path]:
-    """Stand in for :func:`runs.report.snapshots.render_film`."""
+    """Stand in for :func:`.runs.report.snapshots.render_film`."""
     with patch.object(snapshots, "FRAMES", 3):
         return snapshots.render_film(*given)
 

@@ -3,7 +3,7 @@
 
 from dataclasses import replace
 
-from geometry.boom import Segment
+from protractile.geometry.boom import Segment
 
 
 def in_space(segment: Segment) -> Segment:

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from dynamics.contact import ContactLaw, Gap
-from geometry.boom import Boom, Direction
-from runs.case.build import build_boom
-from runs.case.schema import Case, Model
+from protractile.dynamics.contact import ContactLaw, Gap
+from protractile.geometry.boom import Boom, Direction
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case, Model
 
 Laws = ContactLaw | Sequence[ContactLaw]
 

@@ -3,7 +3,7 @@
 
 The work of a constant force is force times displacement. So the energy of modes and contacts
 changes by exactly the work of loads and drives less the losses of damping, friction and dashpots,
-for any step. Rows may change with travels, see :mod:`dynamics.kernels.telescoping`.
+for any step. Rows may change with travels, see :mod:`.dynamics.kernels.telescoping`.
 """
 
 from __future__ import annotations
@@ -13,10 +13,16 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from dynamics.arrays import Array
-from dynamics.kernels.compiled import LOOP, SUMS, borrow
-from dynamics.kernels.modal_flow import Flow, compliance, finish_flow, free_flow, modal_energy
-from dynamics.kernels.row_forces import (
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.kernels.compiled import LOOP, SUMS, borrow
+from protractile.dynamics.kernels.modal_flow import (
+    Flow,
+    compliance,
+    finish_flow,
+    free_flow,
+    modal_energy,
+)
+from protractile.dynamics.kernels.row_forces import (
     Laws,
     Problem,
     contact_energy,
@@ -26,11 +32,16 @@ from dynamics.kernels.row_forces import (
     term_force,
     term_slope,
 )
-from dynamics.kernels.telescoping import AxialForces, MovingRows, add_axial_forces, move_rows
-from dynamics.trajectory import Output
+from protractile.dynamics.kernels.telescoping import (
+    AxialForces,
+    MovingRows,
+    add_axial_forces,
+    move_rows,
+)
+from protractile.dynamics.trajectory import Output
 
 # Indices in ``State.tally``. From the index of the work on, they have the order of
-# ``dynamics.energy.ENERGIES``.
+# ``protractile.dynamics.energy.ENERGIES``.
 TIME, FIRST_CONTACT, CHANGES, STEPS, WORK, DAMPING, FRICTION, CONTACT, TALLY = range(9)
 
 # Largest h ω of a closed contact at which steps of length h resolve its force: the largest sample
@@ -94,7 +105,7 @@ class Schedule(NamedTuple):
 
     Args:
         mean, change: (num_steps, num_excitations) mean and change within each step of the straight
-            line that replaces a history, see :func:`dynamics.time_step.line_within`.
+            line that replaces a history, see :func:`.dynamics.time_step.line_within`.
         extensions: (num_steps + 1, num_travels) extensions in m at the ends of the steps.
     """
 

@@ -21,9 +21,9 @@ import numpy as np
 from numba import njit
 from scipy.special import spherical_jn
 
-from dynamics.arrays import Array
-from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import SUMS
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.kernels.compiled import SUMS
 
 # Number of terms with which the power series converge for (c + |ω|) h ≤ 1.
 _TERMS = 24

@@ -12,7 +12,7 @@ without these forces and the compliance H. In the step,
 
 A semismooth Newton method on the active rows solves the system (Alart and Curnier 1991).
 
-The formulas of force, energy and slope are in :mod:`dynamics.contact`. It does not import
+The formulas of force, energy and slope are in :mod:`.dynamics.contact`. It does not import
 numba, since this takes longer than the check of a case.
 """
 
@@ -23,8 +23,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from dynamics.arrays import Array, Indices
-from dynamics.contact import (
+from protractile.dynamics.arrays import Array, Indices
+from protractile.dynamics.contact import (
     Limits,
     Terms,
     contact_limits,
@@ -33,8 +33,8 @@ from dynamics.contact import (
     force_of,
     slope_of,
 )
-from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import LOOP
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.kernels.compiled import LOOP
 
 # Number of iterations after which a step is halved. Most steps need two.
 _MOST_ITERATIONS = 25

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Stick-slip of a mass that a spring pulls against dry friction.
 
-See :mod:`dynamics.stick_slip` for the symbols. The solution is exact for data that are linear
+See :mod:`.dynamics.stick_slip` for the symbols. The solution is exact for data that are linear
 in time. In a slip, m Δs̈ + c_d Δṡ + k_d Δs = R sign ṡ − f_d + m s̈_c with s̈_c = 0; it ends when ṡ
 changes its sign. In stick, Δṡ = ṡ_c until |k_d Δs + c_d Δṡ + f_d| exceeds the static friction.
 """
@@ -13,8 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from dynamics.arrays import Array
-from dynamics.kernels.compiled import LOOP
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.kernels.compiled import LOOP
 
 
 class SlidingMass(NamedTuple):

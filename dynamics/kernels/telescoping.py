@@ -13,10 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from dynamics.arrays import Array, Indices
-from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import SUMS
-from dynamics.travel import ROW_KINDS, ChangingAxialForce, MovingAxialForce
+from protractile.dynamics.arrays import Array, Indices
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.kernels.compiled import SUMS
+from protractile.dynamics.travel import ROW_KINDS, ChangingAxialForce, MovingAxialForce
 
 # Fraction of the largest slope of a mode at a force below which the slope of a mode is round-off.
 _NOTHING = 1.0e-13
@@ -45,10 +45,10 @@ class AxialForces(NamedTuple):
         modes: (num_forces, most_modes) indices of these modes.
         knots: knots of all forces in m.
         slopes: (num_pieces, 3, most_modes) coefficients of w′, as in
-            :class:`dynamics.travel.MovingAxialForce`.
+            :class:`.dynamics.travel.MovingAxialForce`.
         products: (num_pieces, most_modes, most_modes) ∫ w′ᵀ w′ ds̃ from 0 to each piece.
         changed_by: (num_vectors,) index of the travel of each vector.
-        factors, vectors: as in :class:`dynamics.travel.ChangingAxialForce`.
+        factors, vectors: as in :class:`.dynamics.travel.ChangingAxialForce`.
     """
 
     force: Array

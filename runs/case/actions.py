@@ -7,17 +7,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
-from dynamics.contact import PowerContact
-from dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, BoomError, Direction, Segment, Stop, resolve_segments
-from geometry.fields import Distance, at
-from geometry.joint import BareStop
-from geometry.load import AngularAcceleration, Load, Moment, PartialLoad
-from geometry.typography import choices
-from runs.case.load_tables import AxialTable, LoadTable, PayloadTable, build_history
-from runs.case.schema import Case, GravityTable, VelocityTable
-from runs.case.sections import SegmentTable
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, BoomError, Direction, Segment, Stop, resolve_segments
+from protractile.geometry.fields import Distance, at
+from protractile.geometry.joint import BareStop
+from protractile.geometry.load import AngularAcceleration, Load, Moment, PartialLoad
+from protractile.geometry.typography import choices
+from protractile.runs.case.load_tables import AxialTable, LoadTable, PayloadTable, build_history
+from protractile.runs.case.schema import Case, GravityTable, VelocityTable
+from protractile.runs.case.sections import SegmentTable
 
 STANDARD_GRAVITY = 9.80665
 

@@ -6,23 +6,28 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from dynamics.energy import DRIVEN_ENERGIES
-from dynamics.excitation import InitialImpulse, ReleasedLoad
-from dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES
-from dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, BoomError, Joint, Lateral, Material, PointMass, Segment
-from geometry.boom_checks import check_order
-from geometry.fields import describe, resolve_distances
-from geometry.joint import BareJoint
-from geometry.section import Section, SectionError, infer_inner_section, infer_outer_section
-from geometry.support_check import check_contacts_at_rest
-from geometry.taper import check_alike, mean_area, middle_section
-from runs.case import actions, motions
-from runs.case.actions import field_values
-from runs.case.contact import JointTable
-from runs.case.schema import Case
-from runs.case.sections import SegmentTable
+from protractile.dynamics.energy import DRIVEN_ENERGIES
+from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
+from protractile.dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES
+from protractile.dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, BoomError, Joint, Lateral, Material, PointMass, Segment
+from protractile.geometry.boom_checks import check_order
+from protractile.geometry.fields import describe, resolve_distances
+from protractile.geometry.joint import BareJoint
+from protractile.geometry.section import (
+    Section,
+    SectionError,
+    infer_inner_section,
+    infer_outer_section,
+)
+from protractile.geometry.support_check import check_contacts_at_rest
+from protractile.geometry.taper import check_alike, mean_area, middle_section
+from protractile.runs.case import actions, motions
+from protractile.runs.case.actions import field_values
+from protractile.runs.case.contact import JointTable
+from protractile.runs.case.schema import Case
+from protractile.runs.case.sections import SegmentTable
 
 # Permitted relative difference between the beam properties of a case and those of its plates: data
 # sheets give rounded numbers.

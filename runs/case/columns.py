@@ -18,11 +18,11 @@ from pathlib import Path
 
 import numpy as np
 
-from runs.case.limits import MOST_TIMES
-from runs.case.messages import BadInput
-from runs.case.units import Unit
-from runs.case.user_files import read_any_text
-from runs.process.terminal import shorten
+from protractile.runs.case.limits import MOST_TIMES
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.units import Unit
+from protractile.runs.case.user_files import read_any_text
+from protractile.runs.process.terminal import shorten
 
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 # Spaces that separate two cells: not next to a comma, before a bracket or slash, or after a slash.

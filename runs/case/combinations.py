@@ -12,13 +12,13 @@ from dataclasses import replace
 from math import cos, radians, sin
 from typing import Any, NamedTuple, TypeVar, get_args
 
-from geometry.boom import BoomError
-from geometry.cylinder import Cylinder
-from geometry.typography import choices
-from runs.case.actions import axial_force, payload_gravity
-from runs.case.build import build_boom, check_names
-from runs.case.limits import CaseTable
-from runs.case.load_tables import (
+from protractile.geometry.boom import BoomError
+from protractile.geometry.cylinder import Cylinder
+from protractile.geometry.typography import choices
+from protractile.runs.case.actions import axial_force, payload_gravity
+from protractile.runs.case.build import build_boom, check_names
+from protractile.runs.case.limits import CaseTable
+from protractile.runs.case.load_tables import (
     AxialTable,
     CombinationTable,
     GroundAccelerationTable,
@@ -27,7 +27,7 @@ from runs.case.load_tables import (
     LoadTable,
     PayloadTable,
 )
-from runs.case.schema import Case
+from protractile.runs.case.schema import Case
 
 Table = TypeVar("Table", bound=CaseTable)
 

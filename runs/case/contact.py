@@ -9,14 +9,21 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, Field, model_validator
 from pydantic.dataclasses import dataclass
 
-from dynamics.contact import ContactLaw, PowerContact, restitution_damping
-from dynamics.contact_table import TableContact
-from geometry.boom import Direction
-from geometry.fields import PART, BoomError, Distance, In, NotNegative, Number, Positive
-from geometry.joint import BareJoint, Carrier, Drive
-from geometry.section import Side
-from runs.case.limits import CaseTable, Exponent, Text, error_at, superfluous_error, unsuitable
-from runs.case.motion_tables import DriveTable
+from protractile.dynamics.contact import ContactLaw, PowerContact, restitution_damping
+from protractile.dynamics.contact_table import TableContact
+from protractile.geometry.boom import Direction
+from protractile.geometry.fields import PART, BoomError, Distance, In, NotNegative, Number, Positive
+from protractile.geometry.joint import BareJoint, Carrier, Drive
+from protractile.geometry.section import Side
+from protractile.runs.case.limits import (
+    CaseTable,
+    Exponent,
+    Text,
+    error_at,
+    superfluous_error,
+    unsuitable,
+)
+from protractile.runs.case.motion_tables import DriveTable
 
 BOTH_SIDES: tuple[Side, Side] = (1, -1)
 

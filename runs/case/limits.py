@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError
 from pydantic_core import InitErrorDetails, PydanticCustomError
 
-from geometry.fields import PART, In, declared_units, fields_of, names_of
+from protractile.geometry.fields import PART, In, declared_units, fields_of, names_of
 
 
 class CaseTable(BaseModel):
@@ -20,7 +20,7 @@ class CaseTable(BaseModel):
     model_config = ConfigDict(**PART, frozen=True)
 
     def declared_units(self, key: str) -> tuple[str, ...]:
-        """Return the units that a field declares by :class:`geometry.fields.In`."""
+        """Return the units that a field declares by :class:`.geometry.fields.In`."""
         return declared_units(type(self).model_fields[key])
 
 

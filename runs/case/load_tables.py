@@ -9,8 +9,8 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from dynamics.excitation import History, PiecewiseLinear, Ramp, Sine, Step
-from geometry.fields import (
+from protractile.dynamics.excitation import History, PiecewiseLinear, Ramp, Sine, Step
+from protractile.geometry.fields import (
     BoomError,
     Few,
     Flag,
@@ -22,7 +22,7 @@ from geometry.fields import (
     Positive,
     is_number,
 )
-from runs.case.limits import MOST_TIMES, CaseTable, Count, Text, error_at
+from protractile.runs.case.limits import MOST_TIMES, CaseTable, Count, Text, error_at
 
 # Groups of loads with a common factor in a combination.
 Group = Literal["dead", "payload", "wind", "dynamic", "test"]

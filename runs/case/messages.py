@@ -12,14 +12,14 @@ from typing import Any, get_args
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from geometry.fields import NAME, BoomError, describe, fields_of, names_of
-from geometry.typography import choices
-from runs.case import schema
-from runs.case.kinds import KINDS
-from runs.case.limits import key_of
-from runs.case.load_tables import AxialTable, HistoryTable
-from runs.case.sections import SHAPES
-from runs.process.terminal import shorten
+from protractile.geometry.fields import NAME, BoomError, describe, fields_of, names_of
+from protractile.geometry.typography import choices
+from protractile.runs.case import schema
+from protractile.runs.case.kinds import KINDS
+from protractile.runs.case.limits import key_of
+from protractile.runs.case.load_tables import AxialTable, HistoryTable
+from protractile.runs.case.sections import SHAPES
+from protractile.runs.process.terminal import shorten
 
 # Key of the case file for each attribute of a boom.
 _PARTS = {f"{key}s": key for key in ("segment", "joint", "load", "stop", "cylinder")}

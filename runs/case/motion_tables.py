@@ -9,12 +9,20 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from dynamics.arrays import Array
-from dynamics.excitation import History, MotionLaw, PiecewiseLinear, SCurve, Shaped, Spline, Stroke
-from geometry.boom import BoomError
-from geometry.fields import Few, Flag, In, NotNegative, Number, Positive, describe
-from runs.case.limits import MOST_TIMES, CaseTable, Text
-from runs.case.load_tables import HistoryTable
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.excitation import (
+    History,
+    MotionLaw,
+    PiecewiseLinear,
+    SCurve,
+    Shaped,
+    Spline,
+    Stroke,
+)
+from protractile.geometry.boom import BoomError
+from protractile.geometry.fields import Few, Flag, In, NotNegative, Number, Positive, describe
+from protractile.runs.case.limits import MOST_TIMES, CaseTable, Text
+from protractile.runs.case.load_tables import HistoryTable
 
 # Shorter times in s are input errors.
 _MIN_TIME = 1.0e-6
@@ -157,7 +165,7 @@ def max_speed(history: History) -> float:
 def resolving_times(histories: Sequence[History], duration: float) -> Array:
     """Return ascending times (num_times,) in s, up to ``duration``, that resolve all histories.
 
-    >>> from runs.case.motion_tables import resolving_times
+    >>> from protractile.runs.case.motion_tables import resolving_times
     >>> 0.01 in resolving_times([pt.Ramp(0.01)], 1000.0)
     True
     """

@@ -7,21 +7,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import pi
 
-from dynamics.contact import Gap
-from dynamics.excitation import HistorySum, is_constant
-from dynamics.frame_motion import FrameAcceleration, FrameMotion, Spin
-from dynamics.gap_system import GapSystem
-from dynamics.hanging_load import HangingLoad, Pendulum, RopeForce
-from dynamics.motion import initial_state
-from dynamics.stick_slip import ElasticDrive
-from geometry.axial import AxialChange, Thrust, lumped_masses, with_compression
-from geometry.boom import Boom, BoomError, Direction, Joint, PointMass, Segment
-from geometry.load import AngularAcceleration, Load
-from geometry.telescoping import drives_below, drives_of, telescoping_stations
-from runs.case.contact import JointTable
-from runs.case.load_tables import build_history
-from runs.case.motion_tables import DriveTable
-from runs.case.schema import Case, GravityTable
+from protractile.dynamics.contact import Gap
+from protractile.dynamics.excitation import HistorySum, is_constant
+from protractile.dynamics.frame_motion import FrameAcceleration, FrameMotion, Spin
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.hanging_load import HangingLoad, Pendulum, RopeForce
+from protractile.dynamics.motion import initial_state
+from protractile.dynamics.stick_slip import ElasticDrive
+from protractile.geometry.axial import AxialChange, Thrust, lumped_masses, with_compression
+from protractile.geometry.boom import Boom, BoomError, Direction, Joint, PointMass, Segment
+from protractile.geometry.load import AngularAcceleration, Load
+from protractile.geometry.telescoping import drives_below, drives_of, telescoping_stations
+from protractile.runs.case.contact import JointTable
+from protractile.runs.case.load_tables import build_history
+from protractile.runs.case.motion_tables import DriveTable
+from protractile.runs.case.schema import Case, GravityTable
 
 # Slack in m of a rope that never pulls.
 _SLACK = 1.0e6

@@ -19,16 +19,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.boom import Boom, BoomError
-from geometry.fields import describe, is_number
-from geometry.typography import choices
-from runs.case.build import build_boom, check_ensemble_data, check_names
-from runs.case.columns import FileColumn, read_pairs
-from runs.case.combinations import check_combinations
-from runs.case.contact import ContactTable, table_law
-from runs.case.kinds.model import ModelBoom
-from runs.case.kinds.shell import check_mesh_size
-from runs.case.limits import (
+from protractile.geometry.boom import Boom, BoomError
+from protractile.geometry.fields import describe, is_number
+from protractile.geometry.typography import choices
+from protractile.runs.case.build import build_boom, check_ensemble_data, check_names
+from protractile.runs.case.columns import FileColumn, read_pairs
+from protractile.runs.case.combinations import check_combinations
+from protractile.runs.case.contact import ContactTable, table_law
+from protractile.runs.case.kinds.model import ModelBoom
+from protractile.runs.case.kinds.shell import check_mesh_size
+from protractile.runs.case.limits import (
     MOST_MEMBERS,
     CaseTable,
     Steps,
@@ -37,13 +37,13 @@ from runs.case.limits import (
     map_tables,
     units_of,
 )
-from runs.case.load_tables import HistoryTable
-from runs.case.messages import BadInput, refusing
-from runs.case.motion_tables import TravelTable
-from runs.case.sanity import check_ranges
-from runs.case.schema import Case, EnsembleTable, Model, TimeTable
-from runs.case.units import System, scale
-from runs.case.user_files import read_text
+from protractile.runs.case.load_tables import HistoryTable
+from protractile.runs.case.messages import BadInput, refusing
+from protractile.runs.case.motion_tables import TravelTable
+from protractile.runs.case.sanity import check_ranges
+from protractile.runs.case.schema import Case, EnsembleTable, Model, TimeTable
+from protractile.runs.case.units import System, scale
+from protractile.runs.case.user_files import read_text
 
 # Maximum number of output times: the run would take too long for more.
 MOST_OUTPUTS = 10_000_000
@@ -68,7 +68,7 @@ class CheckedCase:
 
     @cached_property
     def boom(self) -> Boom:
-        """The boom of the case, from :func:`runs.case.build.build_boom`."""
+        """The boom of the case, from :func:`.runs.case.build.build_boom`."""
         return build_boom(self.case)
 
     def model_boom(self, model: Model) -> ModelBoom:

@@ -8,14 +8,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from geometry.boom import Boom, BoomError, Segment
-from geometry.material import Material
-from geometry.section import Direction
-from runs.case.actions import STANDARD_GRAVITY
-from runs.case.contact import JointTable
-from runs.case.motion_tables import max_speed
-from runs.case.schema import Case
-from runs.case.units import System, Unit
+from protractile.geometry.boom import Boom, BoomError, Segment
+from protractile.geometry.material import Material
+from protractile.geometry.section import Direction
+from protractile.runs.case.actions import STANDARD_GRAVITY
+from protractile.runs.case.contact import JointTable
+from protractile.runs.case.motion_tables import max_speed
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import System, Unit
 
 # Units that a user may have meant, most likely first.
 _LIKELY_UNITS = {

@@ -15,8 +15,8 @@ from pydantic.dataclasses import dataclass
 from pydantic.json_schema import GenerateJsonSchema
 from scipy.special import cosdg, sindg
 
-from geometry.cylinder import Cylinder
-from geometry.fields import (
+from protractile.geometry.cylinder import Cylinder
+from protractile.geometry.fields import (
     MOST_STATIONS,
     PART,
     Few,
@@ -27,15 +27,15 @@ from geometry.fields import (
     Positive,
     is_number,
 )
-from geometry.joint import BareStop
-from geometry.material import Material
-from geometry.observation import Observation, Recorded
-from geometry.support import Support
-from runs.case.contact import JointTable
-from runs.case.kinds import KINDS
-from runs.case.kinds.calibration import CalibratedTable
-from runs.case.kinds.model import ModelTable
-from runs.case.limits import (
+from protractile.geometry.joint import BareStop
+from protractile.geometry.material import Material
+from protractile.geometry.observation import Observation, Recorded
+from protractile.geometry.support import Support
+from protractile.runs.case.contact import JointTable
+from protractile.runs.case.kinds import KINDS
+from protractile.runs.case.kinds.calibration import CalibratedTable
+from protractile.runs.case.kinds.model import ModelTable
+from protractile.runs.case.limits import (
     MOST_MEMBERS,
     MOST_MODELS,
     MOST_SEGMENTS,
@@ -46,7 +46,7 @@ from runs.case.limits import (
     Text,
     validation_error,
 )
-from runs.case.load_tables import (
+from protractile.runs.case.load_tables import (
     AxialTable,
     CombinationTable,
     GroundAccelerationTable,
@@ -55,10 +55,10 @@ from runs.case.load_tables import (
     PayloadTable,
     SpectrumTable,
 )
-from runs.case.motion_tables import HoistTable, LuffTable, SlewTable
-from runs.case.sections import SegmentTable
-from runs.case.units import System, SystemName
-from runs.paper.statements import CaseKeys
+from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
+from protractile.runs.case.sections import SegmentTable
+from protractile.runs.case.units import System, SystemName
+from protractile.runs.paper.statements import CaseKeys
 
 
 class TimeTable(CaseTable):

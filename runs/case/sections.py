@@ -10,15 +10,25 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
-from geometry.fields import End, Few, In, Length, Name, NotNegative, Number, Positive, is_number
-from geometry.material import Material
-from geometry.polygon import closed_polygon
-from geometry.profiles import hexagon, octagon, u_section
-from geometry.section import BoxSection, Section
-from geometry.segment import PointMass
-from geometry.stiffeners import Collar, Diaphragm
-from geometry.support import Support
-from runs.case.limits import MOST_FACETS, CaseTable, error_at, superfluous_error
+from protractile.geometry.fields import (
+    End,
+    Few,
+    In,
+    Length,
+    Name,
+    NotNegative,
+    Number,
+    Positive,
+    is_number,
+)
+from protractile.geometry.material import Material
+from protractile.geometry.polygon import closed_polygon
+from protractile.geometry.profiles import hexagon, octagon, u_section
+from protractile.geometry.section import BoxSection, Section
+from protractile.geometry.segment import PointMass
+from protractile.geometry.stiffeners import Collar, Diaphragm
+from protractile.geometry.support import Support
+from protractile.runs.case.limits import MOST_FACETS, CaseTable, error_at, superfluous_error
 
 # A plain x is a pinned support at x.
 _Support = Annotated[

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from runs.case.schema import Case
+from protractile.runs.case.schema import Case
 
 _BARE = re.compile(r"[A-Za-z0-9_-]+")
 

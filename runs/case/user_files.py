@@ -9,8 +9,8 @@ import os
 import stat
 from pathlib import Path
 
-from runs.case.messages import BadInput
-from runs.folder.files import resolve_path
+from protractile.runs.case.messages import BadInput
+from protractile.runs.folder.files import resolve_path
 
 # Maximum size of a text file; a case with the largest permitted tables is smaller.
 MAX_BYTES = 16_000_000

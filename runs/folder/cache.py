@@ -30,14 +30,14 @@ import numpy as np
 import xarray as xr
 from pydantic import BaseModel
 
-from runs.folder.files import atomic_path
-from runs.folder.versions import packages, program
-from runs.process.terminal import NOTICES, shorten
+from protractile.runs.folder.files import atomic_path
+from protractile.runs.folder.versions import program
+from protractile.runs.process.terminal import NOTICES, shorten
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from shell_model.reduced_shell import ReducedShell
+    from protractile.shell_model.reduced_shell import ReducedShell
 
 Entry = TypeVar("Entry")
 
@@ -199,7 +199,7 @@ def load_or_compute(
     """
     if cache is None:
         return compute()
-    from shell_model.reduced_shell import ReducedShell
+    from protractile.shell_model.reduced_shell import ReducedShell
 
     start = perf_counter()
     name = key(list(content))
@@ -297,7 +297,7 @@ def _decode(encoded: Any, file: IO[bytes]) -> Any:
 
 def _class(module: str, name: str) -> type:
     """Return a class of this program, or raise ValueError if its objects have more than fields."""
-    if module.partition(".")[0] in {package.name for package in packages()}:
+    if module.startswith("protractile."):
         content = vars(import_module(module)).get(name)
         if (
             isinstance(content, type)

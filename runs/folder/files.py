@@ -23,7 +23,7 @@ from glob import escape
 from pathlib import Path
 from secrets import token_hex
 
-from runs.process.ending import when_interrupted
+from protractile.runs.process.ending import when_interrupted
 
 MANIFEST = ".manifest"
 

@@ -8,7 +8,7 @@ import platform
 import sys
 from collections.abc import Iterable, Sequence
 from functools import cache
-from importlib.metadata import PackageNotFoundError, distribution, version
+from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 # Python packages that influence numerical results.
@@ -37,12 +37,8 @@ def versions() -> dict[str, str | None]:
 
 @cache
 def packages() -> list[Path]:
-    """Return the folders of this program's packages, in the source tree or as installed."""
-    top = Path(__file__).parents[2]
-    if (top / "pyproject.toml").is_file():
-        return [path.parent for path in sorted(top.glob("*/__init__.py"))]
-    installed = distribution("protractile").read_text("top_level.txt") or ""
-    return [top / name for name in installed.split()]
+    """Return the folders of this program's packages, which are links in the source tree."""
+    return [path.parent for path in sorted(Path(__file__).parents[2].glob("*/__init__.py"))]
 
 
 def sources(folders: Iterable[Path]) -> str:

@@ -15,46 +15,46 @@ import numpy as np
 import xarray as xr
 from matplotlib.path import Path
 
-from dynamics.failure import NumericsError
-from dynamics.integrator import FixedStep
-from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.typography import TO_MILLI
-from runs.case.build import build_boom
-from runs.case.kinds.calibration import OF_MOTION, CalibratedTable
-from runs.case.kinds.model import BuiltModel
-from runs.case.kinds.shell import Shell
-from runs.case.reading import CheckedCase
-from runs.case.schema import Case
-from runs.folder.cache import Cache, key
-from runs.live.controls import Draft
-from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
-from runs.pipeline.model_run import summarise_motion
-from runs.pipeline.models import MotionPlan, build_on, complete_system
-from runs.pipeline.motion_results import MotionResult
-from runs.pipeline.pads import pad_loads
-from runs.pipeline.proportions import proportion_cautions
-from runs.pipeline.results import Results, label
-from runs.pipeline.section_forces import LoadedModel
-from runs.pipeline.static_results import (
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.typography import TO_MILLI
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.calibration import OF_MOTION, CalibratedTable
+from protractile.runs.case.kinds.model import BuiltModel
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.reading import CheckedCase
+from protractile.runs.case.schema import Case
+from protractile.runs.folder.cache import Cache, key
+from protractile.runs.live.controls import Draft
+from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
+from protractile.runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
+from protractile.runs.pipeline.model_run import summarise_motion
+from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
+from protractile.runs.pipeline.motion_results import MotionResult
+from protractile.runs.pipeline.pads import pad_loads
+from protractile.runs.pipeline.proportions import proportion_cautions
+from protractile.runs.pipeline.results import Results, label
+from protractile.runs.pipeline.section_forces import LoadedModel
+from protractile.runs.pipeline.static_results import (
     Diagram,
     StaticResult,
     extended_positions,
     instants,
     positions,
 )
-from runs.pipeline.strength import FibreStress, fibre_forces, largest_stresses
-from runs.pipeline.summary import Summary
-from runs.report import symbols, theme
-from runs.report.charts import Chart, Curve
-from runs.report.formatting import number
-from runs.report.rest_figures import chart_along, rest_curves
-from runs.report.summary_table import summary_table, utilisation_verdict
+from protractile.runs.pipeline.strength import FibreStress, fibre_forces, largest_stresses
+from protractile.runs.pipeline.summary import Summary
+from protractile.runs.report import symbols, theme
+from protractile.runs.report.charts import Chart, Curve
+from protractile.runs.report.formatting import number
+from protractile.runs.report.rest_figures import chart_along, rest_curves
+from protractile.runs.report.summary_table import summary_table, utilisation_verdict
 
 if TYPE_CHECKING:
-    from beam_model.calibration import Calibration
+    from protractile.beam_model.calibration import Calibration
 
 
 # Heights in pixels: of a panel of a chart, and of the axis below the panels.
@@ -247,9 +247,9 @@ def _calibration(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration
 
     # With its signal handler, PETSc would end the process when a browser closes a connection.
     petsc4py.init(["-no_signal_handler"])
-    from beam_model.calibration import calibrate
-    from shell_model.reduced_shell import ReducedShell
-    from shell_model.standard import with_plays_and_loads
+    from protractile.beam_model.calibration import calibrate
+    from protractile.shell_model.reduced_shell import ReducedShell
+    from protractile.shell_model.standard import with_plays_and_loads
 
     name, cache = key([*shell.content(boom)]), Cache.of_user()
     if name not in _LAST and cache is not None and (cached := cache.load(name, ReducedShell)):

@@ -13,20 +13,20 @@ from functools import cached_property
 import numpy as np
 from pydantic.fields import FieldInfo
 
-from geometry.boom import Boom
-from geometry.fields import describe, fields_of, is_number
-from geometry.fit import pad_room, room
-from runs.case import reading
-from runs.case.build import build_boom
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.model import select_kind
-from runs.case.kinds.shell import Shell
-from runs.case.messages import BadInput, refusing
-from runs.case.reading import CheckedCase
-from runs.case.sanity import usual_ranges
-from runs.case.schema import Case
-from runs.sweep.points import hold_plates, infer_plates
-from runs.sweep.variation import Place, Tables, innermost, numbers, unit_of, with_size
+from protractile.geometry.boom import Boom
+from protractile.geometry.fields import describe, fields_of, is_number
+from protractile.geometry.fit import pad_room, room
+from protractile.runs.case import reading
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.finite_element import BeamElements
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.messages import BadInput, refusing
+from protractile.runs.case.reading import CheckedCase
+from protractile.runs.case.sanity import usual_ranges
+from protractile.runs.case.schema import Case
+from protractile.runs.sweep.points import hold_plates, infer_plates
+from protractile.runs.sweep.variation import Place, Tables, innermost, numbers, unit_of, with_size
 
 # Name of the beam on the page, and number of its elements in the longest segment.
 BEAM, ELEMENTS = "beam", 4

@@ -25,21 +25,21 @@ from typing import Any
 
 import numpy as np
 
-from dynamics.failure import NUMERICAL_ERRORS
-from runs.case import toml
-from runs.case.messages import BadInput
-from runs.case.reading import check
-from runs.case.schema import Case
-from runs.live.beam import beam_results
-from runs.live.controls import Draft
-from runs.pipeline.estimates import run_cost
-from runs.pipeline.model_run import failure_reason
-from runs.pipeline.results import Results
-from runs.process.ending import when_interrupted
-from runs.report.output import REPORT
-from runs.report.pages import page
-from runs.report.summary_table import deviation_note, summary_table
-from runs.report.viewer import VIEWER
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.runs.case import toml
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.reading import check
+from protractile.runs.case.schema import Case
+from protractile.runs.live.beam import beam_results
+from protractile.runs.live.controls import Draft
+from protractile.runs.pipeline.estimates import run_cost
+from protractile.runs.pipeline.model_run import failure_reason
+from protractile.runs.pipeline.results import Results
+from protractile.runs.process.ending import when_interrupted
+from protractile.runs.report.output import REPORT
+from protractile.runs.report.pages import page
+from protractile.runs.report.summary_table import deviation_note, summary_table
+from protractile.runs.report.viewer import VIEWER
 
 _HTML = "text/html; charset=utf-8"
 

@@ -15,14 +15,20 @@ from itertools import combinations, pairwise
 import numpy as np
 from scipy.special import stdtrit
 
-from geometry.arrays import Array, Mask
-from runs.case.kinds.kantorovich import Kantorovich
-from runs.case.kinds.model import select_kind
-from runs.case.schema import Model
-from runs.paper.run_query import MissingData, RunQuery, final_differences, options, peak_distances
-from runs.paper.statements import STATEMENTS
-from runs.paper.verdicts import Judgement, Verdict
-from runs.pipeline.results import Results
+from protractile.geometry.arrays import Array, Mask
+from protractile.runs.case.kinds.kantorovich import Kantorovich
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.schema import Model
+from protractile.runs.paper.run_query import (
+    MissingData,
+    RunQuery,
+    final_differences,
+    options,
+    peak_distances,
+)
+from protractile.runs.paper.statements import STATEMENTS
+from protractile.runs.paper.verdicts import Judgement, Verdict
+from protractile.runs.pipeline.results import Results
 
 # S1. The two series differ by round-off only: about 1e-14 of the range.
 COINCIDENCE = 1.0e-6
@@ -57,7 +63,7 @@ SEGMENTS = 3
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """Result of a rule. Its fields are those of :class:`runs.paper.verdicts.Verdict`."""
+    """Result of a rule. Its fields are those of :class:`.runs.paper.verdicts.Verdict`."""
 
     verdict: Judgement
     why: str

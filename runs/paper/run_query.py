@@ -9,13 +9,13 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from geometry.arrays import Array, Mask
-from runs.case.kinds.kantorovich import Kantorovich
-from runs.case.kinds.model import select_kind
-from runs.case.schema import Case, Model
-from runs.pipeline.low_pass import slow_peaks
-from runs.pipeline.results import Results
-from runs.pipeline.summary import ModelSummary
+from protractile.geometry.arrays import Array, Mask
+from protractile.runs.case.kinds.kantorovich import Kantorovich
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.pipeline.low_pass import slow_peaks
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.summary import ModelSummary
 
 # A peak that some models lack counts only if the run lasts this number of periods after it.
 NEXT_PEAK = 1.5

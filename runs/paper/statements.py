@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from typing import Annotated, Literal, Self
 
-from geometry.fields import Few
-from runs.case.limits import CaseTable
+from protractile.geometry.fields import Few
+from protractile.runs.case.limits import CaseTable
 
 StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
 STATEMENTS: dict[StatementId, str] = {

@@ -11,12 +11,12 @@ from typing import Literal
 from rich.console import Console
 from rich.text import Text
 
-from runs.case.schema import Case
-from runs.paper.statements import STATEMENTS
-from runs.process.terminal import message, say, shorten
-from runs.report.formatting import NONE, number
-from runs.report.pages import Addition
-from runs.report.tables import as_json
+from protractile.runs.case.schema import Case
+from protractile.runs.paper.statements import STATEMENTS
+from protractile.runs.process.terminal import message, say, shorten
+from protractile.runs.report.formatting import NONE, number
+from protractile.runs.report.pages import Addition
+from protractile.runs.report.tables import as_json
 
 Judgement = Literal["reproduced", "contradicted", "undecided"]
 MARKS: Mapping[Judgement, str] = {"reproduced": "✓", "contradicted": "✗", "undecided": "?"}

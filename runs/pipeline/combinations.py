@@ -2,7 +2,7 @@
 """Static results of all combinations of a case in their load cases, and the envelope.
 
 The boom consists of beam elements with play and axial forces, as in
-:mod:`runs.pipeline.largest_loads`. Each combination has a system of its own, since its axial forces
+:mod:`.pipeline.largest_loads`. Each combination has a system of its own, since its axial forces
 reduce the stiffness.
 """
 
@@ -15,13 +15,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.failure import NUMERICAL_ERRORS
-from geometry.typography import join_words
-from runs.case.build import build_boom
-from runs.case.combinations import CombinedCase, combined_cases
-from runs.case.schema import Case
-from runs.case.units import System
-from runs.pipeline.largest_loads import (
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.geometry.typography import join_words
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.combinations import CombinedCase, combined_cases
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import System
+from protractile.runs.pipeline.largest_loads import (
     BeamStates,
     StaticExtreme,
     StaticKind,
@@ -29,10 +29,10 @@ from runs.pipeline.largest_loads import (
     in_units,
     without_negligible,
 )
-from runs.pipeline.statics import boom_with_play
-from runs.pipeline.strength import WallStress
-from runs.pipeline.wall_buckling import WallBuckling
-from runs.report.tables import Column, Table
+from protractile.runs.pipeline.statics import boom_with_play
+from protractile.runs.pipeline.strength import WallStress
+from protractile.runs.pipeline.wall_buckling import WallBuckling
+from protractile.runs.report.tables import Column, Table
 
 # Mark of governing values in a table.
 _GOVERNS = "*"

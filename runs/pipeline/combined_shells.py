@@ -14,23 +14,23 @@ from dataclasses import replace
 
 import numpy as np
 
-from dynamics.excitation import InitialImpulse, PiecewiseLinear, ReleasedLoad, Step
-from dynamics.failure import NUMERICAL_ERRORS
-from geometry.axial import AxialChange
-from geometry.boom import Boom
-from geometry.load import Load
-from runs.case.build import build_boom
-from runs.case.combinations import CombinedCase, combined_cases
-from runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom
-from runs.case.kinds.shell import Shell
-from runs.case.schema import Case
-from runs.pipeline.combinations import CombinationState
-from runs.pipeline.largest_loads import BeamStates
-from runs.pipeline.model_output import force_places
-from runs.pipeline.panels import weakest_panels
-from runs.pipeline.section_forces import LoadedModel
-from runs.pipeline.strength import wall_stresses
-from runs.pipeline.wall_buckling import buckle_shell
+from protractile.dynamics.excitation import InitialImpulse, PiecewiseLinear, ReleasedLoad, Step
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.geometry.axial import AxialChange
+from protractile.geometry.boom import Boom
+from protractile.geometry.load import Load
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.combinations import CombinedCase, combined_cases
+from protractile.runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.combinations import CombinationState
+from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.model_output import force_places
+from protractile.runs.pipeline.panels import weakest_panels
+from protractile.runs.pipeline.section_forces import LoadedModel
+from protractile.runs.pipeline.strength import wall_stresses
+from protractile.runs.pipeline.wall_buckling import buckle_shell
 
 # History of a released load in static states: 1 at t = 0, then 0.
 _RELEASE = PiecewiseLinear((0.0, 1.0e-6), (1.0, 0.0))
@@ -69,7 +69,7 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
     The returned booms have the same list of loads; a load that a boom lacks has magnitude 0 there.
     The given booms differ only in loads and axial forces.
     """
-    from shell_model.standard import standard_boom
+    from protractile.shell_model.standard import standard_boom
 
     of_booms = [_by_kind(boom) for boom in booms]
     kinds = {kind: load for loads in of_booms for kind, load in loads.items()}
@@ -122,9 +122,9 @@ def _state(
 
     ``shared`` is the boom of the reduced shell, with the largest axial forces.
     """
-    from shell_model.standard import with_plays_and_loads
-    from shell_model.stress.history import stress_near_places
-    from shell_model.stress.stresses import ShellStress
+    from protractile.shell_model.standard import with_plays_and_loads
+    from protractile.shell_model.stress.history import stress_near_places
+    from protractile.shell_model.stress.stresses import ShellStress
 
     assert built.shell is not None
     shell = with_plays_and_loads(built.shell, boom)
@@ -163,8 +163,8 @@ def _with_buckling(
 
     The governing state has the lowest buckling factor by panel formulas.
     """
-    from shell_model.buckling import ShellState
-    from shell_model.standard import with_plays_and_loads
+    from protractile.shell_model.buckling import ShellState
+    from protractile.shell_model.standard import with_plays_and_loads
 
     assert case.buckling is not None
     assert built.shell is not None

@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 import xarray as xr
 
-from dynamics.arrays import Array
-from dynamics.predictability import ensemble_horizons
-from dynamics.trajectory import PointwiseDifferences
-from runs.pipeline.low_pass import Number, Numbers, SlowPeaks
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.predictability import ensemble_horizons
+from protractile.dynamics.trajectory import PointwiseDifferences
+from protractile.runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class Comparison:
 def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float) -> Comparison:
     """Compare the tips of the ensembles of two models.
 
-    Ensembles are those of :func:`dynamics.predictability.integrate_ensemble`; the cut-off of the
+    Ensembles are those of :func:`.dynamics.predictability.integrate_ensemble`; the cut-off of the
     slow motion is in Hz.
 
     Raises:

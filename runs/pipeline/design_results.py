@@ -7,18 +7,18 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from math import hypot
 
-from runs.case.schema import Model
-from runs.pipeline.combinations import CombinationResult
-from runs.pipeline.modes import Mode, ModeComparison
-from runs.pipeline.motion_results import MotionResult
-from runs.pipeline.panels import PanelBuckling
-from runs.pipeline.proofs import Proofs
-from runs.pipeline.residual_vibration import ResidualVibration
-from runs.pipeline.static_results import StaticResult
-from runs.pipeline.statics import Reaction
-from runs.pipeline.strength import Life
-from runs.pipeline.turning import CraneDrives, Hoisting
-from runs.pipeline.wall_buckling import WallBuckling
+from protractile.runs.case.schema import Model
+from protractile.runs.pipeline.combinations import CombinationResult
+from protractile.runs.pipeline.modes import Mode, ModeComparison
+from protractile.runs.pipeline.motion_results import MotionResult
+from protractile.runs.pipeline.panels import PanelBuckling
+from protractile.runs.pipeline.proofs import Proofs
+from protractile.runs.pipeline.residual_vibration import ResidualVibration
+from protractile.runs.pipeline.static_results import StaticResult
+from protractile.runs.pipeline.statics import Reaction
+from protractile.runs.pipeline.strength import Life
+from protractile.runs.pipeline.turning import CraneDrives, Hoisting
+from protractile.runs.pipeline.wall_buckling import WallBuckling
 
 # Fraction of the value with play below which a value without play is near zero.
 _LEAST = 0.01

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from beam_model.statics import telescoping_system
-from dynamics.gap_system import GapSystem
-from dynamics.stick_slip import ElasticDrive
-from dynamics.travel import Travel
-from geometry.boom import Boom
-from geometry.typography import TO_KILO, TO_PERCENT
-from runs.case.motion_tables import max_speed
-from runs.case.motions import elastic_drives, with_elastic_drives
-from runs.case.schema import Case
-from runs.case.units import System
-from runs.pipeline.static_results import extended_positions, instants, positions
-from runs.pipeline.statics import boom_with_play, statics
+from protractile.beam_model.statics import telescoping_system
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.stick_slip import ElasticDrive
+from protractile.dynamics.travel import Travel
+from protractile.geometry.boom import Boom
+from protractile.geometry.typography import TO_KILO, TO_PERCENT
+from protractile.runs.case.motion_tables import max_speed
+from protractile.runs.case.motions import elastic_drives, with_elastic_drives
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import System
+from protractile.runs.pipeline.static_results import extended_positions, instants, positions
+from protractile.runs.pipeline.statics import boom_with_play, statics
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,7 +117,7 @@ def stick_slip_estimates(case: Case, boom: Boom) -> Iterator[StickSlipEstimate]:
 
 def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     """Return the largest friction R in N over the static states of the run."""
-    from dynamics.time_step import axial_friction
+    from protractile.dynamics.time_step import axial_friction
 
     duration, most = case.time.duration, 0.0
     rests = positions(system, instants(system, duration)) | extended_positions(system, duration)

@@ -14,13 +14,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from dynamics.failure import NUMERICAL_ERRORS
-from dynamics.motion import MOST_STEPS, Motion
-from runs.case.kinds.model import ModelTable
-from runs.case.messages import BadInput
-from runs.case.reading import CheckedCase
-from runs.case.schema import Case, Model
-from runs.pipeline.models import build_on, initial_motion
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.dynamics.motion import MOST_STEPS, Motion
+from protractile.runs.case.kinds.model import ModelTable
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.reading import CheckedCase
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.pipeline.models import build_on, initial_motion
 
 # Memory in bytes and time in s of runs that need no confirmation.
 MAX_MEMORY, MAX_TIME = 4.0e9, 3600.0

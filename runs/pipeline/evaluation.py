@@ -11,36 +11,36 @@ from types import MappingProxyType
 import numpy as np
 from scipy.linalg import eigh, null_space
 
-from dynamics.failure import NUMERICAL_ERRORS
-from dynamics.gap_system import GapSystem
-from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.telescoping import travel
-from runs.case.kinds.model import BuiltModel
-from runs.case.motions import with_initial_slack
-from runs.case.schema import Case, Model
-from runs.pipeline.combinations import combination_states
-from runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
-from runs.pipeline.model_quality import quality_notes, reference_of
-from runs.pipeline.model_run import ModelRun
-from runs.pipeline.models import MotionPlan, complete_system
-from runs.pipeline.modes import ModeComparison, match_modes, modes
-from runs.pipeline.motion_results import evaluate_motion
-from runs.pipeline.panels import weakest_panels
-from runs.pipeline.proofs import prove
-from runs.pipeline.residual_vibration import residual_vibration
-from runs.pipeline.section_forces import LoadedModel
-from runs.pipeline.static_results import (
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.telescoping import travel
+from protractile.runs.case.kinds.model import BuiltModel
+from protractile.runs.case.motions import with_initial_slack
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.pipeline.combinations import combination_states
+from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
+from protractile.runs.pipeline.model_quality import quality_notes, reference_of
+from protractile.runs.pipeline.model_run import ModelRun
+from protractile.runs.pipeline.models import MotionPlan, complete_system
+from protractile.runs.pipeline.modes import ModeComparison, match_modes, modes
+from protractile.runs.pipeline.motion_results import evaluate_motion
+from protractile.runs.pipeline.panels import weakest_panels
+from protractile.runs.pipeline.proofs import prove
+from protractile.runs.pipeline.residual_vibration import residual_vibration
+from protractile.runs.pipeline.section_forces import LoadedModel
+from protractile.runs.pipeline.static_results import (
     extended_positions,
     instants,
     positions,
     static_result,
 )
-from runs.pipeline.statics import reactions, statics
-from runs.pipeline.strength import HAS_RAINFLOW, life, wall_stresses
-from runs.pipeline.summary import Summary
-from runs.pipeline.turning import crane_drives, hoisting
+from protractile.runs.pipeline.statics import reactions, statics
+from protractile.runs.pipeline.strength import HAS_RAINFLOW, life, wall_stresses
+from protractile.runs.pipeline.summary import Summary
+from protractile.runs.pipeline.turning import crane_drives, hoisting
 
 # Modes with ω² below this fraction of the smallest positive ω² of the segments count as rigid.
 _RIGID_FRACTION = 1.0e-6
@@ -219,7 +219,7 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
     pads press on both lateral pads. Local compliance, for example of a shell's walls, remains. The
     contacts of stops on the ground are kept.
 
-    >>> from runs.pipeline.evaluation import bonded_system
+    >>> from protractile.runs.pipeline.evaluation import bonded_system
     >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
     ...     rows=np.array([[1.0, -1.0]]), observers={}, damping=np.zeros(2),
     ...     released_load=np.zeros(2), initial_impulse=np.zeros(2), dashpots=np.zeros((0, 2)),

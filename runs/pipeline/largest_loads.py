@@ -13,25 +13,30 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from beam_model.lines import lines
-from beam_model.statics import Elements, static_state, static_theory
-from dynamics.failure import NumericsError
-from geometry.arrays import Array
-from geometry.axial import foot_thrust
-from geometry.boom import Boom
-from runs.case.build import build_boom
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.model import select_kind
-from runs.case.schema import Case
-from runs.case.units import System
-from runs.pipeline.load_table import release_note
-from runs.pipeline.models import MotionPlan, build_on
-from runs.pipeline.proportions import CHECK_UNITS, tip_cautions
-from runs.pipeline.section_forces import LoadedModel
-from runs.pipeline.static_results import StaticResult, instants, positions, static_result
-from runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
-from runs.report.formatting import amount, number, without_round_off
-from runs.report.tables import Column, Table
+from protractile.beam_model.lines import lines
+from protractile.beam_model.statics import Elements, static_state, static_theory
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import foot_thrust
+from protractile.geometry.boom import Boom
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.finite_element import BeamElements
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import System
+from protractile.runs.pipeline.load_table import release_note
+from protractile.runs.pipeline.models import MotionPlan, build_on
+from protractile.runs.pipeline.proportions import CHECK_UNITS, tip_cautions
+from protractile.runs.pipeline.section_forces import LoadedModel
+from protractile.runs.pipeline.static_results import (
+    StaticResult,
+    instants,
+    positions,
+    static_result,
+)
+from protractile.runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
+from protractile.runs.report.formatting import amount, number, without_round_off
+from protractile.runs.report.tables import Column, Table
 
 # Elements of the longest segment. The error of stresses under a uniform load is below 0.1 %.
 _ELEMENTS = 20

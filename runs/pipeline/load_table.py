@@ -8,15 +8,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.boom import Boom
-from geometry.load import Load, PartialLoad
-from runs.case.actions import thrusts
-from runs.case.load_tables import HistoryTable, LoadTable, build_history
-from runs.case.motion_tables import resolving_times
-from runs.case.schema import Case
-from runs.case.units import System
-from runs.report.formatting import number
-from runs.report.tables import Table
+from protractile.geometry.boom import Boom
+from protractile.geometry.load import Load, PartialLoad
+from protractile.runs.case.actions import thrusts
+from protractile.runs.case.load_tables import HistoryTable, LoadTable, build_history
+from protractile.runs.case.motion_tables import resolving_times
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import System
+from protractile.runs.report.formatting import number
+from protractile.runs.report.tables import Table
 
 _CONSTANT, _ALL = "constant", "all masses"
 # Direction of axial forces, which are positive in compression.

@@ -10,8 +10,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import BeforeValidator, PlainSerializer, PlainValidator
 
-from dynamics.arrays import Array
-from dynamics.trajectory import prominent_peaks
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.trajectory import prominent_peaks
 
 # Types of arrays and numbers. In JSON, null replaces NaN and infinity.
 Numbers = Annotated[

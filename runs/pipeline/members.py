@@ -12,15 +12,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
-from geometry.boom import Boom
-from runs.case.schema import TimeTable
-from runs.pipeline.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
-from runs.pipeline.summary import StepsForPeaks, Trial
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.boom import Boom
+from protractile.runs.case.schema import TimeTable
+from protractile.runs.pipeline.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
+from protractile.runs.pipeline.summary import StepsForPeaks, Trial
 
 if TYPE_CHECKING:
     from mpi4py import MPI

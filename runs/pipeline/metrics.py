@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Names, units and display formats of the results of a model, as annotations of record fields.
 
->>> from runs.pipeline.residual_vibration import ResidualVibration
+>>> from protractile.runs.pipeline.residual_vibration import ResidualVibration
 >>> metrics(ResidualVibration)["tip"].title
 'residual vibration'
 """
@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from types import UnionType
 from typing import ClassVar, get_args, get_type_hints
 
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
+from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
 
 # Conversion factors from SI units by the first character of the displayed unit.
 _PREFIXES = {"m": TO_MILLI, "k": TO_KILO, "M": TO_MEGA, "%": TO_PERCENT}

@@ -17,21 +17,21 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from dynamics.damping import closed_contact_modes
-from dynamics.line import Line, Quantity
-from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
-from geometry.boom import Boom
-from runs.pipeline.modes import MODES
-from runs.pipeline.results import CONVENTIONS
-from runs.pipeline.static_results import positions
-from runs.pipeline.wall_buckling import BuckledShell
-from shell_model.stress.history import StressSummary, stress_near_places, summarise
-from shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
+from protractile.dynamics.damping import closed_contact_modes
+from protractile.dynamics.line import Line, Quantity
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.runs.pipeline.modes import MODES
+from protractile.runs.pipeline.results import CONVENTIONS
+from protractile.runs.pipeline.static_results import positions
+from protractile.runs.pipeline.wall_buckling import BuckledShell
+from protractile.shell_model.stress.history import StressSummary, stress_near_places, summarise
+from protractile.shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
 if TYPE_CHECKING:
-    from geometry.plating import PlatedMesh
-    from shell_model.reduced_shell import ReducedShell
+    from protractile.geometry.plating import PlatedMesh
+    from protractile.shell_model.reduced_shell import ReducedShell
 
 
 STRESSES = "stress.nc"
@@ -189,7 +189,7 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
     segment, and in Pa the von Mises stresses of faces and middle, and six stress components.
 
     Args:
-        fields: fields of ``shell_model.stress.fields``, and the modal coordinates ``state``
+        fields: fields of :mod:`.stress.fields`, and the modal coordinates ``state``
             (time, mode); attribute ``model``.
         folder: folder for ``MODEL.pvd`` and ``MODEL-NUMBER.vtu``.
         times: times in s.

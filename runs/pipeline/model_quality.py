@@ -14,32 +14,32 @@ from functools import partial
 import numpy as np
 import xarray as xr
 
-from dynamics.failure import NUMERICAL_ERRORS
-from dynamics.trajectory import PointwiseDifferences
-from geometry.axial import moving_force
-from geometry.boom import Boom
-from geometry.typography import TO_PERCENT, join_words
-from runs.case.actions import series_notes
-from runs.case.kinds.model import select_kind
-from runs.case.kinds.shell import Shell
-from runs.case.schema import Case, Model
-from runs.pipeline.comparison import Distributions, PeakDifferences, compare
-from runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
-from runs.pipeline.drives import lag_cautions, stick_slip_cautions, stick_slip_estimates
-from runs.pipeline.largest_loads import BeamStates
-from runs.pipeline.pad_walls import deflection_advice
-from runs.pipeline.proportions import (
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.dynamics.trajectory import PointwiseDifferences
+from protractile.geometry.axial import moving_force
+from protractile.geometry.boom import Boom
+from protractile.geometry.typography import TO_PERCENT, join_words
+from protractile.runs.case.actions import series_notes
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.pipeline.comparison import Distributions, PeakDifferences, compare
+from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
+from protractile.runs.pipeline.drives import lag_cautions, stick_slip_cautions, stick_slip_estimates
+from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.pad_walls import deflection_advice
+from protractile.runs.pipeline.proportions import (
     CHECK_UNITS,
     buckling_cautions,
     period_cautions,
     proportion_cautions,
     tip_cautions,
 )
-from runs.pipeline.static_results import bulge_cautions
-from runs.pipeline.statics import boom_with_play
-from runs.pipeline.summary import Comparisons, Summary, WholeRun
-from runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
-from runs.report.formatting import number, signed_percent
+from protractile.runs.pipeline.static_results import bulge_cautions
+from protractile.runs.pipeline.statics import boom_with_play
+from protractile.runs.pipeline.summary import Comparisons, Summary, WholeRun
+from protractile.runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
+from protractile.runs.report.formatting import number, signed_percent
 
 # Members whose tips differ by more than this fraction of the range have diverged.
 _DIVERGED = 0.2

@@ -15,28 +15,28 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from beam_model.calibration import Calibration, Stiffness
-from dynamics.equilibrium import equilibrium
-from dynamics.failure import NUMERICAL_ERRORS, NumericsError
-from dynamics.gap_system import GapSystem
-from dynamics.predictability import (
+from protractile.beam_model.calibration import Calibration, Stiffness
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.predictability import (
     SHARES,
     ensemble_horizons,
     integrate_ensemble,
     measure_horizons,
 )
-from dynamics.trajectory import Trajectory
-from geometry.boom import Boom, Segment
-from runs.case import toml
-from runs.case.kinds.model import BuildContext, BuiltModel
-from runs.case.kinds.shell import Shell
-from runs.case.schema import Case, Model
-from runs.folder.cache import Cache, key
-from runs.pipeline import members
-from runs.pipeline.low_pass import SlowPeaks
-from runs.pipeline.model_output import ShellOutput
-from runs.pipeline.models import MotionPlan, build
-from runs.pipeline.summary import (
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.boom import Boom, Segment
+from protractile.runs.case import toml
+from protractile.runs.case.kinds.model import BuildContext, BuiltModel
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.folder.cache import Cache, key
+from protractile.runs.pipeline import members
+from protractile.runs.pipeline.low_pass import SlowPeaks
+from protractile.runs.pipeline.model_output import ShellOutput
+from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.pipeline.summary import (
     BeamStiffness,
     CalibrationCard,
     EnsembleSummary,
@@ -45,9 +45,9 @@ from runs.pipeline.summary import (
     Predictability,
     StationSpring,
 )
-from runs.pipeline.wall_buckling import buckle_shell, farthest_state
-from runs.process.terminal import Progress
-from shell_model.stages import Stages
+from protractile.runs.pipeline.wall_buckling import buckle_shell, farthest_state
+from protractile.runs.process.terminal import Progress
+from protractile.shell_model.stages import Stages
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -9,21 +9,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
-from dynamics.hanging_load import HangingLoad
-from dynamics.line import Line
-from dynamics.motion import Motion, build_motion
-from dynamics.trajectory import Trajectory
-from dynamics.travel import ChangingAxialForce, RowTable, Travel
-from geometry.boom import Boom
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom, ModelTable
-from runs.case.motions import hanging_load, with_elastic_drives, with_hanging_load
-from runs.case.schema import Case, Model
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.hanging_load import HangingLoad
+from protractile.dynamics.line import Line
+from protractile.dynamics.motion import Motion, build_motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.dynamics.travel import ChangingAxialForce, RowTable, Travel
+from protractile.geometry.boom import Boom
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom, ModelTable
+from protractile.runs.case.motions import hanging_load, with_elastic_drives, with_hanging_load
+from protractile.runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
-    from dynamics.integrator import AdaptiveStep, FixedStep
+    from protractile.dynamics.integrator import AdaptiveStep, FixedStep
 
 # Minimum stiffness of a coordinate, as a fraction of the smallest stiffness of an elastic mode.
 _LEAST_STIFFNESS = 1.0e-6
@@ -116,7 +116,7 @@ class MotionPlan:
             NumericsError: there is no equilibrium to start from, or the motion needs too many
                 steps.
         """
-        from dynamics.integrator import AdaptiveStep, FixedStep
+        from protractile.dynamics.integrator import AdaptiveStep, FixedStep
 
         motion, time = initial_motion(system, case), case.time
         load = None if case.hoist is None else hanging_load(case, build_boom(case))
@@ -134,8 +134,8 @@ class MotionPlan:
 
         All motions of a process share the compiled loop.
         """
-        from dynamics.kernels.compiled import compilation_lock
-        from dynamics.kernels.march import march
+        from protractile.dynamics.kernels.compiled import compilation_lock
+        from protractile.dynamics.kernels.march import march
 
         with compilation_lock():
             if not march.signatures:
@@ -148,7 +148,7 @@ class MotionPlan:
 
     def step_error(self, trajectory: Trajectory, progress: Callable[[float], None]) -> float:
         """Return the largest change of the tip by a doubled step, as a fraction of its range."""
-        from dynamics.integrator import FixedStep
+        from protractile.dynamics.integrator import FixedStep
 
         coarser = FixedStep(2.0 * trajectory.data.attrs["step"])
         longer = coarser(self.motion, progress)

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from dynamics.damping import closed_contact_modes
-from dynamics.line import Quantity
-from geometry.arrays import Array
-from geometry.boom import Boom, Segment
-from runs.pipeline.section_forces import LoadedModel, round_values
+from protractile.dynamics.damping import closed_contact_modes
+from protractile.dynamics.line import Quantity
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Segment
+from protractile.runs.pipeline.section_forces import LoadedModel, round_values
 
 # Number of modes of each model.
 MODES = 8

@@ -9,16 +9,22 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.line import Quantity
-from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
-from geometry.axial import foot_thrust
-from geometry.boom import Boom
-from geometry.cylinder import forces
-from geometry.section import Direction
-from runs.pipeline.section_forces import LoadedModel, round_values
-from runs.pipeline.static_results import StaticResult, place_names
-from runs.pipeline.strength import Fibres, FibreStress, StressCurve, WallStress, largest_stresses
+from protractile.dynamics.line import Quantity
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import foot_thrust
+from protractile.geometry.boom import Boom
+from protractile.geometry.cylinder import forces
+from protractile.geometry.section import Direction
+from protractile.runs.pipeline.section_forces import LoadedModel, round_values
+from protractile.runs.pipeline.static_results import StaticResult, place_names
+from protractile.runs.pipeline.strength import (
+    Fibres,
+    FibreStress,
+    StressCurve,
+    WallStress,
+    largest_stresses,
+)
 
 # Smallest static value for which a dynamic factor is given, as a fraction of the maximum in motion.
 LEAST_STATIC = 1.0e-3

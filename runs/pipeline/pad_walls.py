@@ -8,14 +8,14 @@ from dataclasses import replace
 from itertools import product
 from typing import Any
 
-from beam_model.statics import static_state
-from geometry.boom import Boom, Collar
-from geometry.joint import PadSize
-from geometry.typography import join_words
-from runs.case.schema import Model
-from runs.pipeline.largest_loads import BeamStates
-from runs.pipeline.proportions import CHECK_UNITS
-from runs.report.formatting import milli
+from protractile.beam_model.statics import static_state
+from protractile.geometry.boom import Boom, Collar
+from protractile.geometry.joint import PadSize
+from protractile.geometry.typography import join_words
+from protractile.runs.case.schema import Model
+from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.proportions import CHECK_UNITS
+from protractile.runs.report.formatting import milli
 
 # Share of the tip deflection below which walls do not matter, share above which remedies are
 # listed, and fraction to which a listed remedy reduces the tip deflection at least.

@@ -10,13 +10,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.contact import ContactLaw
-from geometry.arrays import Array
-from geometry.boom import Boom, Direction, Joint
-from geometry.joint import SIDES, PadSize
-from geometry.section import Side
-from runs.case.contact import PADS_OF_SIDE, JointTable
-from runs.case.schema import Case, Model
+from protractile.dynamics.contact import ContactLaw
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Direction, Joint
+from protractile.geometry.joint import SIDES, PadSize
+from protractile.geometry.section import Side
+from protractile.runs.case.contact import PADS_OF_SIDE, JointTable
+from protractile.runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
     import xarray as xr

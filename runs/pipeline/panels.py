@@ -14,15 +14,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.material import Material
-from geometry.section import Plate, Section
-from geometry.segment import Segment
-from runs.case.units import System
-from runs.pipeline.static_results import Diagram, StaticResult
-from runs.pipeline.strength import outer_corners
-from runs.report.formatting import number
-from runs.report.tables import Table
+from protractile.geometry.arrays import Array
+from protractile.geometry.material import Material
+from protractile.geometry.section import Plate, Section
+from protractile.geometry.segment import Segment
+from protractile.runs.case.units import System
+from protractile.runs.pipeline.static_results import Diagram, StaticResult
+from protractile.runs.pipeline.strength import outer_corners
+from protractile.runs.report.formatting import number
+from protractile.runs.report.tables import Table
 
 # Coefficient k of a long plate in shear (Southwell and Skan 1924).
 SHEAR = 5.34

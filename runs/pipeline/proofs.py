@@ -13,23 +13,23 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beam_model.statics import estimate_critical_factor
-from dynamics.failure import NumericsError
-from geometry.arrays import Array
-from runs.case.load_tables import CombinationTable
-from runs.case.schema import Case
-from runs.case.units import System
-from runs.pipeline.combinations import CombinationState
-from runs.pipeline.fatigue import detail_damages
-from runs.pipeline.largest_loads import BeamStates, in_units
-from runs.pipeline.panels import (
+from protractile.beam_model.statics import estimate_critical_factor
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array
+from protractile.runs.case.load_tables import CombinationTable
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import System
+from protractile.runs.pipeline.combinations import CombinationState
+from protractile.runs.pipeline.fatigue import detail_damages
+from protractile.runs.pipeline.largest_loads import BeamStates, in_units
+from protractile.runs.pipeline.panels import (
     WallStresses,
     nominal_wall_stresses,
     panel_factor,
     stress_ratio,
 )
-from runs.report.tables import Column, Table
-from shell_model.stress.history import BAND
+from protractile.runs.report.tables import Column, Table
+from protractile.shell_model.stress.history import BAND
 
 # Definition of a proof, for the notes of tables.
 DEFINITION = (

@@ -8,18 +8,18 @@ from math import isclose
 
 import numpy as np
 
-from dynamics.excitation import InitialImpulse, Ramp, Step
-from geometry.boom import Boom
-from geometry.fit import room
-from geometry.joint import SIDES, SlidePad
-from geometry.load import Load
-from geometry.section import Direction
-from geometry.typography import TO_MILLI
-from runs.case.actions import STANDARD_GRAVITY
-from runs.case.kinds.model import select_kind
-from runs.case.kinds.shell import Shell
-from runs.case.sanity import materials, usual_ranges
-from runs.case.schema import Case
+from protractile.dynamics.excitation import InitialImpulse, Ramp, Step
+from protractile.geometry.boom import Boom
+from protractile.geometry.fit import room
+from protractile.geometry.joint import SIDES, SlidePad
+from protractile.geometry.load import Load
+from protractile.geometry.section import Direction
+from protractile.geometry.typography import TO_MILLI
+from protractile.runs.case.actions import STANDARD_GRAVITY
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.sanity import materials, usual_ranges
+from protractile.runs.case.schema import Case
 
 # Angle in degrees up to which a boom is horizontal.
 LEVEL_ANGLE = 0.1

@@ -9,12 +9,12 @@ from math import log, pi
 
 import numpy as np
 
-from geometry.arrays import Array
-from runs.case.schema import LimitsTable
-from runs.pipeline.design_results import ModelDesignResults
-from runs.pipeline.largest_loads import StaticExtreme, StaticKind
-from runs.pipeline.metrics import Metric, metrics, records
-from runs.pipeline.summary import ModelSummary
+from protractile.geometry.arrays import Array
+from protractile.runs.case.schema import LimitsTable
+from protractile.runs.pipeline.design_results import ModelDesignResults
+from protractile.runs.pipeline.largest_loads import StaticExtreme, StaticKind
+from protractile.runs.pipeline.metrics import Metric, metrics, records
+from protractile.runs.pipeline.summary import ModelSummary
 
 # Quantities in SI units by name; None if a model has no value.
 Quantities = dict[str, float | None]

@@ -14,16 +14,16 @@ from typing import Annotated
 
 import numpy as np
 
-from dynamics.equilibrium import equilibrium_at
-from dynamics.failure import NUMERICAL_ERRORS, NumericsError
-from dynamics.gap_system import GapSystem
-from dynamics.trajectory import Trajectory
-from dynamics.travel import Travel
-from geometry.arrays import Array, Indices
-from runs.case.motion_tables import resolving_times
-from runs.case.schema import Case, Model
-from runs.pipeline.metrics import Metric, Record
-from runs.pipeline.models import MotionPlan
+from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.trajectory import Trajectory
+from protractile.dynamics.travel import Travel
+from protractile.geometry.arrays import Array, Indices
+from protractile.runs.case.motion_tables import resolving_times
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.pipeline.metrics import Metric, Record
+from protractile.runs.pipeline.models import MotionPlan
 
 # Number of equilibria in a motion and between two reversals; maximum number of reversals.
 _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100

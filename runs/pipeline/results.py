@@ -14,17 +14,17 @@ import numpy as np
 import xarray as xr
 from pydantic import ValidationError
 
-from dynamics.trajectory import Trajectory
-from geometry.boom import Boom
-from geometry.cylinder import forces
-from geometry.observation import KINDS
-from runs.case import reading as case_file
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.messages import BadInput
-from runs.case.schema import Case, Model
-from runs.case.user_files import check_not_working_folder, check_regular
-from runs.folder.files import (
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.boom import Boom
+from protractile.geometry.cylinder import forces
+from protractile.geometry.observation import KINDS
+from protractile.runs.case import reading as case_file
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.case.user_files import check_not_working_folder, check_regular
+from protractile.runs.folder.files import (
     MANIFEST,
     atomic_folder,
     find_damaged_file,
@@ -32,12 +32,12 @@ from runs.folder.files import (
     scratch_folder,
     write_atomically,
 )
-from runs.pipeline.design_results import ModelDesignResults, PlayEffect
-from runs.pipeline.metrics import metrics, records
-from runs.pipeline.model_quality import cautions, main_models, reference_of
-from runs.pipeline.motion_results import MotionResult
-from runs.pipeline.pads import pad_loads
-from runs.pipeline.quantities import (
+from protractile.runs.pipeline.design_results import ModelDesignResults, PlayEffect
+from protractile.runs.pipeline.metrics import metrics, records
+from protractile.runs.pipeline.model_quality import cautions, main_models, reference_of
+from protractile.runs.pipeline.motion_results import MotionResult
+from protractile.runs.pipeline.pads import pad_loads
+from protractile.runs.pipeline.quantities import (
     QUANTITIES,
     RECORD_CLASSES,
     LimitCheck,
@@ -46,8 +46,8 @@ from runs.pipeline.quantities import (
     decay_time,
     settling_time,
 )
-from runs.pipeline.static_results import place_names
-from runs.pipeline.summary import Summary
+from protractile.runs.pipeline.static_results import place_names
+from protractile.runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"
 SUMMARY = "summary.json"
@@ -202,8 +202,8 @@ class Results:
         outer fibre; the wall stress of a shell is a mean over a patch. The pad pressure is the
         maximum over pads and time. The damage is the fatigue damage at the governing place. The
         decay time belongs to the first mode.
-        :class:`runs.pipeline.residual_vibration.ResidualVibration` defines the residual vibration,
-        and :class:`dynamics.stick_slip.StickSlip` defines force and slip of elastic drives.
+        :class:`.runs.pipeline.residual_vibration.ResidualVibration` defines the residual vibration,
+        and :class:`.dynamics.stick_slip.StickSlip` defines force and slip of elastic drives.
         """
         time = np.asarray(self.trajectories["time"].values, dtype=float)
         data = self.trajectories.sel(model=model)
@@ -253,7 +253,7 @@ class Results:
         return f"Results of {self.case.title!r}: {', '.join(self.summary.models)}"
 
     def _repr_html_(self) -> str:
-        from runs.report.tables import Column, Table
+        from protractile.runs.report.tables import Column, Table
 
         frame = self.quantities
         quantities = [one for one in QUANTITIES if one.name in frame.index]

@@ -10,18 +10,18 @@ from functools import cached_property
 
 import numpy as np
 
-from dynamics.failure import NUMERICAL_ERRORS, NumericsError
-from geometry.boom import Boom
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.schema import Case, Model
-from runs.folder.versions import versions
-from runs.pipeline import members
-from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.evaluation import evaluate_model, evaluate_run
-from runs.pipeline.model_output import BeamOutput, ShellOutput
-from runs.pipeline.model_quality import compare_models
-from runs.pipeline.model_run import (
+from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
+from protractile.geometry.boom import Boom
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.folder.versions import versions
+from protractile.runs.pipeline import members
+from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
+from protractile.runs.pipeline.evaluation import evaluate_model, evaluate_run
+from protractile.runs.pipeline.model_output import BeamOutput, ShellOutput
+from protractile.runs.pipeline.model_quality import compare_models
+from protractile.runs.pipeline.model_run import (
     CompletedMotion,
     ModelRun,
     RunContext,
@@ -29,9 +29,9 @@ from runs.pipeline.model_run import (
     failure_reason,
     run_model,
 )
-from runs.pipeline.pads import pad_loads
-from runs.pipeline.results import CONVENTIONS, Results, label
-from runs.pipeline.summary import Ensembles, Summary, check_finite
+from protractile.runs.pipeline.pads import pad_loads
+from protractile.runs.pipeline.results import CONVENTIONS, Results, label
+from protractile.runs.pipeline.summary import Ensembles, Summary, check_finite
 
 
 @dataclass(frozen=True)

@@ -13,12 +13,12 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
-from dynamics.gap_system import GapSystem
-from dynamics.line import Line, Quantity
-from geometry.arrays import Array
-from geometry.axial import axial_force
-from geometry.boom import Boom
-from geometry.cylinder import force_name
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.line import Line, Quantity
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import axial_force
+from protractile.geometry.boom import Boom
+from protractile.geometry.cylinder import force_name
 
 # Distance by which both positions at a jump are moved away from it, as a fraction of the length.
 _ASIDE = 1.0e-9

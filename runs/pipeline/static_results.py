@@ -15,20 +15,20 @@ from itertools import zip_longest
 import numpy as np
 from scipy.interpolate import CubicSpline
 
-from dynamics.equilibrium import equilibrium_at
-from dynamics.excitation import Excitation
-from dynamics.failure import NUMERICAL_ERRORS
-from dynamics.gap_system import GapSystem
-from dynamics.travel import Travel
-from geometry.arrays import Array, Indices
-from geometry.boom import Boom
-from geometry.contact_places import contact_centres
-from geometry.cylinder import forces
-from geometry.telescoping import station_positions, travel
-from geometry.typography import TO_MILLI
-from runs.case.motion_tables import resolving_times
-from runs.pipeline.pads import SIGNS, loaded_pads, side_force
-from runs.pipeline.section_forces import LoadedModel, round_values
+from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.excitation import Excitation
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.travel import Travel
+from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.boom import Boom
+from protractile.geometry.contact_places import contact_centres
+from protractile.geometry.cylinder import forces
+from protractile.geometry.telescoping import station_positions, travel
+from protractile.geometry.typography import TO_MILLI
+from protractile.runs.case.motion_tables import resolving_times
+from protractile.runs.pipeline.pads import SIGNS, loaded_pads, side_force
+from protractile.runs.pipeline.section_forces import LoadedModel, round_values
 
 # Extensions that differ by less than this fraction count as equal.
 _SAME_EXTENSION = 1.0e-12
@@ -43,7 +43,7 @@ class Diagram:
     segment: str  #: name of the segment
     x: list[float]  #: positions (num_places) in m; a position with a jump occurs twice
     normal: list[float]  #: normal force in N
-    #: other available quantities of :data:`dynamics.line.Quantity`: ``deflection`` in m, ``shear``
+    #: other available quantities of :data:`.dynamics.line.Quantity`: ``deflection`` in m, ``shear``
     #: in N, ``moment`` in N·m; in space ``lateral`` in m, ``twist`` in rad, ``lateral_shear``,
     #: ``lateral_moment``, ``torque``
     curves: dict[str, list[float]]

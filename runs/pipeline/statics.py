@@ -10,14 +10,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from beam_model.statics import Elements, StaticState, net_reactions, static_state
-from dynamics.failure import NUMERICAL_ERRORS
-from geometry.axial import foot_thrust
-from geometry.boom import Boom
-from geometry.contact_places import contact_centres
-from geometry.cylinder import force_name
-from runs.case.schema import Case
-from runs.pipeline.static_results import station_loads
+from protractile.beam_model.statics import Elements, StaticState, net_reactions, static_state
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.geometry.axial import foot_thrust
+from protractile.geometry.boom import Boom
+from protractile.geometry.contact_places import contact_centres
+from protractile.geometry.cylinder import force_name
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.static_results import station_loads
 
 # Fraction of the largest reaction below which a reaction counts as zero.
 ROUND_OFF = 1.0e-9

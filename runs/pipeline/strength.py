@@ -19,12 +19,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from dynamics.line import Line, Quantity
-from geometry.arrays import Array
-from geometry.boom import Boom, Segment
-from geometry.section import Section
-from runs.case.schema import LifeTable
-from runs.pipeline.section_forces import LoadedModel, round_values
+from protractile.dynamics.line import Line, Quantity
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.section import Section
+from protractile.runs.case.schema import LifeTable
+from protractile.runs.pipeline.section_forces import LoadedModel, round_values
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -233,7 +233,7 @@ def utilisation(segment: Segment, stress: float) -> float | None:
 def wall_stresses(boom: Boom, stresses: xr.Dataset) -> list[WallStress]:
     """Return the largest wall stresses near stations and supports, for each segment of a shell.
 
-    The stresses are those of :func:`shell_model.stress.history.stress_near_places`.
+    The stresses are those of :func:`.shell_model.stress.history.stress_near_places`.
     """
     largest_of_segments = []
     for segment in boom.segments:

@@ -16,17 +16,17 @@ from typing import Annotated, NamedTuple, Self
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 from pydantic_core import to_jsonable_python
 
-from dynamics.failure import NumericsError
-from dynamics.predictability import Horizons
-from dynamics.stick_slip import StickSlip
-from runs.case.schema import EnsembleTable
-from runs.pipeline.comparison import Comparison
-from runs.pipeline.design_results import DesignResults, ModelDesignResults
-from runs.pipeline.low_pass import SlowPeaks
-from runs.pipeline.metrics import Metric
-from runs.pipeline.pads import PadLoad
-from runs.pipeline.strength import Utilisation
-from shell_model.stress.history import StressSummary
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.predictability import Horizons
+from protractile.dynamics.stick_slip import StickSlip
+from protractile.runs.case.schema import EnsembleTable
+from protractile.runs.pipeline.comparison import Comparison
+from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
+from protractile.runs.pipeline.low_pass import SlowPeaks
+from protractile.runs.pipeline.metrics import Metric
+from protractile.runs.pipeline.pads import PadLoad
+from protractile.runs.pipeline.strength import Utilisation
+from protractile.shell_model.stress.history import StressSummary
 
 # Number in JSON: None replaces NaN and infinity.
 FiniteNumber = Annotated[
@@ -60,7 +60,7 @@ class EnsembleSummary(SummaryTable):
     slow_peaks: SlowPeaks | None
 
     def horizon(self, share: float) -> float | None:
-        """Return the horizon in s for one of :data:`dynamics.predictability.SHARES`."""
+        """Return the horizon in s for one of :data:`.dynamics.predictability.SHARES`."""
         return self.horizons[f"{share:g}"]
 
 
@@ -69,7 +69,7 @@ class Predictability(SummaryTable):
 
     ``times`` (num_relatives, num_shares) in s belong to relative changes of the data, ``of_step``
     (num_shares,) in s to a finer time step. ``rate`` (num_shares,) is the growth rate in 1/s. The
-    other fields are those of :class:`dynamics.predictability.Horizons`.
+    other fields are those of :class:`.dynamics.predictability.Horizons`.
     """
 
     relatives: list[float]

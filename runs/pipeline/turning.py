@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
-from dynamics.arrays import Array
-from dynamics.damping import closed_contact_damping, closed_contact_modes
-from dynamics.excitation import HistorySum, MotionLaw, Shaped
-from dynamics.gap_system import GapSystem
-from dynamics.trajectory import Trajectory
-from geometry.axial import lumped_masses
-from geometry.boom import Boom
-from geometry.telescoping import drives_of
-from runs.case.motion_tables import resolving_times
-from runs.case.motions import frame_motion, hanging_load
-from runs.case.schema import Case
-from runs.pipeline.metrics import Metric, Record
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
+from protractile.dynamics.excitation import HistorySum, MotionLaw, Shaped
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.axial import lumped_masses
+from protractile.geometry.boom import Boom
+from protractile.geometry.telescoping import drives_of
+from protractile.runs.case.motion_tables import resolving_times
+from protractile.runs.case.motions import frame_motion, hanging_load
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.metrics import Metric, Record
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.failure import NumericsError
-from geometry.boom import Boom
-from geometry.telescoping import travel
-from runs.case.kinds.model import BuiltModel
-from runs.case.kinds.shell import Shell
-from runs.case.schema import Case
-from runs.pipeline.static_results import extended_positions, instants, positions
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.boom import Boom
+from protractile.geometry.telescoping import travel
+from protractile.runs.case.kinds.model import BuiltModel
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.static_results import extended_positions, instants, positions
 
 # Relative difference below which two displacements of a mode count as equal.
 _MIRRORED = 1.0e-3
@@ -24,8 +24,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from mpi4py import MPI
 
-    from geometry.plating import PlatedMesh
-    from shell_model.buckling import SegmentBuckling, ShellState
+    from protractile.geometry.plating import PlatedMesh
+    from protractile.shell_model.buckling import SegmentBuckling, ShellState
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,7 +68,7 @@ def buckle_shell(
     Raises:
         NumericsError: there is no static state, or the modes of a segment cannot be computed.
     """
-    from shell_model.buckling import buckle_segments
+    from protractile.shell_model.buckling import buckle_segments
 
     assert built.shell is not None
     meshes: Sequence[PlatedMesh | None] = built.shell.meshes or [None] * len(boom.segments)
@@ -89,7 +89,7 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> ShellState | No
     In space, the tip deflection is the resultant of both directions. ``boom`` has the contacts of
     the model, and the fields of the shell are on this rank.
     """
-    from shell_model.buckling import ShellState
+    from protractile.shell_model.buckling import ShellState
 
     system, duration = built.system.gather_loads(), case.time.duration
     equilibria = positions(system, instants(system, duration))

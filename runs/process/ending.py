@@ -22,7 +22,7 @@ from contextlib import contextmanager, suppress
 from threading import Event, RLock, Thread
 from typing import TYPE_CHECKING, NoReturn
 
-from runs.process.terminal import say
+from protractile.runs.process.terminal import say
 
 if TYPE_CHECKING:
     from mpi4py import MPI

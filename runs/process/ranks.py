@@ -14,13 +14,13 @@ from importlib import import_module
 from tempfile import TemporaryFile, gettempdir
 from typing import TYPE_CHECKING
 
-from runs.process import ending
-from runs.process.terminal import message, shorten
+from protractile.runs.process import ending
+from protractile.runs.process.terminal import message, shorten
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from runs.case.schema import Case
+    from protractile.runs.case.schema import Case
 
 # Space in bytes that Open MPI needs in the temporary folder: 8.2 MB and a margin.
 _ROOM_OF_MPI = 16_000_000
@@ -34,7 +34,7 @@ def enter_mpi(
     Raises:
         BadInput: the case has a shell, and FEniCSx is not installed.
     """
-    from runs.case.messages import BadInput
+    from protractile.runs.case.messages import BadInput
 
     for number, model in enumerate(case.models, start=1):
         if model.needs_shell:
@@ -42,7 +42,7 @@ def enter_mpi(
             if ending.launched_rank() is None:
                 os.environ.update(ending.SINGLE_PROCESS)
             try:
-                import_module("shell_model.boom_shell")
+                import_module("protractile.shell_model.boom_shell")
                 from mpi4py import MPI
             except ImportError as error:
                 raise BadInput(
@@ -70,7 +70,7 @@ def launched_ranks(file: str) -> MPI.Intracomm | None:
     Raises:
         BadInput: a launcher started several ranks, and mpi4py is not installed.
     """
-    from runs.case.messages import BadInput
+    from protractile.runs.case.messages import BadInput
 
     if ending.launched_rank() is None:
         return None
@@ -88,8 +88,8 @@ def explain(error: Exception) -> tuple[str, int] | None:
     # Without memory the loader of libraries raises an error of its own.
     if isinstance(error, MemoryError) or "failed to map segment" in str(error):
         return message(f"out of memory ({error}); make the models or the output smaller"), 3
-    from dynamics.failure import NumericsError
-    from runs.case.messages import BadInput
+    from protractile.dynamics.failure import NumericsError
+    from protractile.runs.case.messages import BadInput
 
     if isinstance(error, BadInput):
         return message(str(error)), 2
@@ -123,7 +123,7 @@ def _check_temporary_folder(file: str) -> None:
     Raises:
         BadInput: the folder has too little space, or is not writable.
     """
-    from runs.case.messages import BadInput
+    from protractile.runs.case.messages import BadInput
 
     # Open MPI uses $TMPDIR without a check; Python may choose another folder.
     folder = os.environ.get("TMPDIR") or gettempdir()

@@ -13,8 +13,8 @@ from multiprocessing.util import Finalize
 from threading import Thread
 from typing import Any
 
-from runs.process.ending import SINGLE_PROCESS, leave, when_interrupted
-from runs.process.terminal import show_notices
+from protractile.runs.process.ending import SINGLE_PROCESS, leave, when_interrupted
+from protractile.runs.process.terminal import show_notices
 
 # Environment variables of workers: one thread each, and no warnings at import or when killed.
 _WORKER_VARIABLES = dict.fromkeys(

@@ -19,18 +19,25 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D, Transform
 from matplotlib.typing import HashableList
 
-from geometry.arrays import Array
-from geometry.boom import Boom, Cylinder, Joint
-from geometry.section import Plate, Section
-from geometry.telescoping import farthest_travel
-from geometry.typography import with_minus_signs
-from runs.case.build import build_boom
-from runs.case.messages import BadInput
-from runs.case.schema import Case
-from runs.folder.files import atomic_path
-from runs.report import formatting, theme
-from runs.report.figure_context import LEGEND_CHARACTERS, Figure, FigureContext
-from runs.report.symbols import PINNED, Symbol, abbreviate, boom_symbols, edges, marker_style
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Cylinder, Joint
+from protractile.geometry.section import Plate, Section
+from protractile.geometry.telescoping import farthest_travel
+from protractile.geometry.typography import with_minus_signs
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
+from protractile.runs.folder.files import atomic_path
+from protractile.runs.report import formatting, theme
+from protractile.runs.report.figure_context import LEGEND_CHARACTERS, Figure, FigureContext
+from protractile.runs.report.symbols import (
+    PINNED,
+    Symbol,
+    abbreviate,
+    boom_symbols,
+    edges,
+    marker_style,
+)
 
 # Height of the outermost section over the height of the panel, if heights are exaggerated.
 SECTION_SHARE = 0.2

@@ -12,13 +12,29 @@ import numpy as np
 from matplotlib import rc_context
 from PIL import Image
 
-from geometry.arrays import Array
-from geometry.typography import join_words
-from runs.report import theme
-from runs.report.formatting import number
-from runs.report.scene import DISPLACEMENT_DRAWN, SAME_PLACE, SECTION_DRAWN, Instant, Numbers, Scene
-from runs.report.sheet import MATTE, SHEET, UNLIT, Camera, Sheet, sharp_edges, stage, surface
-from runs.report.symbols import marker_style
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import join_words
+from protractile.runs.report import theme
+from protractile.runs.report.formatting import number
+from protractile.runs.report.scene import (
+    DISPLACEMENT_DRAWN,
+    SAME_PLACE,
+    SECTION_DRAWN,
+    Instant,
+    Numbers,
+    Scene,
+)
+from protractile.runs.report.sheet import (
+    MATTE,
+    SHEET,
+    UNLIT,
+    Camera,
+    Sheet,
+    sharp_edges,
+    stage,
+    surface,
+)
+from protractile.runs.report.symbols import marker_style
 
 PIXELS = (SHEET[0], 470)
 

@@ -6,12 +6,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from geometry.boom import Boom, Direction, Joint
-from geometry.fit import room
-from geometry.section import Section
-from runs.case.schema import Case
-from runs.case.units import System
-from runs.report.tables import Column, Table
+from protractile.geometry.boom import Boom, Direction, Joint
+from protractile.geometry.fit import room
+from protractile.geometry.section import Section
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import System
+from protractile.runs.report.tables import Column, Table
 
 
 def segment_table(case: Case, boom: Boom) -> Table:

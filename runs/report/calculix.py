@@ -18,23 +18,23 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 from scipy.spatial import cKDTree
 
-from dynamics.excitation import InitialImpulse, ReleasedLoad
-from geometry.arrays import Array
-from geometry.typography import choices
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext, select_kind
-from runs.case.kinds.shell import Shell
-from runs.case.messages import BadInput
-from runs.case.schema import Case
-from runs.folder.cache import Cache
-from runs.folder.files import write_atomically
-from runs.pipeline.models import build
+from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import choices
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext, select_kind
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
+from protractile.runs.folder.cache import Cache
+from protractile.runs.folder.files import write_atomically
+from protractile.runs.pipeline.models import build
 
 if TYPE_CHECKING:
     from mpi4py import MPI
 
-    from shell_model.segment.cross_section import Row
-    from shell_model.segment.segment_shell import SegmentShell
+    from protractile.shell_model.segment.cross_section import Row
+    from protractile.shell_model.segment.segment_shell import SegmentShell
 
 # Stiffness in N/m for a mean displacement without a spring, since CalculiX permits no free node.
 _FREE = 1.0e-3
@@ -171,10 +171,10 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         BadInput: the case has a feature that the deck does not support, or the ranks are several.
         NumericsError: the boom has no static state.
     """
-    from dynamics.equilibrium import equilibrium_at
-    from shell_model.boom_shell import assemble_boom
-    from shell_model.buckling import TOUCHING, lateral_springs, rigid_stiffness
-    from shell_model.segment.solver import times
+    from protractile.dynamics.equilibrium import equilibrium_at
+    from protractile.shell_model.boom_shell import assemble_boom
+    from protractile.shell_model.buckling import TOUCHING, lateral_springs, rigid_stiffness
+    from protractile.shell_model.segment.solver import times
 
     model = select_model(case, file)
     model_boom = model.model_boom(build_boom(case))

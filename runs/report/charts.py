@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from geometry.arrays import Array
-from runs.report import theme
+from protractile.geometry.arrays import Array
+from protractile.runs.report import theme
 
 # Maximum number of samples of a curve. A longer curve is reduced to the minimum and maximum of half
 # as many intervals, still more than a screen has columns.

@@ -11,13 +11,13 @@ import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from dynamics.excitation import HistorySum
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.telescoping import drives_of
-from runs.case.motions import frame_motion
-from runs.case.schema import Case
-from runs.report import theme
+from protractile.dynamics.excitation import HistorySum
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.telescoping import drives_of
+from protractile.runs.case.motions import frame_motion
+from protractile.runs.case.schema import Case
+from protractile.runs.report import theme
 
 # Length of a rope that the case does not give, over the length of the boom.
 _ROPE = 0.25

@@ -7,24 +7,24 @@ from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from itertools import chain
 
-from runs.case import toml
-from runs.pipeline.results import Results
-from runs.report import theme
-from runs.report.charts import pack_charts, pack_plotly
-from runs.report.figure_context import Figure
-from runs.report.formatting import number, percent
-from runs.report.model_tables import model_tables
-from runs.report.pages import Addition, page
-from runs.report.predictability import comparison_tables, predictability_tables
-from runs.report.result_tables import result_tables
-from runs.report.summary_table import (
+from protractile.runs.case import toml
+from protractile.runs.pipeline.results import Results
+from protractile.runs.report import theme
+from protractile.runs.report.charts import pack_charts, pack_plotly
+from protractile.runs.report.figure_context import Figure
+from protractile.runs.report.formatting import number, percent
+from protractile.runs.report.model_tables import model_tables
+from protractile.runs.report.pages import Addition, page
+from protractile.runs.report.predictability import comparison_tables, predictability_tables
+from protractile.runs.report.result_tables import result_tables
+from protractile.runs.report.summary_table import (
     deviation_note,
     limit_table,
     play_effect,
     summary_table,
     utilisation_verdict,
 )
-from runs.report.tables import Table
+from protractile.runs.report.tables import Table
 
 # Parts of the report in which figures are numbered, in order.
 PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"

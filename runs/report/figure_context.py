@@ -16,13 +16,13 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
-from geometry.arrays import Array
-from geometry.typography import join_words
-from runs.case.schema import Case
-from runs.pipeline.results import Results
-from runs.pipeline.static_results import StaticResult
-from runs.report import theme
-from runs.report.charts import Chart, Curve
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import join_words
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.static_results import StaticResult
+from protractile.runs.report import theme
+from protractile.runs.report.charts import Chart, Curve
 
 # Parts of the report to which figures belong.
 Part = Literal["case", "motion", "rest", "horizons", "numerics"]

@@ -14,12 +14,12 @@ from pathlib import Path
 
 import matplotlib
 
-from runs.folder.files import write_atomically
-from runs.folder.versions import program
-from runs.pipeline.results import CASE, ENSEMBLES, TRAJECTORIES, Results
-from runs.pipeline.summary import Snapshots
-from runs.report import boom_drawing, force_figures, motion_figures, rest_figures, theme
-from runs.report.figure_context import Figure, FigureContext
+from protractile.runs.folder.files import write_atomically
+from protractile.runs.folder.versions import program
+from protractile.runs.pipeline.results import CASE, ENSEMBLES, TRAJECTORIES, Results
+from protractile.runs.pipeline.summary import Snapshots
+from protractile.runs.report import boom_drawing, force_figures, motion_figures, rest_figures, theme
+from protractile.runs.report.figure_context import Figure, FigureContext
 
 FOLDER = "figures"
 FIGURE_DIGEST = ".drawn-of"

@@ -9,11 +9,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
-from geometry.arrays import Array
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
-from runs.report import theme
-from runs.report.charts import Chart
-from runs.report.figure_context import (
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
+from protractile.runs.report import theme
+from protractile.runs.report.charts import Chart
+from protractile.runs.report.figure_context import (
     Figure,
     FigureContext,
     farthest,
@@ -22,7 +22,7 @@ from runs.report.figure_context import (
     new_sheet,
     widen_limits,
 )
-from runs.report.formatting import fixed, number
+from protractile.runs.report.formatting import fixed, number
 
 # Number of intervals into which a run is divided; the maximum of each is drawn.
 FORCE_BINS = 100

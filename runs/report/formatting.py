@@ -7,7 +7,7 @@ import math
 from collections.abc import Sequence
 from statistics import median
 
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT, with_minus_signs
+from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT, with_minus_signs
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 

@@ -7,18 +7,18 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from dynamics.predictability import SHARES
-from geometry.boom import Boom
-from geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
-from runs.pipeline.metrics import metrics
-from runs.pipeline.results import Results
-from runs.pipeline.strength import utilisation
-from runs.pipeline.summary import CalibrationCard, ModelSummary
-from runs.report.formatting import number, percent
-from runs.report.tables import Cell, Column, Table
+from protractile.dynamics.predictability import SHARES
+from protractile.geometry.boom import Boom
+from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
+from protractile.runs.pipeline.metrics import metrics
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.strength import utilisation
+from protractile.runs.pipeline.summary import CalibrationCard, ModelSummary
+from protractile.runs.report.formatting import number, percent
+from protractile.runs.report.tables import Cell, Column, Table
 
 if TYPE_CHECKING:
-    from shell_model.stress.history import LargestPatch, StressSummary
+    from protractile.shell_model.stress.history import LargestPatch, StressSummary
 
 
 def model_tables(results: Results) -> list[Table]:

@@ -8,14 +8,20 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from dynamics.energy import DRIVEN_ENERGIES, energy_residual
-from dynamics.predictability import SHARES
-from geometry.arrays import Array
-from geometry.typography import TO_MILLI
-from runs.report import theme
-from runs.report.charts import Chart, Curve
-from runs.report.figure_context import Figure, FigureContext, farthest, highest, new_sheet
-from runs.report.formatting import fixed, scientific
+from protractile.dynamics.energy import DRIVEN_ENERGIES, energy_residual
+from protractile.dynamics.predictability import SHARES
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_MILLI
+from protractile.runs.report import theme
+from protractile.runs.report.charts import Chart, Curve
+from protractile.runs.report.figure_context import (
+    Figure,
+    FigureContext,
+    farthest,
+    highest,
+    new_sheet,
+)
+from protractile.runs.report.formatting import fixed, scientific
 
 # Lower and upper percentile of the band of an ensemble.
 BAND = (5.0, 95.0)
@@ -338,7 +344,7 @@ def residuals(run: FigureContext) -> list[Figure]:
 
 
 def _energies(run: FigureContext, name: str) -> Array:
-    """Return energies (num_times, num_energies) in J by :func:`dynamics.energy.energy_residual`."""
+    """Return energies (num_times, num_energies) in J by :func:`.energy.energy_residual`."""
     names = [energy for energy in DRIVEN_ENERGIES if energy in run.data]
     return np.array([run.result(name, energy) for energy in names]).T
 

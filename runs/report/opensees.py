@@ -16,23 +16,23 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from beam_model.calibration import Calibration, with_stiffnesses
-from beam_model.component import Component
-from beam_model.finite_element import finite_element_segment
-from dynamics.contact import ContactLaw
-from dynamics.excitation import InitialImpulse, ReleasedLoad
-from geometry.arrays import Array
-from geometry.boom import Boom, BoomError
-from geometry.contact_places import Pad, pads
-from geometry.typography import choices
-from runs.case.build import build_boom
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.model import BuildContext, ModelBoom, select_kind
-from runs.case.messages import BadInput
-from runs.case.schema import Case
-from runs.folder.cache import Cache
-from runs.folder.files import write_atomically
-from runs.pipeline.models import build
+from protractile.beam_model.calibration import Calibration, with_stiffnesses
+from protractile.beam_model.component import Component
+from protractile.beam_model.finite_element import finite_element_segment
+from protractile.dynamics.contact import ContactLaw
+from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, BoomError
+from protractile.geometry.contact_places import Pad, pads
+from protractile.geometry.typography import choices
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.finite_element import BeamElements
+from protractile.runs.case.kinds.model import BuildContext, ModelBoom, select_kind
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
+from protractile.runs.folder.cache import Cache
+from protractile.runs.folder.files import write_atomically
+from protractile.runs.pipeline.models import build
 
 if TYPE_CHECKING:
     from mpi4py import MPI

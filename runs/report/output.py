@@ -12,21 +12,26 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
-from runs.case.messages import BadInput
-from runs.case.user_files import check_not_working_folder
-from runs.client import judge
-from runs.folder.files import atomic_path, folder_lock, modified_folder, write_atomically
-from runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
-from runs.pipeline.run import Run
-from runs.pipeline.summary import Snapshots
-from runs.report import snapshots
-from runs.report.document import render, tables_by_part
-from runs.report.figure_context import Figure
-from runs.report.figures import draw_in_folder
-from runs.report.opengl import RenderingUnavailable
-from runs.report.pages import Addition
-from runs.report.tables import as_json
-from runs.report.viewer import VIEWER, viewer
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.user_files import check_not_working_folder
+from protractile.runs.client import judge
+from protractile.runs.folder.files import (
+    atomic_path,
+    folder_lock,
+    modified_folder,
+    write_atomically,
+)
+from protractile.runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
+from protractile.runs.pipeline.run import Run
+from protractile.runs.pipeline.summary import Snapshots
+from protractile.runs.report import snapshots
+from protractile.runs.report.document import render, tables_by_part
+from protractile.runs.report.figure_context import Figure
+from protractile.runs.report.figures import draw_in_folder
+from protractile.runs.report.opengl import RenderingUnavailable
+from protractile.runs.report.pages import Addition
+from protractile.runs.report.tables import as_json
+from protractile.runs.report.viewer import VIEWER, viewer
 
 REPORT = "report.html"
 CALIBRATION = "calibration.json"

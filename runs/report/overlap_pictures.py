@@ -15,11 +15,11 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
-from geometry.arrays import Array, Mask
-from geometry.typography import TO_MEGA, digits
-from runs.report import theme
-from runs.report.boom_pictures import BoomView
-from runs.report.scene import (
+from protractile.geometry.arrays import Array, Mask
+from protractile.geometry.typography import TO_MEGA, digits
+from protractile.runs.report import theme
+from protractile.runs.report.boom_pictures import BoomView
+from protractile.runs.report.scene import (
     SAME_PLACE,
     SECTION_DRAWN,
     Instant,
@@ -29,7 +29,7 @@ from runs.report.scene import (
     means_around,
     round_scale,
 )
-from runs.report.sheet import (
+from protractile.runs.report.sheet import (
     COLOUR_READ,
     MATTE,
     MESHED,
@@ -41,7 +41,7 @@ from runs.report.sheet import (
     stage,
     surface,
 )
-from shell_model.stress.stresses import ShellStress
+from protractile.shell_model.stress.stresses import ShellStress
 
 # Limits of the magnified clearance and of magnified wall displacements relative to the outer
 # segment, both as fractions of the height of the outer section; margin beside the stations in m.

@@ -8,16 +8,16 @@ from functools import partial
 
 import numpy as np
 
-from dynamics.predictability import SHARES
-from geometry.typography import TO_MILLI, with_minus_signs
-from runs.pipeline.comparison import Comparison, PeakDifferences
-from runs.pipeline.low_pass import SlowPeaks
-from runs.pipeline.model_quality import SCOPES
-from runs.pipeline.results import Results
-from runs.pipeline.summary import Ensembles, ModelSummary, Predictability, WholeRun
-from runs.report.formatting import NONE, fixed, number, percent, scientific
-from runs.report.model_tables import horizon_column
-from runs.report.tables import Column, Table
+from protractile.dynamics.predictability import SHARES
+from protractile.geometry.typography import TO_MILLI, with_minus_signs
+from protractile.runs.pipeline.comparison import Comparison, PeakDifferences
+from protractile.runs.pipeline.low_pass import SlowPeaks
+from protractile.runs.pipeline.model_quality import SCOPES
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.summary import Ensembles, ModelSummary, Predictability, WholeRun
+from protractile.runs.report.formatting import NONE, fixed, number, percent, scientific
+from protractile.runs.report.model_tables import horizon_column
+from protractile.runs.report.tables import Column, Table
 
 # Text in tables for each kind of limit.
 LIMITS = {"physics": "the motion", "step": "the step", "nothing": "nothing in the run"}

@@ -19,18 +19,18 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from geometry.arrays import Array
-from geometry.boom import Boom, Segment
-from geometry.contact_places import pads
-from geometry.section import Direction
-from geometry.telescoping import drives_below
-from geometry.typography import with_minus_signs
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.pipeline.model_output import BeamOutput, SegmentMotion
-from runs.report.crane_position import CranePosition
-from runs.report.symbols import Symbol, boom_symbols, edges
-from shell_model.stress.stresses import ShellStress
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.contact_places import pads
+from protractile.geometry.section import Direction
+from protractile.geometry.telescoping import drives_below
+from protractile.geometry.typography import with_minus_signs
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion
+from protractile.runs.report.crane_position import CranePosition
+from protractile.runs.report.symbols import Symbol, boom_symbols, edges
+from protractile.shell_model.stress.stresses import ShellStress
 
 Numbers = npt.NDArray[np.int32]
 
@@ -92,7 +92,7 @@ class Scene:
     motion: xr.Dataset
     stress: ShellStress | None = None  #: stresses of the triangles of a shell
     from_above: bool = False  #: True if y replaces z, see :meth:`views`
-    #: first buckling modes of a shell, see :class:`runs.pipeline.wall_buckling.BuckledShell`; None
+    #: first buckling modes of a shell, see :class:`.runs.pipeline.wall_buckling.BuckledShell`; None
     #: without any
     buckling: xr.Dataset | None = None
     crane: CranePosition | None = None  #: positions of the crane and its load; None for other booms
@@ -102,7 +102,7 @@ class Scene:
         """Return the scenes of a shell: from the side, and for a boom in space also from above.
 
         For the view from above, the boom is rotated about x, so that y points up. The fields are
-        those of ``shell_model.stress.fields``, with ``state`` (time, mode); ``motion`` has the
+        those of :mod:`.stress.fields`, with ``state`` (time, mode); ``motion`` has the
         trajectories of the shell.
         """
         boom = build_boom(case)

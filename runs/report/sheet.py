@@ -24,8 +24,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
 
-from geometry.arrays import Array
-from runs.report import theme
+from protractile.geometry.arrays import Array
+from protractile.runs.report import theme
 
 Pixels = npt.NDArray[np.uint8]
 

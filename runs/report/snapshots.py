@@ -16,21 +16,21 @@ import xarray as xr
 from matplotlib import rc_context
 from PIL import Image
 
-from dynamics.trajectory import Trajectory
-from geometry.typography import TO_MILLI, with_minus_signs
-from runs.case.kinds.model import select_kind
-from runs.case.kinds.shell import Shell
-from runs.case.messages import BadInput
-from runs.case.schema import Case
-from runs.pipeline.results import FIELDS, Results, read_fields
-from runs.pipeline.summary import Snapshots
-from runs.process import workers
-from runs.report import opengl, theme
-from runs.report.boom_pictures import BoomView, draw_boom, render_buckling
-from runs.report.crane_position import CranePosition
-from runs.report.figure_context import Figure
-from runs.report.overlap_pictures import StressScale, draw_overlap, draw_stress
-from runs.report.scene import Instant, Scene
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.typography import TO_MILLI, with_minus_signs
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.results import FIELDS, Results, read_fields
+from protractile.runs.pipeline.summary import Snapshots
+from protractile.runs.process import workers
+from protractile.runs.report import opengl, theme
+from protractile.runs.report.boom_pictures import BoomView, draw_boom, render_buckling
+from protractile.runs.report.crane_position import CranePosition
+from protractile.runs.report.figure_context import Figure
+from protractile.runs.report.overlap_pictures import StressScale, draw_overlap, draw_stress
+from protractile.runs.report.scene import Instant, Scene
 
 SNAPSHOTS = "snapshots"
 

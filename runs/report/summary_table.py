@@ -8,22 +8,36 @@ from textwrap import fill
 
 import numpy as np
 
-from geometry.typography import TO_MEGA, TO_MILLI, TO_PERCENT, join_words, with_minus_signs
-from runs.pipeline.design_results import ModelDesignResults, PlayDifference
-from runs.pipeline.load_table import release_note
-from runs.pipeline.low_pass import mean_period
-from runs.pipeline.model_quality import static_deviation
-from runs.pipeline.motion_results import Peak
-from runs.pipeline.pad_walls import rigid_wall_note
-from runs.pipeline.pads import PadLoad
-from runs.pipeline.quantities import decay_time
-from runs.pipeline.results import Results
-from runs.pipeline.strength import Utilisation
-from runs.report.figure_context import farthest, tip_directions
-from runs.report.formatting import NONE, SHOWN, amount, fixed, number, percent, signed_percent
-from runs.report.result_tables import is_negligible, times
-from runs.report.tables import Column, Table
-from shell_model.stress.history import BAND
+from protractile.geometry.typography import (
+    TO_MEGA,
+    TO_MILLI,
+    TO_PERCENT,
+    join_words,
+    with_minus_signs,
+)
+from protractile.runs.pipeline.design_results import ModelDesignResults, PlayDifference
+from protractile.runs.pipeline.load_table import release_note
+from protractile.runs.pipeline.low_pass import mean_period
+from protractile.runs.pipeline.model_quality import static_deviation
+from protractile.runs.pipeline.motion_results import Peak
+from protractile.runs.pipeline.pad_walls import rigid_wall_note
+from protractile.runs.pipeline.pads import PadLoad
+from protractile.runs.pipeline.quantities import decay_time
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.strength import Utilisation
+from protractile.runs.report.figure_context import farthest, tip_directions
+from protractile.runs.report.formatting import (
+    NONE,
+    SHOWN,
+    amount,
+    fixed,
+    number,
+    percent,
+    signed_percent,
+)
+from protractile.runs.report.result_tables import is_negligible, times
+from protractile.runs.report.tables import Column, Table
+from protractile.shell_model.stress.history import BAND
 
 # Higher utilisations are highlighted.
 NEAR = 0.9

@@ -14,14 +14,14 @@ import numpy as np
 from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
-from geometry.boom import Boom, Segment
-from geometry.fields import at
-from geometry.section import Direction
-from runs.case import actions
-from runs.case.load_tables import LoadTable
-from runs.case.schema import Case
-from runs.report import theme
-from runs.report.formatting import number
+from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.fields import at
+from protractile.geometry.section import Direction
+from protractile.runs.case import actions
+from protractile.runs.case.load_tables import LoadTable
+from protractile.runs.case.schema import Case
+from protractile.runs.report import theme
+from protractile.runs.report.formatting import number
 
 # Displayed height of a segment without plates, over the length of the boom.
 DEFAULT_HEIGHT = 0.015

@@ -20,9 +20,9 @@ from rich.measure import Measurement
 from rich.table import Table as Grid
 from rich.text import Text
 
-from geometry.typography import TO_KILO, TO_MEGA, TO_MICRO, TO_MILLI, TO_PERCENT
-from runs.folder.files import write_atomically
-from runs.report.formatting import NONE, count, fixed, number, repeated
+from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MICRO, TO_MILLI, TO_PERCENT
+from protractile.runs.folder.files import write_atomically
+from protractile.runs.report.formatting import NONE, count, fixed, number, repeated
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -7,23 +7,23 @@ from collections.abc import Mapping
 
 from rich.console import Console
 
-from geometry.typography import TO_PERCENT
-from runs.case.kinds.model import BuildContext
-from runs.case.kinds.shell import Shell
-from runs.case.schema import Case
-from runs.client import show
-from runs.pipeline.combinations import combination_states, combination_tables
-from runs.pipeline.combined_shells import shell_states
-from runs.pipeline.pad_walls import rigid_wall_note
-from runs.pipeline.proofs import proof_table, prove
-from runs.pipeline.results import Results
-from runs.process.terminal import Terminal, message, say, shorten
-from runs.report.figure_context import farthest
-from runs.report.formatting import number, percent
-from runs.report.model_tables import model_table
-from runs.report.pages import Addition
-from runs.report.result_tables import record_tables
-from runs.report.summary_table import (
+from protractile.geometry.typography import TO_PERCENT
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.schema import Case
+from protractile.runs.client import show
+from protractile.runs.pipeline.combinations import combination_states, combination_tables
+from protractile.runs.pipeline.combined_shells import shell_states
+from protractile.runs.pipeline.pad_walls import rigid_wall_note
+from protractile.runs.pipeline.proofs import proof_table, prove
+from protractile.runs.pipeline.results import Results
+from protractile.runs.process.terminal import Terminal, message, say, shorten
+from protractile.runs.report.figure_context import farthest
+from protractile.runs.report.formatting import number, percent
+from protractile.runs.report.model_tables import model_table
+from protractile.runs.report.pages import Addition
+from protractile.runs.report.result_tables import record_tables
+from protractile.runs.report.summary_table import (
     governing_pads,
     largest_peak,
     limit_faults,
@@ -31,7 +31,7 @@ from runs.report.summary_table import (
     play_effect,
     utilisation_verdict,
 )
-from runs.report.tables import Cell, Column, Table, print_text
+from protractile.runs.report.tables import Cell, Column, Table, print_text
 
 # Terminal headings of columns of the table of models, by their headings in the report.
 SHOWN = {

@@ -19,16 +19,16 @@ from matplotlib.colors import to_hex
 from matplotlib.transforms import Affine2D
 from scipy.spatial.transform import Rotation
 
-from geometry.arrays import Array
-from geometry.telescoping import drives_below
-from geometry.typography import TO_MEGA
-from runs.pipeline.model_output import frame_indices
-from runs.pipeline.model_quality import main_models
-from runs.pipeline.run import Run
-from runs.report import theme
-from runs.report.charts import compress, pack_plotly
-from runs.report.pages import page
-from runs.report.scene import SECTION_DRAWN, Scene, means_around
+from protractile.geometry.arrays import Array
+from protractile.geometry.telescoping import drives_below
+from protractile.geometry.typography import TO_MEGA
+from protractile.runs.pipeline.model_output import frame_indices
+from protractile.runs.pipeline.model_quality import main_models
+from protractile.runs.pipeline.run import Run
+from protractile.runs.report import theme
+from protractile.runs.report.charts import compress, pack_plotly
+from protractile.runs.report.pages import page
+from protractile.runs.report.scene import SECTION_DRAWN, Scene, means_around
 
 VIEWER = "viewer.html"
 

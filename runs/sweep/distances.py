@@ -13,18 +13,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from dynamics.failure import NumericsError
-from dynamics.predictability import SHARES, EnsembleMember, Vary, horizon, run_members
-from geometry.arrays import Array
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext
-from runs.case.schema import Case, Model
-from runs.folder.cache import Cache
-from runs.pipeline.low_pass import mean_period
-from runs.pipeline.metrics import Metric
-from runs.pipeline.models import MotionPlan, build
-from runs.pipeline.quantities import Quantities
-from runs.pipeline.results import Results
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.predictability import SHARES, EnsembleMember, Vary, horizon, run_members
+from protractile.geometry.arrays import Array
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.low_pass import mean_period
+from protractile.runs.pipeline.metrics import Metric
+from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.pipeline.quantities import Quantities
+from protractile.runs.pipeline.results import Results
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -21,15 +21,15 @@ from matplotlib.axes import Axes
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure as Sheet
 
-from geometry.arrays import Array
-from geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
-from runs.pipeline.metrics import Metric
-from runs.pipeline.quantities import QUANTITIES
-from runs.report import theme
-from runs.report.figure_context import new_sheet
-from runs.report.formatting import number
-from runs.sweep.distances import DISTANCES, LEVELS, TIP_DEVIATION, UNTIL
-from runs.sweep.residual_vibration import draw_vibration
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
+from protractile.runs.pipeline.metrics import Metric
+from protractile.runs.pipeline.quantities import QUANTITIES
+from protractile.runs.report import theme
+from protractile.runs.report.figure_context import new_sheet
+from protractile.runs.report.formatting import number
+from protractile.runs.sweep.distances import DISTANCES, LEVELS, TIP_DEVIATION, UNTIL
+from protractile.runs.sweep.residual_vibration import draw_vibration
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
 # Name of the attribute of a variable that has the limit of the quantity.

@@ -2,7 +2,7 @@
 """First natural frequencies of a boom over case parameters.
 
 A boom with play is nonlinear and has no natural frequencies. These are the frequencies with the
-contacts that are closed at rest under the loads (:func:`dynamics.damping.closed_contact_modes`),
+contacts that are closed at rest under the loads (:func:`.dynamics.damping.closed_contact_modes`),
 and with bonded joints.
 """
 
@@ -15,21 +15,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
-from dynamics.damping import closed_contact_modes
-from dynamics.failure import NUMERICAL_ERRORS
-from dynamics.motion import initial_state
-from geometry.arrays import Array
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext, ModelBoom
-from runs.case.schema import Case, Model
-from runs.folder.cache import Cache
-from runs.folder.files import atomic_path, folder_lock, modified_folder
-from runs.pipeline.model_run import ignore_progress
-from runs.pipeline.results import CONVENTIONS
-from runs.process.terminal import Progress
-from runs.report.tables import Column, Table
-from runs.sweep.figures import draw_frequencies
-from runs.sweep.points import Plan
+from protractile.dynamics.damping import closed_contact_modes
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.dynamics.motion import initial_state
+from protractile.geometry.arrays import Array
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext, ModelBoom
+from protractile.runs.case.schema import Case, Model
+from protractile.runs.folder.cache import Cache
+from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
+from protractile.runs.pipeline.model_run import ignore_progress
+from protractile.runs.pipeline.results import CONVENTIONS
+from protractile.runs.process.terminal import Progress
+from protractile.runs.report.tables import Column, Table
+from protractile.runs.sweep.figures import draw_frequencies
+from protractile.runs.sweep.points import Plan
 
 if TYPE_CHECKING:
     from mpi4py import MPI

@@ -13,18 +13,18 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
-from runs.folder.files import atomic_path, folder_lock, modified_folder
-from runs.pipeline.metrics import Metric, metrics
-from runs.pipeline.quantities import QUANTITIES
-from runs.pipeline.results import CONVENTIONS
-from runs.pipeline.summary import ModelSummary
-from runs.report.formatting import NONE, number
-from runs.report.tables import Table
-from runs.sweep.distances import DISTANCES, UNTIL
-from runs.sweep.figures import PERMITTED, draw, draw_distances
-from runs.sweep.points import Plan
-from runs.sweep.residual_vibration import describe, vibration_curves
-from runs.sweep.run import Outcome
+from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
+from protractile.runs.pipeline.metrics import Metric, metrics
+from protractile.runs.pipeline.quantities import QUANTITIES
+from protractile.runs.pipeline.results import CONVENTIONS
+from protractile.runs.pipeline.summary import ModelSummary
+from protractile.runs.report.formatting import NONE, number
+from protractile.runs.report.tables import Table
+from protractile.runs.sweep.distances import DISTANCES, UNTIL
+from protractile.runs.sweep.figures import PERMITTED, draw, draw_distances
+from protractile.runs.sweep.points import Plan
+from protractile.runs.sweep.residual_vibration import describe, vibration_curves
+from protractile.runs.sweep.run import Outcome
 
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
@@ -38,7 +38,7 @@ SHOWN = ("tip_at_rest", "tip_amplitude", "contact_force", "stress")
 def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
     """Return the outcomes as a dataset over the varied keys, in the units of the case, and models.
 
-    It has the quantities of :mod:`runs.pipeline.quantities`, NaN where a model has no value, and
+    It has the quantities of :mod:`.runs.pipeline.quantities`, NaN where a model has no value, and
     ``failed``, which is 1 for failed models. With a reference model it has the differences from
     this model, and ``compared_until``, the time in s up to which tips are compared. A limit of the
     case is the attribute ``permitted`` of the quantity.

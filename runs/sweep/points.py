@@ -17,17 +17,17 @@ from typing import Any
 
 import numpy as np
 
-from geometry.fields import names_of
-from geometry.section import BoxSection
-from geometry.typography import choices
-from runs.case import reading as case_file
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.messages import BadInput, refusing
-from runs.case.schema import Case
-from runs.case.sections import SectionTable
-from runs.pipeline.quantities import Limit, case_limits
-from runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of, with_size
+from protractile.geometry.fields import names_of
+from protractile.geometry.section import BoxSection
+from protractile.geometry.typography import choices
+from protractile.runs.case import reading as case_file
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.messages import BadInput, refusing
+from protractile.runs.case.schema import Case
+from protractile.runs.case.sections import SectionTable
+from protractile.runs.pipeline.quantities import Limit, case_limits
+from protractile.runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of, with_size
 
 Setting = tuple[Variation, float]
 
@@ -85,7 +85,7 @@ def plan(
 
     Args:
         file: a case file, or the name of the case in messages.
-        texts: options KEY=VALUES, see :mod:`runs.sweep.variation`.
+        texts: options KEY=VALUES, see :mod:`.runs.sweep.variation`.
         models: names of models; all unless given.
         mesh_size: mesh size of all shells in m; the mesh size of the case unless given.
         reference: name of the model with which the others are compared.

@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 import xarray as xr
 
-from geometry.arrays import Array
-from geometry.typography import TO_MILLI
-from runs.report import theme
-from runs.report.figure_context import new_sheet
-from runs.report.formatting import number
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_MILLI
+from protractile.runs.report import theme
+from protractile.runs.report.figure_context import new_sheet
+from protractile.runs.report.formatting import number
 
 # Relative excess over the level that is tolerated, since time steps and impacts cause scatter.
 _SAME = 1.0e-2

@@ -13,22 +13,22 @@ from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from dynamics.failure import NumericsError
-from runs.case import toml
-from runs.case.messages import BadInput
-from runs.case.schema import Case
-from runs.case.user_files import check_not_working_folder
-from runs.folder.cache import Cache, key
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.quantities import Quantities
-from runs.pipeline.results import Results
-from runs.pipeline.run import run_case
-from runs.process.ending import when_interrupted
-from runs.process.ranks import single_rank
-from runs.process.terminal import Progress, message, say, shorten
-from runs.process.workers import end
-from runs.sweep.distances import Features, comparison_end
-from runs.sweep.points import Plan
+from protractile.dynamics.failure import NumericsError
+from protractile.runs.case import toml
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
+from protractile.runs.case.user_files import check_not_working_folder
+from protractile.runs.folder.cache import Cache, key
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.quantities import Quantities
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.run import run_case
+from protractile.runs.process.ending import when_interrupted
+from protractile.runs.process.ranks import single_rank
+from protractile.runs.process.terminal import Progress, message, say, shorten
+from protractile.runs.process.workers import end
+from protractile.runs.sweep.distances import Features, comparison_end
+from protractile.runs.sweep.points import Plan
 
 POINTS = "points"
 

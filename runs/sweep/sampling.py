@@ -17,20 +17,28 @@ import numpy as np
 import pandas as pd
 from rich.console import Console
 
-from geometry.arrays import Array
-from geometry.typography import TO_PERCENT, join_words
-from runs.case import reading as case_file
-from runs.case.messages import BadInput
-from runs.case.schema import Case
-from runs.folder.files import atomic_path, folder_lock, modified_folder
-from runs.pipeline.metrics import Metric
-from runs.pipeline.quantities import QUANTITIES
-from runs.report import theme
-from runs.report.figure_context import new_sheet
-from runs.report.tables import Column, Table
-from runs.sweep.points import Plan, Plates, Point, Setting, chosen_beam, make_points, tables_of
-from runs.sweep.run import Outcome
-from runs.sweep.variation import Place, Variation, numbers, with_size
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_PERCENT, join_words
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
+from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
+from protractile.runs.pipeline.metrics import Metric
+from protractile.runs.pipeline.quantities import QUANTITIES
+from protractile.runs.report import theme
+from protractile.runs.report.figure_context import new_sheet
+from protractile.runs.report.tables import Column, Table
+from protractile.runs.sweep.points import (
+    Plan,
+    Plates,
+    Point,
+    Setting,
+    chosen_beam,
+    make_points,
+    tables_of,
+)
+from protractile.runs.sweep.run import Outcome
+from protractile.runs.sweep.variation import Place, Variation, numbers, with_size
 
 OPTION = "--samples"
 SAMPLES, CSV, CHART = "samples.csv", "sampling.csv", "sampling.png"

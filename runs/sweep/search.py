@@ -12,20 +12,20 @@ from pathlib import Path
 import numpy as np
 from rich.console import Console
 
-from geometry.typography import choices
-from runs.case.build import build_boom
-from runs.case.messages import BadInput
-from runs.case.schema import Case
-from runs.case.units import scale
-from runs.folder.cache import Cache
-from runs.pipeline.largest_loads import BeamStates
-from runs.pipeline.pad_walls import pad_wall_lines
-from runs.pipeline.quantities import QUANTITIES, Limit
-from runs.pipeline.statics import boom_with_play, statics
-from runs.process.terminal import Progress
-from runs.report.tables import Table
-from runs.sweep.points import Plan
-from runs.sweep.run import Outcome, run_points
+from protractile.geometry.typography import choices
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import scale
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.pad_walls import pad_wall_lines
+from protractile.runs.pipeline.quantities import QUANTITIES, Limit
+from protractile.runs.pipeline.statics import boom_with_play, statics
+from protractile.runs.process.terminal import Progress
+from protractile.runs.report.tables import Table
+from protractile.runs.sweep.points import Plan
+from protractile.runs.sweep.run import Outcome, run_points
 
 OPTION = "--until"
 # Width of the final bracket as a fraction of its larger end.
@@ -74,7 +74,7 @@ def run_until(
         plan: plan of the first values.
         bound: bound of a quantity that the first values enclose; None for no bisection.
         plan_of: function that returns the plan of other variations KEY=VALUES.
-        folder, pool, progress, cache: see :func:`runs.sweep.run.run_points`.
+        folder, pool, progress, cache: see :func:`.runs.sweep.run.run_points`.
 
     Returns:
         The plan with the values of all steps, and its outcomes.

@@ -17,11 +17,11 @@ from typing import Any
 
 import numpy as np
 
-from geometry.fields import is_number, names_of
-from runs.case.limits import Steps, is_table, key_of, leaves, units_of
-from runs.case.messages import BadInput
-from runs.case.schema import PLAIN_NUMBER_KEYS, Case
-from runs.case.units import scale
+from protractile.geometry.fields import is_number, names_of
+from protractile.runs.case.limits import Steps, is_table, key_of, leaves, units_of
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import PLAIN_NUMBER_KEYS, Case
+from protractile.runs.case.units import scale
 
 # A case as nested dictionaries and lists.
 Tables = dict[str, Any]

@@ -12,15 +12,15 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from dynamics.contact import ContactLaw
-from dynamics.gap_builder import LawRow
-from geometry.arrays import Array
-from geometry.boom import Boom
-from geometry.probe_responses import ProbedMotion, ProbeResponses, probe_places
-from shell_model.reduction.symmetry import Job, SymmetryReduction
-from shell_model.segment.cross_section import Operator
-from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver, squared
+from protractile.dynamics.contact import ContactLaw
+from protractile.dynamics.gap_builder import LawRow
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom
+from protractile.geometry.probe_responses import ProbedMotion, ProbeResponses, probe_places
+from protractile.shell_model.reduction.symmetry import Job, SymmetryReduction
+from protractile.shell_model.segment.cross_section import Operator
+from protractile.shell_model.segment.segment_shell import SegmentShell
+from protractile.shell_model.segment.solver import ShiftedSolver, squared
 
 # Frequency f in Hz of the shift σ = (2π f)², between rigid and elastic modes.
 SLOW = 20.0

@@ -15,15 +15,15 @@ from functools import partial
 
 import numpy as np
 
-from dynamics.gap_builder import GapBuilder, LawRow
-from geometry.boom import Boom, BoomError, Direction
-from geometry.contact_places import ContactLine, Pad, Patch, pads, stop_patches
-from geometry.section import Offset, Section, Side
-from geometry.telescoping import drives_below
-from shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
-from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints, gauss
-from shell_model.segment.cross_section import Operator, Row, SectionNodes
-from shell_model.segment.segment_shell import SegmentShell
+from protractile.dynamics.gap_builder import GapBuilder, LawRow
+from protractile.geometry.boom import Boom, BoomError, Direction
+from protractile.geometry.contact_places import ContactLine, Pad, Patch, pads, stop_patches
+from protractile.geometry.section import Offset, Section, Side
+from protractile.geometry.telescoping import drives_below
+from protractile.shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
+from protractile.shell_model.contact.wall_rows import CornerLines, Wall, WallPoints, gauss
+from protractile.shell_model.segment.cross_section import Operator, Row, SectionNodes
+from protractile.shell_model.segment.segment_shell import SegmentShell
 
 _SIDES: tuple[Side, Side] = (1, -1)
 

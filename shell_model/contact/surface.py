@@ -16,15 +16,15 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from dynamics.contact import ContactLaw
-from geometry.arrays import Array
-from geometry.boom import Boom, Joint
-from geometry.contact_places import Pad
-from shell_model.contact.wall_rows import Wall, WallPoints, gauss
-from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment.cross_section import Operator
-from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import exact_product
+from protractile.dynamics.contact import ContactLaw
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Joint
+from protractile.geometry.contact_places import Pad
+from protractile.shell_model.contact.wall_rows import Wall, WallPoints, gauss
+from protractile.shell_model.reduction.segment import ReducedSegment
+from protractile.shell_model.segment.cross_section import Operator
+from protractile.shell_model.segment.segment_shell import SegmentShell
+from protractile.shell_model.segment.solver import exact_product
 
 # Fraction of the compliance of a row that is neglected. It changes the tip deflection of the
 # paper's boom with friction by 0.01 % of its range.

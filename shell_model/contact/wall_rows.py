@@ -14,13 +14,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array, Indices
-from geometry.contact_places import ContactInterval
-from geometry.section import COMPONENT, Direction
-from geometry.walls import WallsAlong
-from shell_model import compat
-from shell_model.segment.cross_section import Row, quadratic
-from shell_model.segment.segment_shell import SegmentShell
+from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.contact_places import ContactInterval
+from protractile.geometry.section import COMPONENT, Direction
+from protractile.geometry.walls import WallsAlong
+from protractile.shell_model import compat
+from protractile.shell_model.segment.cross_section import Row, quadratic
+from protractile.shell_model.segment.segment_shell import SegmentShell
 
 
 class _CornerLine(NamedTuple):

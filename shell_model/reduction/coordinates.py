@@ -8,13 +8,13 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.linalg import block_diag, eigh, null_space
 
-from dynamics.second_order import buckling_factor, soften_modes
-from geometry.arrays import Array
-from geometry.cylinder import GroundLine
-from shell_model.boom_shell import BoomShell
-from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment.cross_section import Operator
-from shell_model.segment.solver import exact_product
+from protractile.dynamics.second_order import buckling_factor, soften_modes
+from protractile.geometry.arrays import Array
+from protractile.geometry.cylinder import GroundLine
+from protractile.shell_model.boom_shell import BoomShell
+from protractile.shell_model.reduction.segment import ReducedSegment
+from protractile.shell_model.segment.cross_section import Operator
+from protractile.shell_model.segment.solver import exact_product
 
 # Fraction of the largest singular value below which a singular value is round-off.
 ROUND_OFF = 1.0e-9
@@ -33,7 +33,7 @@ class BoomCoordinates:
         omega2: ω² (num_modes,) in rad²/s², exactly 0 for rigid motions, negative if an axial force
             makes a segment unstable.
         critical_factor: buckling factor of the axial forces, see
-            :func:`dynamics.second_order.buckling_factor`; infinite without axial forces, None for a
+            :func:`.second_order.buckling_factor`; infinite without axial forces, None for a
             mechanism.
     """
 

@@ -12,12 +12,12 @@ import numpy as np
 from petsc4py import PETSc
 from scipy.linalg import eigh
 
-from dynamics.failure import NumericsError
-from geometry.arrays import Array, Mask
-from geometry.probe_responses import PROBE_FREQUENCY
-from shell_model.reduction.symmetry import Job, SymmetryCell
-from shell_model.segment.shell import ShellMatrices
-from shell_model.segment.solver import ShiftedSolver, times
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array, Mask
+from protractile.geometry.probe_responses import PROBE_FREQUENCY
+from protractile.shell_model.reduction.symmetry import Job, SymmetryCell
+from protractile.shell_model.segment.shell import ShellMatrices
+from protractile.shell_model.segment.solver import ShiftedSolver, times
 
 # Fraction of a vector's length below which the part beyond the basis is round-off.
 _DEPENDENT = 1.0e-9

@@ -18,10 +18,10 @@ from typing import Final, NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from dynamics.failure import NumericsError
-from geometry.arrays import Array, Indices, Mask
-from geometry.plating import PlatedMesh
-from geometry.section import COMPONENT, Direction
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array, Indices, Mask
+from protractile.geometry.plating import PlatedMesh
+from protractile.geometry.section import COMPONENT, Direction
 
 # Distance below which points coincide, as a fraction of the extent of a mesh.
 _ON_PLACE = 1.0e-8

@@ -6,7 +6,7 @@ The basis spans (K + σ M)⁻¹ F and its moments for load vectors F and several
 contact forces is accurate from statics to the frequencies of the shifts. It includes local
 compliance, for which thousands of natural modes would be necessary. Rigid motions are separate, so
 that their frequency is exactly zero. Each symmetry class has its own basis on one rank, so that
-results are bitwise equal for any number of ranks (:mod:`shell_model.reduction.symmetry`). Errors
+results are bitwise equal for any number of ranks (:mod:`.shell_model.reduction.symmetry`). Errors
 are measured against the full model at frequencies between the shifts.
 """
 
@@ -21,11 +21,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import block_diag
 
-from dynamics.failure import NumericsError
-from geometry.arrays import Array
-from shell_model.reduction.krylov import ClassCoordinates, Coordinates, KrylovOptions, reduce_class
-from shell_model.reduction.mirror import SymmetryClass
-from shell_model.reduction.symmetry import Job, SymmetryReduction, share_jobs
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array
+from protractile.shell_model.reduction.krylov import (
+    ClassCoordinates,
+    Coordinates,
+    KrylovOptions,
+    reduce_class,
+)
+from protractile.shell_model.reduction.mirror import SymmetryClass
+from protractile.shell_model.reduction.symmetry import Job, SymmetryReduction, share_jobs
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,13 +20,13 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from dynamics.failure import NumericsError
-from geometry.arrays import Array, Indices, Mask
-from geometry.boom import Segment
-from geometry.plating import PlatedMesh
-from geometry.section import COMPONENT, Direction
-from shell_model import compat
-from shell_model.reduction.mirror import (
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array, Indices, Mask
+from protractile.geometry.boom import Segment
+from protractile.geometry.plating import PlatedMesh
+from protractile.geometry.section import COMPONENT, Direction
+from protractile.shell_model import compat
+from protractile.shell_model.reduction.mirror import (
     SymmetryClass,
     cell_mesh,
     image_of,
@@ -35,8 +35,8 @@ from shell_model.reduction.mirror import (
     on_plane,
     symmetry_classes,
 )
-from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.shell import (
+from protractile.shell_model.segment.segment_shell import SegmentShell
+from protractile.shell_model.segment.shell import (
     Attachments,
     Plates,
     ShellMatrices,

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from mpi4py import MPI
 
-from geometry.arrays import Array, Indices, Mask
-from geometry.section import COMPONENT, Direction, Plate, Section
+from protractile.geometry.arrays import Array, Indices, Mask
+from protractile.geometry.section import COMPONENT, Direction, Plate, Section
 
 _X = 0
 

@@ -18,7 +18,7 @@ import ufl
 from dolfinx import fem
 from petsc4py import PETSc
 
-from geometry.boom import Material
+from protractile.geometry.boom import Material
 
 SHEAR_CORRECTION = 5.0 / 6.0
 

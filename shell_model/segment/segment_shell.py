@@ -10,13 +10,13 @@ from functools import cached_property
 import numpy as np
 from mpi4py import MPI
 
-from geometry.arrays import Array, Mask
-from geometry.boom import Direction, Segment
-from geometry.plating import PlatedMesh
-from geometry.section import COMPONENT
-from shell_model import compat
-from shell_model.segment.cross_section import Row, SectionNodes
-from shell_model.segment.shell import (
+from protractile.geometry.arrays import Array, Mask
+from protractile.geometry.boom import Direction, Segment
+from protractile.geometry.plating import PlatedMesh
+from protractile.geometry.section import COMPONENT
+from protractile.shell_model import compat
+from protractile.shell_model.segment.cross_section import Row, SectionNodes
+from protractile.shell_model.segment.shell import (
     Attachments,
     ShellMatrices,
     assemble_plates,
@@ -24,7 +24,7 @@ from shell_model.segment.shell import (
     masses,
     springs,
 )
-from shell_model.segment.solver import times
+from protractile.shell_model.segment.solver import times
 
 # Fraction of a load's largest value below which a value is round-off.
 _ROUND_OFF = 1.0e-10
@@ -32,7 +32,7 @@ _ROUND_OFF = 1.0e-10
 
 @dataclass(frozen=True)
 class SegmentShell(ShellMatrices):
-    """Shell of one segment, and its load vectors; a :class:`geometry.load.LoadedSegment`."""
+    """Shell of one segment, and its load vectors; a :class:`.geometry.load.LoadedSegment`."""
 
     segment: Segment  #: the segment
     mesh: PlatedMesh | None  #: mesh of the segment, on rank 0

@@ -19,14 +19,14 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.linalg import block_diag, null_space, qr
 
-from geometry.arrays import Array, Indices, Mask
-from geometry.boom import Direction
-from geometry.plating import PlatedMesh
-from geometry.section import COMPONENT
-from geometry.segment import Segment
-from shell_model import compat
-from shell_model.segment.cross_section import Row, SectionNodes, on_outline
-from shell_model.segment.forms import ShellForms
+from protractile.geometry.arrays import Array, Indices, Mask
+from protractile.geometry.boom import Direction
+from protractile.geometry.plating import PlatedMesh
+from protractile.geometry.section import COMPONENT
+from protractile.geometry.segment import Segment
+from protractile.shell_model import compat
+from protractile.shell_model.segment.cross_section import Row, SectionNodes, on_outline
+from protractile.shell_model.segment.forms import ShellForms
 
 # Distance in m below which a node is on a mesh line.
 ON_LINE = 1.0e-7

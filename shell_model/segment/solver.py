@@ -7,8 +7,8 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from geometry.arrays import Array
-from shell_model.segment.shell import ShellMatrices
+from protractile.geometry.arrays import Array
+from protractile.shell_model.segment.shell import ShellMatrices
 
 
 def dense(matrix: PETSc.Mat, block: Array) -> PETSc.Mat:

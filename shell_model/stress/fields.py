@@ -16,19 +16,19 @@ from petsc4py import PETSc
 from scipy.linalg import block_diag
 from scipy.spatial import cKDTree
 
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.boom import Boom, Segment
-from geometry.cylinder import force_name
-from geometry.plating import PlatedMesh
-from shell_model import compat
-from shell_model.reduction.coordinates import BoomCoordinates
-from shell_model.reduction.segment import ReducedSegment
-from shell_model.segment.forms import facet_frame, plane_stress, strains
-from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.shell import ON_LINE
-from shell_model.segment.solver import times
-from shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.cylinder import force_name
+from protractile.geometry.plating import PlatedMesh
+from protractile.shell_model import compat
+from protractile.shell_model.reduction.coordinates import BoomCoordinates
+from protractile.shell_model.reduction.segment import ReducedSegment
+from protractile.shell_model.segment.forms import facet_frame, plane_stress, strains
+from protractile.shell_model.segment.segment_shell import SegmentShell
+from protractile.shell_model.segment.shell import ON_LINE
+from protractile.shell_model.segment.solver import times
+from protractile.shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 
 
 def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:

@@ -15,8 +15,15 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
-from geometry.arrays import Array, Indices
-from shell_model.stress.stresses import Face, Modes, ShellStress, Stress, WallForces, wall_forces
+from protractile.geometry.arrays import Array, Indices
+from protractile.shell_model.stress.stresses import (
+    Face,
+    Modes,
+    ShellStress,
+    Stress,
+    WallForces,
+    wall_forces,
+)
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,10 +15,15 @@ import numpy as np
 import xarray as xr
 from scipy.sparse import csr_matrix
 
-from dynamics.line import Line, Quantity
-from geometry.arrays import Array, Indices
-from geometry.boom import Boom
-from shell_model.stress.stresses import SAME_LINE, ShellStress, linear_stress_weights, lines_around
+from protractile.dynamics.line import Line, Quantity
+from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.boom import Boom
+from protractile.shell_model.stress.stresses import (
+    SAME_LINE,
+    ShellStress,
+    linear_stress_weights,
+    lines_around,
+)
 
 # Maximum number of bands of a segment.
 _BANDS = 60

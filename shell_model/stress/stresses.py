@@ -11,11 +11,11 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
-from geometry.arrays import Array, Indices
+from protractile.geometry.arrays import Array, Indices
 
 if TYPE_CHECKING:
     # Imported only for types, since gmsh takes long to load.
-    from geometry.plating import PlatedMesh
+    from protractile.geometry.plating import PlatedMesh
 
 Modes = npt.NDArray[np.float32]
 
@@ -105,7 +105,7 @@ class ShellStress:
 
     @classmethod
     def from_fields(cls, fields: xr.Dataset) -> ShellStress:
-        """Return the stresses of the fields of a run, see :mod:`shell_model.stress.fields`."""
+        """Return the stresses of the fields of a run, see :mod:`.shell_model.stress.fields`."""
         segment, state = fields["segment"].values, fields["state"].values
         numbers = range(1, int(segment.max()) + 2)
         coordinates = [fields[f"coordinates_{k}"].values for k in numbers]

@@ -21,17 +21,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from rich.console import Console
 
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
-from dynamics.motion import Motion
-from dynamics.predictability import integrate_ensemble
-from geometry.arrays import Array
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.process.terminal import show_notices
-from runs.report.tables import Table
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.predictability import integrate_ensemble
+from protractile.geometry.arrays import Array
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.process.terminal import show_notices
+from protractile.runs.report.tables import Table
 from studies.cost import scaling
 from studies.cost.generic_solvers import (
     TOLERANCES,

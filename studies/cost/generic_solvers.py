@@ -10,10 +10,10 @@ import numpy as np
 from numba import njit
 from scipy.integrate import odeint, solve_ivp
 
-from dynamics.contact import contact_terms
-from dynamics.gap_system import GapSystem
-from dynamics.kernels.row_forces import term_force
-from geometry.arrays import Array
+from protractile.dynamics.contact import contact_terms
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.kernels.row_forces import term_force
+from protractile.geometry.arrays import Array
 from studies.motions import OUTPUT_STEP
 
 Rates = Callable[[float, Array], Array]

@@ -16,9 +16,9 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from runs import CASES
-from runs.live.controls import Draft
-from runs.live.server import LivePage, make_server
+from protractile.runs import CASES
+from protractile.runs.live.controls import Draft
+from protractile.runs.live.server import LivePage, make_server
 from tests.system.browser import Page, blank_page, find_browser
 
 CHANGES = 50

@@ -17,14 +17,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from dynamics.contact import PowerContact
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from runs.case.build import build_boom
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.model import select_kind
-from runs.report.tables import Cell, Table
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.finite_element import BeamElements
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.report.tables import Cell, Table
 from studies.cost.timing import time_in_turns
 from studies.motions import OUTPUT_STEP, friction_case, gap_system, model_of, without_friction
 from studies.reference_models import impacting_beam

@@ -20,16 +20,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from rich.console import Console
 
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.kinds.model import select_kind
-from runs.case.kinds.shell import Shell
-from runs.process.terminal import show_notices
-from runs.report.tables import Table
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.process.terminal import show_notices
+from protractile.runs.report.tables import Table
 from studies.cost.timing import write_tables
 from studies.study import wide_console
 
@@ -185,8 +185,8 @@ def _run(what: str, name: str, size: str, duration: str = "0") -> None:
     """Run once in separate processes; rank 0 prints the measurements."""
     from mpi4py import MPI
 
-    from shell_model.boom_shell import ShellOptions
-    from shell_model.reduced_shell import reduce_boom
+    from protractile.shell_model.boom_shell import ShellOptions
+    from protractile.shell_model.reduced_shell import reduce_boom
 
     comm = MPI.COMM_WORLD
     case = case_file.load(str(CASES / SIZED[name]))
@@ -230,9 +230,9 @@ def _buckle(size: str) -> None:
     """Compute the buckling of the walls of a bent segment; rank 0 prints the results."""
     from mpi4py import MPI
 
-    from geometry.boom import Boom
-    from shell_model.boom_shell import ShellOptions, segment_mesh
-    from shell_model.buckling import ShellState, buckle_segments
+    from protractile.geometry.boom import Boom
+    from protractile.shell_model.boom_shell import ShellOptions, segment_mesh
+    from protractile.shell_model.buckling import ShellState, buckle_segments
 
     comm = MPI.COMM_WORLD
     case = case_file.load(str(CASES / SIZED["paper"]))

@@ -14,12 +14,12 @@ from time import process_time
 from typing import Any, NamedTuple
 
 from protractile.cases import change
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.kinds.shell import Shell
-from runs.case.schema import Case
-from runs.report.tables import Table
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.schema import Case
+from protractile.runs.report.tables import Table
 from studies.motions import OUTPUT_STEP, gap_system, model_of, move
 
 CASE = CASES / "drawn-out.toml"

@@ -10,7 +10,7 @@ from typing import Any
 
 from rich.console import Console
 
-from runs.report.tables import Table, write
+from protractile.runs.report.tables import Table, write
 
 # Total time in s for which short runs are repeated to measure their mean.
 MEASURABLE = 0.05

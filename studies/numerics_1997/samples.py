@@ -15,18 +15,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from dynamics.energy import ENERGIES
-from dynamics.gap_system import GapSystem
-from dynamics.motion import Motion
-from dynamics.predictability import perturbations, vary_motion
-from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.paper.rules import CONFORMITY, DIVERGENCE
-from runs.paper.run_query import peak_distances
-from runs.pipeline.members import slow_cutoff
-from runs.pipeline.models import MotionPlan
+from protractile.dynamics.energy import ENERGIES
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.predictability import perturbations, vary_motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.paper.rules import CONFORMITY, DIVERGENCE
+from protractile.runs.paper.run_query import peak_distances
+from protractile.runs.pipeline.members import slow_cutoff
+from protractile.runs.pipeline.models import MotionPlan
 from studies.motions import gap_system, model_of, run_parallel
 from studies.numerics_1997.schemes import CENTRAL, NEWMARK, WILSON, Scheme, integrate, lowest
 

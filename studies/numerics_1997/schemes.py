@@ -16,14 +16,14 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from dynamics.arrays import Array
-from dynamics.contact import Terms, contact_terms
-from dynamics.energy import ENERGIES
-from dynamics.gap_system import GapSystem
-from dynamics.kernels.compiled import LOOP
-from dynamics.kernels.row_forces import contact_energy, term_force, term_slope
-from dynamics.motion import Motion
-from dynamics.trajectory import Output, Trajectory
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import Terms, contact_terms
+from protractile.dynamics.energy import ENERGIES
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.kernels.compiled import LOOP
+from protractile.dynamics.kernels.row_forces import contact_energy, term_force, term_slope
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Output, Trajectory
 
 # Maximum numbers of iterations in a step: of gaps with friction, and of gaps alone.
 ROUNDS, NEWTON = 8, 30

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Survey of the numerical methods of 1997 that reproduce the statements S3, S7, S8 and S10.
 
-:mod:`runs.paper.rules` defines the measures. The modal technique integrates beam elements and the
+:mod:`.runs.paper.rules` defines the measures. The modal technique integrates beam elements and the
 series. A general solver with at most 2000 steps also integrates the series.
 """
 
@@ -16,11 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import LSODA, RK45
 
-from dynamics.arrays import Array
-from dynamics.gap_system import GapSystem
-from runs import CASES
-from runs.case import reading as case_file
-from runs.paper.rules import ELEMENT_STEPS, INTERVAL, MOST, SERIES_STEPS
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.gap_system import GapSystem
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.paper.rules import ELEMENT_STEPS, INTERVAL, MOST, SERIES_STEPS
 from studies.cost.generic_solvers import array_rates
 from studies.numerics_1997.samples import (
     MEMBERS,

@@ -8,11 +8,11 @@ from itertools import product
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.typography import TO_PERCENT
-from runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
-from runs.report.formatting import NONE, number
-from runs.report.tables import Cell, Table
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_PERCENT
+from protractile.runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
+from protractile.runs.report.formatting import NONE, number
+from protractile.runs.report.tables import Cell, Table
 from studies.numerics_1997.samples import MEMBERS, MODES, PAPER_STEP, SERIES, ModelRun, Numerics
 from studies.numerics_1997.schemes import NEWMARK, WILSON
 from studies.numerics_1997.survey import (

@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array, Indices
-from geometry.boom import Material
-from shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
+from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.boom import Material
+from protractile.shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
 from studies.reference_models.static_shell import StaticShell, hold
 
 X, Y, Z = 0, 1, 2

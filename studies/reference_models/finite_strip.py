@@ -16,9 +16,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import eigh
 
-from geometry.arrays import Array
-from geometry.boom import Material
-from geometry.section import Section
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Material
+from protractile.geometry.section import Section
 
 # Normal stress along x in Pa, positive in tension, at y and z (num_places,) in m.
 StressField = Callable[[Array, Array], Array]

@@ -6,10 +6,10 @@ from __future__ import annotations
 import numpy as np
 from scipy.linalg import eigh, lu_factor, lu_solve
 
-from dynamics.contact import Gap
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.motion import Motion
-from geometry.arrays import Array
+from protractile.dynamics.contact import Gap
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
 
 # Beam of 1 m, 10 mm radius, E, ρ, elements; ball of 1 kg at −2 m/s, 1 µm above the free tip.
 RADIUS, YOUNG, DENSITY, ELEMENTS = 0.01, 210.0e9, 7800.0, 100

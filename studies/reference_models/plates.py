@@ -8,9 +8,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from geometry.arrays import Array
-from geometry.boom import Material
-from shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Material
+from protractile.shell_model.segment.forms import DRILLING_OF_CURVED, SHEAR_CORRECTION
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.static_shell import StaticShell

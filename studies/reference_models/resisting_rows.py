@@ -15,11 +15,11 @@ from collections.abc import Sequence
 import numpy as np
 from numba import njit
 
-from dynamics.contact import ContactLaw, DryFriction, Terms, contact_terms
-from dynamics.failure import NumericsError
-from dynamics.kernels.compiled import LOOP
-from dynamics.kernels.row_forces import contact_energy
-from geometry.arrays import Array
+from protractile.dynamics.contact import ContactLaw, DryFriction, Terms, contact_terms
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.kernels.compiled import LOOP
+from protractile.dynamics.kernels.row_forces import contact_energy
+from protractile.geometry.arrays import Array
 
 _ROUNDS = 1000
 _MOST_NEWTON = 100

@@ -6,9 +6,9 @@ from __future__ import annotations
 import numpy as np
 from petsc4py import PETSc
 
-from geometry.arrays import Array
-from geometry.section import COMPONENT
-from shell_model.segment.cross_section import Row, SectionNodes, quadratic
+from protractile.geometry.arrays import Array
+from protractile.geometry.section import COMPONENT
+from protractile.shell_model.segment.cross_section import Row, SectionNodes, quadratic
 
 
 def flange_deflection(outline: SectionNodes, side: float, y: float) -> Row:

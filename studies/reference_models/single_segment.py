@@ -10,15 +10,15 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from slepc4py import SLEPc
 
-from dynamics.failure import NumericsError
-from geometry.arrays import Array
-from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
-from geometry.plating import add_thickness
-from geometry.segment import Segment
-from shell_model.segment.cross_section import Row
-from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.shell import ShellMatrices
-from shell_model.segment.solver import ShiftedSolver, gram
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array
+from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
+from protractile.geometry.plating import add_thickness
+from protractile.geometry.segment import Segment
+from protractile.shell_model.segment.cross_section import Row
+from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from protractile.shell_model.segment.shell import ShellMatrices
+from protractile.shell_model.segment.solver import ShiftedSolver, gram
 
 # Frequency in Hz, far below all elastic modes, for the statics of a segment that can move along x.
 STATIC = 0.01

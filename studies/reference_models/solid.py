@@ -20,13 +20,13 @@ from mpi4py import MPI
 from petsc4py import PETSc
 from scipy.sparse import csr_matrix, diags, vstack
 
-from geometry.arrays import Array, Indices, Mask
-from geometry.boom import Material, Segment
-from geometry.section import BoxSection
-from shell_model import compat
-from shell_model.reduction.mirror import SymmetryClass, on_plane
-from shell_model.segment.cross_section import Row, SectionNodes
-from shell_model.segment.shell import ON_LINE, Attachments, Plates, ShellMatrices
+from protractile.geometry.arrays import Array, Indices, Mask
+from protractile.geometry.boom import Material, Segment
+from protractile.geometry.section import BoxSection
+from protractile.shell_model import compat
+from protractile.shell_model.reduction.mirror import SymmetryClass, on_plane
+from protractile.shell_model.segment.cross_section import Row, SectionNodes
+from protractile.shell_model.segment.shell import ON_LINE, Attachments, Plates, ShellMatrices
 
 # Length ratios of successive edges along x and around; effects decay more slowly along x.
 _GROWTH_ALONG = 3.0

@@ -16,13 +16,13 @@ from dolfinx import fem
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from dynamics.failure import NumericsError
-from geometry.arrays import Array, Indices, Mask
-from geometry.boom import Material
-from shell_model import compat
-from shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
-from shell_model.segment.shell import ON_LINE, Attachments, Plates, ShellMatrices
-from shell_model.segment.solver import times
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array, Indices, Mask
+from protractile.geometry.boom import Material
+from protractile.shell_model import compat
+from protractile.shell_model.segment.forms import DRILLING, SHEAR_CORRECTION, ShellForms
+from protractile.shell_model.segment.shell import ON_LINE, Attachments, Plates, ShellMatrices
+from protractile.shell_model.segment.solver import times
 
 # Permitted residual of a solution as a fraction of the load.
 _UNBALANCED = 1.0e-3

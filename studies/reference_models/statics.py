@@ -7,10 +7,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.polygon import ShearFlow
-from geometry.section import Offset, Plate
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.polygon import ShearFlow
+from protractile.geometry.section import Offset, Plate
 
 
 def static_response(system: GapSystem, force: Array) -> Array:

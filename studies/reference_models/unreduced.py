@@ -31,14 +31,14 @@ import numpy as np
 import scipy.sparse
 from petsc4py import PETSc
 
-from dynamics.energy import ENERGIES, check_energy, energy_residual
-from dynamics.failure import NumericsError
-from geometry.arrays import Array
-from geometry.boom import BoomError
-from shell_model.boom_shell import BoomShell
-from shell_model.segment.cross_section import Operator, Row
-from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver, gram
+from protractile.dynamics.energy import ENERGIES, check_energy, energy_residual
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import BoomError
+from protractile.shell_model.boom_shell import BoomShell
+from protractile.shell_model.segment.cross_section import Operator, Row
+from protractile.shell_model.segment.segment_shell import SegmentShell
+from protractile.shell_model.segment.solver import ShiftedSolver, gram
 from studies.reference_models.resisting_rows import ResistingRows
 
 # Relative residual of the accelerations at the start.

@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from scipy.optimize import brentq
 
-from beam_model.component import Component, SegmentModel, natural_modes
-from beam_model.finite_element import Theory, finite_element_segments
-from beam_model.kantorovich import Base, kantorovich_segments
-from geometry.arrays import Array
-from geometry.boom import Boom, Material, Segment, Support
-from geometry.section import BoxSection
+from protractile.beam_model.component import Component, SegmentModel, natural_modes
+from protractile.beam_model.finite_element import Theory, finite_element_segments
+from protractile.beam_model.kantorovich import Base, kantorovich_segments
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Material, Segment, Support
+from protractile.geometry.section import BoxSection
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)

@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.calibration import (
+from protractile.beam_model.calibration import (
     effective_stiffness,
     elastic_compliance,
     residual_compliance,
     with_springs,
     with_stiffness,
 )
-from beam_model.finite_element import finite_element_segment
-from geometry.boom import Material, Segment, Support
-from geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
-from geometry.section import BoxSection
+from protractile.beam_model.finite_element import finite_element_segment
+from protractile.geometry.boom import Material, Segment, Support
+from protractile.geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
+from protractile.geometry.section import BoxSection
 from tests.beam_model.test_section_fields import MODES, system
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)

@@ -8,17 +8,27 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.boom_modes import BoomModes
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import Base, kantorovich_segments, rigid_segment
-from beam_model.segment_model import gap_system
-from beam_model.statics import static_state
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Step
-from dynamics.gap_system import GapSystem
-from geometry.boom import Boom, BoomError, Cylinder, Joint, Load, Material, Segment, Stop, Support
-from geometry.section import BoxSection
+from protractile.beam_model.boom_modes import BoomModes
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import Base, kantorovich_segments, rigid_segment
+from protractile.beam_model.segment_model import gap_system
+from protractile.beam_model.statics import static_state
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.boom import (
+    Boom,
+    BoomError,
+    Cylinder,
+    Joint,
+    Load,
+    Material,
+    Segment,
+    Stop,
+    Support,
+)
+from protractile.geometry.section import BoxSection
 from tests.beam_model.exact import beam
 from tests.lowered_pin import level, raised
 from tests.space import in_space

@@ -9,17 +9,17 @@ import pytest
 from pydantic import ValidationError
 from scipy.signal import find_peaks
 
-from beam_model.boom_modes import BoomModes
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import rigid_segment
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.damping import closed_contact_damping
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Cylinder, Joint, Material, PadSize, Support
+from protractile.beam_model.boom_modes import BoomModes
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import rigid_segment
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.damping import closed_contact_damping
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, BoomError, Cylinder, Joint, Material, PadSize, Support
 from tests.beam_model.exact import beam, beam_elements
 from tests.touching import touching
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from beam_model.component import Component
-from beam_model.finite_element import Theory, finite_element_segment
-from geometry.boom import BoomError, PointMass, Segment
+from protractile.beam_model.component import Component
+from protractile.beam_model.finite_element import Theory, finite_element_segment
+from protractile.geometry.boom import BoomError, PointMass, Segment
 from tests.beam_model.exact import (
     FREE_FREE,
     PINNED_FREE,

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.component import Component, natural_modes
-from beam_model.finite_element import finite_element_segment
-from beam_model.kantorovich import Base, kantorovich_bending
-from geometry.arrays import Array
-from geometry.boom import Boom, Support
+from protractile.beam_model.component import Component, natural_modes
+from protractile.beam_model.finite_element import finite_element_segment
+from protractile.beam_model.kantorovich import Base, kantorovich_bending
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Support
 from tests.beam_model.exact import (
     CLAMPED_FREE,
     FREE_FREE,

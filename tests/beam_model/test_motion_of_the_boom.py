@@ -7,15 +7,19 @@ import numpy as np
 import pytest
 from scipy.signal import find_peaks
 
-from beam_model.segment_model import gap_system
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.damping import closed_contact_damping, closed_contact_modes, with_modal_damping
-from dynamics.equilibrium import equilibrium
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep, FixedStep
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
-from geometry.boom import Boom
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.damping import (
+    closed_contact_damping,
+    closed_contact_modes,
+    with_modal_damping,
+)
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.boom import Boom
 from tests.beam_model.exact import beam_elements, beam_series
 from tests.modal import damping_matrix, modal_system
 from tests.touching import touching

@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.boom_modes import BoomModes
-from beam_model.kantorovich import rigid_segment
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.boom import Boom, PointMass, Support
+from protractile.beam_model.boom_modes import BoomModes
+from protractile.beam_model.kantorovich import rigid_segment
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.boom import Boom, PointMass, Support
 from tests.touching import touching
 
 LAW = PowerContact(stiffness=2.0e6, exponent=1.0).with_clearance(7.0e-3)

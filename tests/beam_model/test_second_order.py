@@ -6,17 +6,17 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
-from beam_model.boom_modes import critical_factor
-from beam_model.component import Motion, SegmentModel
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments, rigid_segment
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.second_order import buckling_factor
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
-from geometry.section import BoxSection
+from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.component import Motion, SegmentModel
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import kantorovich_segments, rigid_segment
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.second_order import buckling_factor
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
+from protractile.geometry.section import BoxSection
 from tests.touching import touching
 
 Build = Callable[[Boom], Sequence[SegmentModel]]

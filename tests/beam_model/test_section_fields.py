@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.calibration import elastic_compliance
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.gap_system import GapSystem
-from dynamics.reduction import condense
+from protractile.beam_model.calibration import elastic_compliance
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.reduction import condense
 from tests.modal import modal_system
 
 MODES = 60

@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.component import SegmentModel
-from beam_model.finite_element import Theory, finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.boom import Boom, Joint, Material, Segment, Support
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.finite_element import Theory, finite_element_segments
+from protractile.beam_model.kantorovich import kantorovich_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import (
     OverhangingBeam,

@@ -6,18 +6,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.component import SegmentModel
-from beam_model.finite_element import Theory, finite_element_segment, finite_element_segments
-from beam_model.kantorovich import kantorovich_segment
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
-from geometry.boom import Boom, Joint, Segment, Stop, Support
-from geometry.section import BoxSection
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.finite_element import (
+    Theory,
+    finite_element_segment,
+    finite_element_segments,
+)
+from protractile.beam_model.kantorovich import kantorovich_segment
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Joint, Segment, Stop, Support
+from protractile.geometry.section import BoxSection
 from tests.beam_model.exact import beam, frequencies
 from tests.space import in_space
 from tests.touching import touching

@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments, rigid_segment
-from beam_model.lines import lines
-from beam_model.segment_model import gap_system
-from beam_model.statics import net_reactions, static_state
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Ramp, Step
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Cylinder, Load, PointMass, Support
-from geometry.load import Moment, PartialLoad
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import kantorovich_segments, rigid_segment
+from protractile.beam_model.lines import lines
+from protractile.beam_model.segment_model import gap_system
+from protractile.beam_model.statics import net_reactions, static_state
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Ramp, Step
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Cylinder, Load, PointMass, Support
+from protractile.geometry.load import Moment, PartialLoad
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import beam
 from tests.touching import touching

@@ -8,16 +8,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.component import Component, natural_modes
-from beam_model.finite_element import finite_element_segment
-from beam_model.kantorovich import Base, kantorovich_bending
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.excitation import Step
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
+from protractile.beam_model.component import Component, natural_modes
+from protractile.beam_model.finite_element import finite_element_segment
+from protractile.beam_model.kantorovich import Base, kantorovich_bending
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
 from tests.beam_model.exact import (
     CLAMPED_FREE,
     FREE_FREE,

@@ -7,21 +7,21 @@ import numpy as np
 import pytest
 from scipy.integrate import quad
 
-from beam_model.boom_modes import critical_factor
-from beam_model.component import SegmentModel
-from beam_model.elements import Theory
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments, rigid_segment
-from beam_model.lines import lines
-from beam_model.segment_model import gap_system
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Step
-from geometry.axial import with_compression
-from geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
-from geometry.load import Load
-from geometry.profiles import octagon
-from geometry.section import BoxSection
-from runs.case.kinds.finite_element import BeamElements
+from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.elements import Theory
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import kantorovich_segments, rigid_segment
+from protractile.beam_model.lines import lines
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
+from protractile.geometry.axial import with_compression
+from protractile.geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
+from protractile.geometry.load import Load
+from protractile.geometry.profiles import octagon
+from protractile.geometry.section import BoxSection
+from protractile.runs.case.kinds.finite_element import BeamElements
 from studies import taper
 from studies.reference_models.statics import static_response
 

@@ -13,23 +13,23 @@ from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import block_diag, eigh
 
-from beam_model.boom_modes import critical_factor
-from beam_model.component import SegmentModel
-from beam_model.elements import Theory
-from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
-from beam_model.segment_model import gap_system
-from dynamics.arrays import Array
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import History, HistorySum, PiecewiseLinear, SCurve
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, BoomError, Joint, PointMass, Segment, Stop, Support
-from geometry.joint import Carrier, Drive
-from geometry.segment import NO_COMPRESSION
+from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.elements import Theory
+from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
+from protractile.beam_model.kantorovich import kantorovich_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import History, HistorySum, PiecewiseLinear, SCurve
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, BoomError, Joint, PointMass, Segment, Stop, Support
+from protractile.geometry.joint import Carrier, Drive
+from protractile.geometry.segment import NO_COMPRESSION
 from tests.touching import touching
 
 LAW = PowerContact(1.0e6, 1.0).with_clearance(7.0e-3)

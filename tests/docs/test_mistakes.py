@@ -6,11 +6,11 @@ from pathlib import Path
 
 import pytest
 
-from runs import CASES
-from runs.case.messages import BadInput
-from runs.case.reading import load_checked
-from runs.check import check_case
-from runs.pipeline.proportions import proportion_cautions
+from protractile.runs import CASES
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.reading import load_checked
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.proportions import proportion_cautions
 from tests.docs.conftest import toml_blocks
 
 CASE = "".join(toml_blocks("tutorial.md")[:2])

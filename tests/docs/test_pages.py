@@ -12,9 +12,9 @@ import pytest
 import typer
 
 import protractile as pt
-from runs import cli
-from runs.case.build import build_boom
-from runs.case.schema import case_schema
+from protractile.runs import cli
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import case_schema
 from studies.convergence import STUDIES
 from tests.docs.conftest import DOCS, merged, toml_blocks
 from tests.runs.case_texts import read_case, table

@@ -9,18 +9,18 @@ import numpy as np
 import pytest
 
 import protractile as pt
-from beam_model.statics import StaticState, static_state
-from dynamics.damping import closed_contact_modes
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext
-from runs.folder.cache import Cache
-from runs.live.beam import beam_results
-from runs.live.controls import Draft
-from runs.pipeline.largest_loads import BeamStates
-from runs.pipeline.models import build
-from runs.pipeline.proportions import proportion_cautions
-from runs.pipeline.statics import cylinder_force, statics
-from runs.pipeline.summary import Summary
+from protractile.beam_model.statics import StaticState, static_state
+from protractile.dynamics.damping import closed_contact_modes
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.folder.cache import Cache
+from protractile.runs.live.beam import beam_results
+from protractile.runs.live.controls import Draft
+from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.proportions import proportion_cautions
+from protractile.runs.pipeline.statics import cylinder_force, statics
+from protractile.runs.pipeline.summary import Summary
 from tests.docs.conftest import DOCS, toml_blocks
 from tests.runs.case_texts import read_case
 

@@ -6,13 +6,13 @@ from dataclasses import replace
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from dynamics.arrays import Array
-from dynamics.contact import PowerContact
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
-from dynamics.travel import ROW_KINDS, RowTable
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.dynamics.travel import ROW_KINDS, RowTable
 from tests.modal import modal_system
 
 # Half the distance in s over which the speed of a drive is measured.

@@ -9,10 +9,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
-from dynamics.excitation import Excitation, Sine
-from dynamics.integrator import AdaptiveStep, FixedStep, Integrator, StepSchedule, simulate
-from dynamics.motion import MOST_STEPS, Motion
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.excitation import Excitation, Sine
+from protractile.dynamics.integrator import (
+    AdaptiveStep,
+    FixedStep,
+    Integrator,
+    StepSchedule,
+    simulate,
+)
+from protractile.dynamics.motion import MOST_STEPS, Motion
 from tests.dynamics.reference import two_modes
 from tests.dynamics.test_time_step import driven, lossy_press, pressed, sliding, telescoping
 from tests.dynamics.two_stops import CHAOTIC, LINEAR, RATTLING

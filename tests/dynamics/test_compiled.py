@@ -14,7 +14,7 @@ from tests import rubbing
 ROOT = Path(__file__).parents[2]
 PROGRAM = """
 from numba import config
-import dynamics.kernels.modal_flow
+import protractile.dynamics.kernels.modal_flow
 print(config.CACHE_DIR)
 """
 
@@ -22,9 +22,12 @@ print(config.CACHE_DIR)
 def test_a_read_only_home_and_installation(tmp_path: Path) -> None:
     """A file in place of a folder prevents writing, also for root."""
     shutil.copytree(
-        ROOT / "dynamics", tmp_path / "dynamics", ignore=shutil.ignore_patterns("__pycache__")
+        ROOT / "dynamics",
+        tmp_path / "protractile" / "dynamics",
+        ignore=shutil.ignore_patterns("__pycache__"),
     )
-    for package in (tmp_path / "dynamics").glob("**/__init__.py"):
+    (tmp_path / "protractile" / "__init__.py").touch()
+    for package in (tmp_path / "protractile").glob("**/__init__.py"):
         (package.parent / "__pycache__").touch()
     (tmp_path / "tmp").mkdir()
     (tmp_path / "home").touch()

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from dynamics.contact import PowerContact, contact_limits, restitution_damping
-from dynamics.contact_table import TableContact
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
+from protractile.dynamics.contact import PowerContact, contact_limits, restitution_damping
+from protractile.dynamics.contact_table import TableContact
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
 from tests.modal import one_mass
 
 POWER = PowerContact(stiffness=1.0e13, exponent=2.0, stiffness_below=4.0e12)

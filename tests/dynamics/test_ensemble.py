@@ -12,11 +12,11 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from dynamics.excitation import Excitation, Sine
-from dynamics.failure import NumericsError
-from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
-from dynamics.motion import Motion
-from dynamics.predictability import (
+from protractile.dynamics.excitation import Excitation, Sine
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.predictability import (
     EARLY,
     EnsembleMember,
     Growth,
@@ -31,7 +31,7 @@ from dynamics.predictability import (
     run_members,
     vary_motion,
 )
-from dynamics.trajectory import Trajectory
+from protractile.dynamics.trajectory import Trajectory
 from tests.dynamics.two_stops import CHAOTIC, LINEAR
 
 THROWN = np.array([0.5, -1.0])
@@ -104,9 +104,9 @@ OTHER_RANK = """
 import os
 from mpi4py import MPI
 from mpi4py.futures import MPICommExecutor
-from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
-from dynamics.motion import Motion
-from dynamics.predictability import integrate_ensemble
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.predictability import integrate_ensemble
 from tests.dynamics.two_stops import CHAOTIC
 
 with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
-from dynamics.damping import closed_contact_damping, with_modal_damping
-from dynamics.equilibrium import equilibrium
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from dynamics.second_order import buckling_factor, soften_modes
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.damping import closed_contact_damping, with_modal_damping
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.second_order import buckling_factor, soften_modes
 from tests.modal import modal_system, one_mass
 
 

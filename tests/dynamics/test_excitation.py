@@ -8,13 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from dynamics.arrays import Array
-from dynamics.contact import PowerContact
-from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import AdaptiveStep, FixedStep
-from dynamics.motion import Motion
-from dynamics.time_step import line_within
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.time_step import line_within
 from tests.dynamics.reference import slopes
 from tests.modal import modal_system, one_mass
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dynamics.arrays import Array
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.excitation import Excitation, Sine
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import AdaptiveStep, FixedStep
-from dynamics.motion import Motion
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.excitation import Excitation, Sine
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+from protractile.dynamics.motion import Motion
 from tests.modal import modal_system, one_mass
 
 

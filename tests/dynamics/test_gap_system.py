@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.excitation import Excitation, PiecewiseLinear, Step
-from dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.excitation import Excitation, PiecewiseLinear, Step
+from protractile.dynamics.gap_system import GapSystem, Observer
 from studies.reference_models.statics import static_response
 
 LAW = PowerContact(stiffness=1.0e6, exponent=1.0).with_clearance(1.0e-3)

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from dynamics.arrays import Array
-from dynamics.excitation import (
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.excitation import (
     HistorySum,
     MotionLaw,
     PiecewiseLinear,
@@ -19,12 +19,12 @@ from dynamics.excitation import (
     Spline,
     Stroke,
 )
-from dynamics.frame_motion import FrameAcceleration, FrameMotion
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.hanging_load import HangingLoad, Pendulum
-from dynamics.integrator import FixedStep
-from dynamics.motion import build_motion
-from dynamics.trajectory import Trajectory
+from protractile.dynamics.frame_motion import FrameAcceleration, FrameMotion
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.hanging_load import HangingLoad, Pendulum
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import build_motion
+from protractile.dynamics.trajectory import Trajectory
 from tests.dynamics.test_telescoping import lossy
 from tests.modal import modal_system
 

@@ -8,8 +8,8 @@ import pytest
 from scipy.integrate import quad
 from scipy.linalg import expm
 
-from dynamics.gap_system import GapSystem
-from dynamics.kernels.modal_flow import finish_flow, free_flow, modal_flow
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.kernels.modal_flow import finish_flow, free_flow, modal_flow
 from tests.modal import modal_system
 
 # ω² in rad²/s², c in 1/s, load in N/√kg

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from scipy.linalg import eigh
 
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import PiecewiseLinear, SCurve
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from dynamics.travel import MovingAxialForce, RowTable, Travel
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import PiecewiseLinear, SCurve
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.travel import MovingAxialForce, RowTable, Travel
 from tests.dynamics.reference import errors_in_the_step, runge_kutta, slopes
 from tests.modal import modal_system
 

@@ -6,20 +6,20 @@ import re
 import numpy as np
 import pytest
 
-from dynamics import time_step
-from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, DryFriction, PowerContact
-from dynamics.contact_table import TableContact
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.kernels import march
-from dynamics.kernels.row_forces import (
+from protractile.dynamics import time_step
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import ContactLaw, DryFriction, PowerContact
+from protractile.dynamics.contact_table import TableContact
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.kernels import march
+from protractile.dynamics.kernels.row_forces import (
     row_laws,
     row_problem,
     solve_contact_forces,
 )
-from dynamics.motion import Motion
+from protractile.dynamics.motion import Motion
 from tests.modal import modal_system
 
 # What round-off leaves of a law, as a part of the largest force.

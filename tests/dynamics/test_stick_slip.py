@@ -9,10 +9,10 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
-from dynamics.arrays import Array
-from dynamics.excitation import PiecewiseLinear, SCurve, Stroke
-from dynamics.stick_slip import DriveMotion, ElasticDrive, move_segment
-from runs.pipeline.drives import critical_speed
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.excitation import PiecewiseLinear, SCurve, Stroke
+from protractile.dynamics.stick_slip import DriveMotion, ElasticDrive, move_segment
+from protractile.runs.pipeline.drives import critical_speed
 
 MASS, STIFFNESS, FRICTION = 500.0, 1.0e5, 1000.0
 OMEGA = np.sqrt(STIFFNESS / MASS)

@@ -9,10 +9,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, DryFriction, PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import (
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import ContactLaw, DryFriction, PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import (
     Excitation,
     History,
     HistorySum,
@@ -21,10 +21,10 @@ from dynamics.excitation import (
     SCurve,
     Stroke,
 )
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from dynamics.travel import RowTable, Travel
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.travel import RowTable, Travel
 from tests.dynamics.reference import end_of, table_slope, with_rates
 from tests.dynamics.test_moving_thrust import pressed_along
 

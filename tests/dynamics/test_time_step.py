@@ -10,16 +10,16 @@ import pytest
 from scipy.linalg import eigh
 from scipy.special import gamma
 
-from dynamics.arrays import Array
-from dynamics.contact import ContactLaw, DryFriction, PowerContact
-from dynamics.contact_table import TableContact
-from dynamics.energy import check_energy
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Excitation, PiecewiseLinear, SCurve, Sine, Stroke
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import AdaptiveStep, FixedStep
-from dynamics.motion import Motion
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import ContactLaw, DryFriction, PowerContact
+from protractile.dynamics.contact_table import TableContact
+from protractile.dynamics.energy import check_energy
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Excitation, PiecewiseLinear, SCurve, Sine, Stroke
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+from protractile.dynamics.motion import Motion
 from studies.reference_models.impacting_beam import ELEMENTS, HEIGHT, falling, moreau_jean
 from tests.dynamics.reference import (
     end_of,

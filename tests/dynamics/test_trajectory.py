@@ -8,13 +8,13 @@ import pytest
 import xarray as xr
 from scipy.signal import find_peaks
 
-from dynamics.arrays import Array
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.energy import energy_residual
-from dynamics.gap_system import Observer
-from dynamics.integrator import AdaptiveStep, FixedStep
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory, prominent_peaks
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.energy import energy_residual
+from protractile.dynamics.gap_system import Observer
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory, prominent_peaks
 from tests.modal import modal_system, one_mass
 
 STOP = PowerContact(stiffness=1.0e4, exponent=1.0).with_clearance(1.0e-2)

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from dynamics.contact import PowerContact
+from protractile.dynamics.contact import PowerContact
 from tests.modal import modal_system
 
 NUMBERS = {"omega2": [4.0, 31.0], "load": [2.0, 3.0], "tip": [1.0, 0.4]}

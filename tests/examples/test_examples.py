@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 import protractile as pt
-from dynamics.integrator import FixedStep, simulate
-from dynamics.motion import Motion
-from dynamics.predictability import integrate_ensemble
+from protractile.dynamics.integrator import FixedStep, simulate
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.predictability import integrate_ensemble
 from tests.dynamics.two_stops import CHAOTIC
 from tests.runs.case_texts import COARSE, read_case
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 
-from runs import CASES
+from protractile.runs import CASES
 from tests.fuzz import cases, command_lines, contract, histories
 
 COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")

@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 from random import Random
 
-from runs.case.schema import case_schema
+from protractile.runs.case.schema import case_schema
 from tests.fuzz.values import any_value
 
 _LINE = re.compile(r"^(?P<key>[a-z_]+) = (?P<value>.+?)(?P<rest>\s*#.*)?$", re.MULTILINE)

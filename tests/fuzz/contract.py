@@ -16,14 +16,14 @@ from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
-from runs import cli
-from runs.case import reading as case_file
-from runs.pipeline import estimates
-from runs.process.terminal import LONGEST
+from protractile.runs import cli
+from protractile.runs.case import reading as case_file
+from protractile.runs.pipeline import estimates
+from protractile.runs.process.terminal import LONGEST
 
 # What commands import when they are given, which each process would do by itself.
 for name in ("check", "pipeline.run", "report.output", "paper.rules", "sweep.run"):
-    import_module(f"runs.{name}")
+    import_module(f"protractile.runs.{name}")
 for name in ("optimize", "signal"):
     import_module(f"scipy.{name}")
 

@@ -6,9 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.excitation import PiecewiseLinear
-from geometry.axial import MovingForce, Thrust, axial_force, moving_force, with_compression
-from geometry.boom import (
+from protractile.dynamics.excitation import PiecewiseLinear
+from protractile.geometry.axial import (
+    MovingForce,
+    Thrust,
+    axial_force,
+    moving_force,
+    with_compression,
+)
+from protractile.geometry.boom import (
     Collar,
     Diaphragm,
     Joint,
@@ -17,8 +23,8 @@ from geometry.boom import (
     Segment,
     Support,
 )
-from geometry.joint import Carrier, Drive
-from geometry.section import BoxSection
+from protractile.geometry.joint import Carrier, Drive
+from protractile.geometry.section import BoxSection
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)

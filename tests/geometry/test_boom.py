@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from pydantic import ValidationError
 
-from dynamics.contact import PowerContact
-from geometry.boom import (
+from protractile.dynamics.contact import PowerContact
+from protractile.geometry.boom import (
     Boom,
     BoomError,
     Collar,
@@ -25,9 +25,9 @@ from geometry.boom import (
     Stop,
     Support,
 )
-from geometry.fields import Distance
-from geometry.section import BoxSection
-from geometry.typography import digits, join_words, with_minus_signs
+from protractile.geometry.fields import Distance
+from protractile.geometry.section import BoxSection
+from protractile.geometry.typography import digits, join_words, with_minus_signs
 
 # What changes of the outer segment, of the inner one and of the joint.
 Changes = dict[str, dict[str, Any]]

@@ -6,9 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
-from geometry.boom import Boom, PadSize, Stop
-from geometry.contact_places import ContactInterval, Pad, Patch, pads
+from protractile.dynamics.contact import PowerContact
+from protractile.geometry.boom import Boom, PadSize, Stop
+from protractile.geometry.contact_places import ContactInterval, Pad, Patch, pads
 
 
 def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:

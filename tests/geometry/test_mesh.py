@@ -19,18 +19,18 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
-from geometry.arrays import Array, Indices
-from geometry.boom import Boom, Collar, Diaphragm, PadSize
-from geometry.grading import graded_mesh
-from geometry.mesh import (
+from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.boom import Boom, Collar, Diaphragm, PadSize
+from protractile.geometry.grading import graded_mesh
+from protractile.geometry.mesh import (
     SegmentMesh,
     collar_breaks,
     diaphragm_breaks,
     mesh_segment,
 )
-from geometry.plating import add_thickness, plain_thickness
-from geometry.refinement import RefinementZone, refinement_zones
-from geometry.section import COMPONENT, BoxSection, Section
+from protractile.geometry.plating import add_thickness, plain_thickness
+from protractile.geometry.refinement import RefinementZone, refinement_zones
+from protractile.geometry.section import COMPONENT, BoxSection, Section
 from tests.geometry.test_polygon import ALL, regular
 from tests.shell_model.booms import box_segment
 

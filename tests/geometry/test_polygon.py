@@ -7,11 +7,11 @@ from collections.abc import Sequence
 import numpy as np
 import pytest
 
-from geometry.arrays import Array
-from geometry.polygon import PolygonSection, closed_polygon
-from geometry.profiles import hexagon, octagon, u_section
-from geometry.section import BoxSection, Section
-from geometry.taper import check_alike, interpolate_section
+from protractile.geometry.arrays import Array
+from protractile.geometry.polygon import PolygonSection, closed_polygon
+from protractile.geometry.profiles import hexagon, octagon, u_section
+from protractile.geometry.section import BoxSection, Section
+from protractile.geometry.taper import check_alike, interpolate_section
 
 TRAPEZOID = PolygonSection(
     ((-0.1, -0.3), (0.1, -0.3), (0.2, 0.3), (-0.2, 0.3)), (0.010, 0.006, 0.008, 0.006)

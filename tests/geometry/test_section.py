@@ -8,8 +8,8 @@ import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
 
-from geometry.polygon import PolygonSection, ShearFlow
-from geometry.section import (
+from protractile.geometry.polygon import PolygonSection, ShearFlow
+from protractile.geometry.section import (
     BoxSection,
     Direction,
     Section,
@@ -17,7 +17,7 @@ from geometry.section import (
     infer_inner_section,
     infer_outer_section,
 )
-from geometry.walls import free_room
+from protractile.geometry.walls import free_room
 from studies.reference_models.statics import shear_centre
 from tests.geometry.test_polygon import ALL, HEXAGON
 

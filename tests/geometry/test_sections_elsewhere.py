@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from geometry.polygon import PolygonSection
-from geometry.walls import trapezoids
+from protractile.geometry.polygon import PolygonSection
+from protractile.geometry.walls import trapezoids
 from studies.reference_models.statics import shear_centre
 from tests.geometry.test_polygon import ALL
 from tests.other_codes import INSTALLED, run_elsewhere

@@ -7,12 +7,22 @@ from typing import Any
 
 import pytest
 
-from dynamics.contact import PowerContact
-from dynamics.excitation import Ramp, ReleasedLoad, Step
-from geometry.boom import Boom, BoomError, Collar, Cylinder, Load, Material, Segment, Stop, Support
-from geometry.observation import Observation
-from geometry.section import BoxSection
-from geometry.support_check import check_contacts_at_rest
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.excitation import Ramp, ReleasedLoad, Step
+from protractile.geometry.boom import (
+    Boom,
+    BoomError,
+    Collar,
+    Cylinder,
+    Load,
+    Material,
+    Segment,
+    Stop,
+    Support,
+)
+from protractile.geometry.observation import Observation
+from protractile.geometry.section import BoxSection
+from protractile.geometry.support_check import check_contacts_at_rest
 from tests.space import in_space
 
 HINGE = Support(0.0)

@@ -6,8 +6,8 @@ from typing import Any
 
 import pytest
 
-from dynamics.excitation import SCurve
-from geometry.boom import (
+from protractile.dynamics.excitation import SCurve
+from protractile.geometry.boom import (
     Boom,
     BoomError,
     Diaphragm,
@@ -18,9 +18,9 @@ from geometry.boom import (
     SlidePad,
     Support,
 )
-from geometry.fit import room
-from geometry.joint import Drive
-from geometry.section import BoxSection
+from protractile.geometry.fit import room
+from protractile.geometry.joint import Drive
+from protractile.geometry.section import BoxSection
 
 BASE = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 FLY = BoxSection(height=0.34, width=0.24, flange=0.006, web=0.005)

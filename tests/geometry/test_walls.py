@@ -8,13 +8,22 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
-from geometry.boom import Boom, BoomError, Joint, Material, Segment, SlidePad, Stop, Support
-from geometry.joint import PadSide
-from geometry.polygon import PolygonSection
-from geometry.profiles import hexagon, octagon, u_section
-from geometry.section import BoxSection, Section, infer_inner_section
-from geometry.walls import free_room, trapezoids
+from protractile.dynamics.contact import PowerContact
+from protractile.geometry.boom import (
+    Boom,
+    BoomError,
+    Joint,
+    Material,
+    Segment,
+    SlidePad,
+    Stop,
+    Support,
+)
+from protractile.geometry.joint import PadSide
+from protractile.geometry.polygon import PolygonSection
+from protractile.geometry.profiles import hexagon, octagon, u_section
+from protractile.geometry.section import BoxSection, Section, infer_inner_section
+from protractile.geometry.walls import free_room, trapezoids
 from tests.geometry.test_polygon import HEXAGON, offset_corners
 
 

@@ -16,9 +16,9 @@ import pytest
 import xarray as xr
 
 import protractile as pt
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import simulate
-from runs.report import output
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import simulate
+from protractile.runs.report import output
 from tests.system.run_folder import COARSE, files, protractile, python, write_coarse
 
 BEAM = ["beam-fe-bonded"]
@@ -135,11 +135,11 @@ def test_a_run_in_python_writes_the_folder_of_the_command(tmp_path: Path) -> Non
 HEAVY = "dolfinx", "pyvista", "matplotlib", "numba", "numpy"
 NAMES = dir(pt)
 ROOT = Path(__file__).parents[2]
-ROOMS = "geometry", "dynamics", "beam_model", "runs", "protractile"
+ROOMS = "geometry", "dynamics", "beam_model", "runs", ""
 EXPLAINED = sorted(
     ".".join(path.relative_to(ROOT).with_suffix("").parts)
     for room in ROOMS
-    for path in (ROOT / room).rglob("*.py")
+    for path in (ROOT / "protractile" / room).rglob("*.py")
     if ">>>" in path.read_text("utf-8")
 )
 

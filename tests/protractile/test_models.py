@@ -10,7 +10,7 @@ import pytest
 from pydantic import ValidationError
 
 import protractile as pt
-from runs.case.kinds.model import ModelTable
+from protractile.runs.case.kinds.model import ModelTable
 
 # The boom of the fixture.
 DECLARED = tomllib.loads("""

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from runs import CASES
-from runs.case import reading
-from runs.case.messages import BadInput
-from runs.case.schema import Case
+from protractile.runs import CASES
+from protractile.runs.case import reading
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
 
 COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
 CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact = "))

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from matplotlib.figure import Figure as Sheet
 
-from runs.sweep.points import Plan, plan
+from protractile.runs.sweep.points import Plan, plan
 from tests.runs.sweeping import COARSE, FAST, Planned
 
 

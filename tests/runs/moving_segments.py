@@ -6,11 +6,11 @@ inner segment is rigid.
 import numpy as np
 import xarray as xr
 
-from geometry.arrays import Array
-from geometry.mesh import mesh_segment
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.report.scene import Scene
+from protractile.geometry.arrays import Array
+from protractile.geometry.mesh import mesh_segment
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.report.scene import Scene
 from tests.runs.case_texts import shipped
 
 CASE = shipped("coarse")

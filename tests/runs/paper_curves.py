@@ -7,14 +7,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from dynamics.trajectory import Trajectory
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.schema import Case
-from runs.paper.rules import judge
-from runs.paper.statements import STATEMENTS
-from runs.paper.verdicts import Verdict
-from runs.pipeline.results import Results
+from protractile.dynamics.trajectory import Trajectory
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.schema import Case
+from protractile.runs.paper.rules import judge
+from protractile.runs.paper.statements import STATEMENTS
+from protractile.runs.paper.verdicts import Verdict
+from protractile.runs.pipeline.results import Results
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import model_summary, summary_of
 

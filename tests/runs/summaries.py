@@ -10,19 +10,19 @@ from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
 
-from dynamics.equilibrium import equilibrium_at
-from dynamics.trajectory import Trajectory
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext
-from runs.case.reading import CheckedCase
-from runs.case.schema import Case
-from runs.check import check_case
-from runs.pipeline.design_results import DesignResults
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.models import MotionPlan, build
-from runs.pipeline.results import Results
-from runs.pipeline.run import Run, run_case
-from runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
+from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.trajectory import Trajectory
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.case.reading import CheckedCase
+from protractile.runs.case.schema import Case
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.design_results import DesignResults
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.run import Run, run_case
+from protractile.runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
 
 if TYPE_CHECKING:
     from mpi4py.MPI import Intracomm

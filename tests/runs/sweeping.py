@@ -5,10 +5,10 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from runs import CASES
-from runs.sweep import run as sweep
-from runs.sweep.points import Plan
-from runs.sweep.run import Outcome
+from protractile.runs import CASES
+from protractile.runs.sweep import run as sweep
+from protractile.runs.sweep.points import Plan
+from protractile.runs.sweep.run import Outcome
 
 COARSE = CASES / "coarse.toml"
 FAST = ["kantorovich-4", "beam-fe-bonded"]

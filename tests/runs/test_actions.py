@@ -7,14 +7,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.excitation import PiecewiseLinear, Ramp, Sine, Step
 from protractile.cases import run_case
-from runs import CASES
-from runs.case import reading, toml
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext
-from runs.pipeline.models import build
-from runs.pipeline.results import Results
+from protractile.dynamics.excitation import PiecewiseLinear, Ramp, Sine, Step
+from protractile.runs import CASES
+from protractile.runs.case import reading, toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.results import Results
 from tests.runs.case_texts import CLAMPED, COARSE, REST, STEEL, elements, read_case, refusal, table
 from tests.runs.summaries import static_tip
 

@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.section import BoxSection
 from protractile.cases import run_case
-from runs import CASES
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.report.formatting import number
-from runs.report.model_tables import buckling_table
+from protractile.geometry.section import BoxSection
+from protractile.runs import CASES
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.report.formatting import number
+from protractile.runs.report.model_tables import buckling_table
 from tests.runs.case_texts import (
     CLAMPED,
     REST,

@@ -16,11 +16,11 @@ import numpy.typing as npt
 import pytest
 import xarray as xr
 
-from dynamics.contact import PowerContact
-from dynamics.gap_system import Observer
-from geometry.boom import Boom
-from runs.folder.cache import Cache, key, read_record, write_record
-from runs.process.terminal import shorten
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.gap_system import Observer
+from protractile.geometry.boom import Boom
+from protractile.runs.folder.cache import Cache, key, read_record, write_record
+from protractile.runs.process.terminal import shorten
 from tests.system.run_folder import python
 
 # The file of the entry "a".
@@ -70,7 +70,7 @@ def test_cache_evicts_the_least_recently_used_entry(tmp_path: Path) -> None:
 
 def test_cache_removes_files_of_a_killed_process(tmp_path: Path) -> None:
     program = (
-        "import os; from pathlib import Path; from runs.folder.cache import Cache; "
+        "import os; from pathlib import Path; from protractile.runs.folder.cache import Cache; "
         f"os.replace = lambda *_: os._exit(9); Cache(Path({str(tmp_path)!r})).store('a', 'first')"
     )
     assert python("-c", program).returncode == 9
@@ -253,16 +253,19 @@ def test_objects_other_than_data_are_not_stored(thing: object) -> None:
         write_record(thing, BytesIO())
 
 
+LAWS = PowerContact.__module__
+
+
 @pytest.mark.parametrize(
     "text",
     [
         '{"record": ["os", "system"], "parts": {"command": "false"}}',
         '{"record": ["pathlib", "Path"], "parts": {}}',
-        '{"record": ["runs.folder.cache", "Path"], "parts": {}}',
-        '{"record": ["runs.folder.cache", "json"], "parts": {}}',
+        '{"record": ["protractile.runs.folder.cache", "Path"], "parts": {}}',
+        '{"record": ["protractile.runs.folder.cache", "json"], "parts": {}}',
         '{"record": ["tests.runs.test_records", "Stranger"], "parts": {"path": ""}}',
-        '{"record": ["dynamics.contact", "PowerContact"], "parts": {"stiffness": -1.0}}',
-        '{"record": ["dynamics.contact", "restitution_damping"], "parts": {}}', '{"array": [3]}',
+        f'{{"record": ["{LAWS}", "PowerContact"], "parts": {{"stiffness": -1.0}}}}',
+        f'{{"record": ["{LAWS}", "restitution_damping"], "parts": {{}}}}', '{"array": [3]}',
         '{"unknown": []}', "not JSON", "5",
     ],
 )  # fmt: skip

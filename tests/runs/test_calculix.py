@@ -10,24 +10,24 @@ import numpy as np
 import pytest
 
 import protractile as pt
-from dynamics.equilibrium import equilibrium_at
-from geometry.arrays import Array
-from runs.case import reading
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext
-from runs.folder.cache import Cache
-from runs.pipeline.models import build
+from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.geometry.arrays import Array
+from protractile.runs.case import reading
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.models import build
 from studies.reference_models.statics import static_response
 
 pytest.importorskip("dolfinx", reason="shells need FEniCSx")
 
 from mpi4py import MPI
 
-from runs.report.calculix import SpringRow, deck, write
-from shell_model.boom_shell import ShellOptions, segment_mesh
-from shell_model.buckling import buckling_modes
-from shell_model.reduced_shell import reduce_boom
-from shell_model.segment.segment_shell import assemble_segment
+from protractile.runs.report.calculix import SpringRow, deck, write
+from protractile.shell_model.boom_shell import ShellOptions, segment_mesh
+from protractile.shell_model.buckling import buckling_modes
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.segment.segment_shell import assemble_segment
 from studies.wall_buckling import BOXES, CALCULIX, COLUMN, LoadedBox
 from tests.runs.case_texts import refused, shipped
 from tests.shell_model.test_second_order import column

@@ -11,22 +11,22 @@ pytest.importorskip("dolfinx", reason="a shell calibrates them")
 
 from mpi4py import MPI
 
-from beam_model.calibration import elastic_compliance
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
+from protractile.beam_model.calibration import elastic_compliance
 from protractile.cases import run_case
-from runs.case import reading as case_file
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext, BuiltModel
-from runs.case.kinds.shell import Shell
-from runs.case.schema import Case
-from runs.folder.cache import Cache
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.models import build
-from runs.pipeline.run import run_case as run_models
-from runs.report.output import write
-from runs.report.pages import Addition
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.runs.case import reading as case_file
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext, BuiltModel
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.schema import Case
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.run import run_case as run_models
+from protractile.runs.report.output import write
+from protractile.runs.report.pages import Addition
 from studies.motions import move
 from studies.working_load import Point, set_point
 from tests.runs.case_texts import COARSE, elements, read_case, table

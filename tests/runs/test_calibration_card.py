@@ -4,12 +4,12 @@
 import numpy as np
 import pytest
 
-from beam_model.calibration import Calibration, Stiffness
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import EACH_SIDE, gap_system
-from dynamics.contact import PowerContact
-from runs.case.build import build_boom
-from runs.pipeline.model_run import calibration_card
+from protractile.beam_model.calibration import Calibration, Stiffness
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import EACH_SIDE, gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.runs.case.build import build_boom
+from protractile.runs.pipeline.model_run import calibration_card
 from studies.motions import friction_case
 from tests.touching import touching
 

@@ -11,16 +11,16 @@ from typing import Any
 import jsonschema
 import pytest
 
-from dynamics.contact import PowerContact
-from geometry.boom import Boom
-from geometry.walls import free_room
-from runs import CASES
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.shell import Shell
-from runs.case.reading import load, select
-from runs.case.schema import Case, EnsembleTable, case_schema
+from protractile.dynamics.contact import PowerContact
+from protractile.geometry.boom import Boom
+from protractile.geometry.walls import free_room
+from protractile.runs import CASES
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.finite_element import BeamElements
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.reading import load, select
+from protractile.runs.case.schema import Case, EnsembleTable, case_schema
 from tests.runs.bad_edits import BAD_EDITS
 from tests.runs.case_texts import COARSE, joint, read_case, refusal, refused, shipped, table
 from tests.touching import contact_laws

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import pytest
 
-from runs import cli
+from protractile.runs import cli
 from tests.runs.case_texts import COARSE
 from tests.system.run_folder import python, write_coarse
 from tests.unprinted import ONE_BLANK_FIGURE
@@ -66,7 +66,7 @@ def in_a_process(
 
 
 def test_check_prints_inferred_boxes(protractile: Protractile) -> None:
-    """Reference: non-regression, the boxes that :mod:`geometry.section` infers."""
+    """Reference: non-regression, the boxes that :mod:`.geometry.section` infers."""
     answer = protractile("check case.toml")
     assert (answer.status, answer.err) == (0, "")
     for part in (
@@ -290,7 +290,7 @@ import sys
 for name in ("dolfinx", "mpi4py", "petsc4py", "ufl", "basix", "slepc4py"):
     sys.modules[name] = None
 {ONE_BLANK_FIGURE}
-from runs.cli import main
+from protractile.runs.cli import main
 main(["run", "case.toml", "--models", "kantorovich-5,timoshenko", "--out", "out"])
 """
     assert in_a_process(tmp_path, "-c", program).returncode == 0

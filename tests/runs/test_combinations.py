@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from runs.case.reading import convert_to_si
-from runs.pipeline.combinations import (
+from protractile.runs.case.reading import convert_to_si
+from protractile.runs.pipeline.combinations import (
     CombinationResult,
     combination_results,
     combination_tables,
 )
-from runs.pipeline.largest_loads import StaticExtreme
+from protractile.runs.pipeline.largest_loads import StaticExtreme
 from tests.runs.case_texts import HINGED, box, read_case, refusal, table
 from tests.runs.summaries import printed_check
 

@@ -9,14 +9,14 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext
-from runs.folder.cache import Cache
-from runs.pipeline.combinations import CombinationState
-from runs.pipeline.combined_shells import shell_states
-from runs.pipeline.largest_loads import BeamStates
-from runs.pipeline.proofs import prove
-from runs.pipeline.section_forces import LoadedModel
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.combinations import CombinationState
+from protractile.runs.pipeline.combined_shells import shell_states
+from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.proofs import prove
+from protractile.runs.pipeline.section_forces import LoadedModel
 from tests.runs.case_texts import read_case
 from tests.runs.test_combinations import CASES, FACTORS, LIFT
 from tests.system.run_folder import protractile

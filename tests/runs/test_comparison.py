@@ -10,21 +10,21 @@ import pytest
 import xarray as xr
 from scipy.stats import norm
 
-from dynamics.motion import Motion
-from dynamics.predictability import integrate_ensemble
-from dynamics.trajectory import PointwiseDifferences
 from protractile.cases import change
-from runs.case import reading as case_file
-from runs.case.schema import Case, StopTable
-from runs.paper.run_query import final_differences, peak_distances
-from runs.pipeline.comparison import Distributions, PeakDifferences, compare
-from runs.pipeline.low_pass import SlowPeaks, filter_low_pass, slow_peaks
-from runs.pipeline.model_quality import compare_models, reference_of
-from runs.pipeline.results import Results
-from runs.report.document import render
-from runs.report.model_tables import law_table, model_table, step_table
-from runs.report.pages import Addition
-from runs.report.predictability import comparison_tables, predictability_tables
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.predictability import integrate_ensemble
+from protractile.dynamics.trajectory import PointwiseDifferences
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.schema import Case, StopTable
+from protractile.runs.paper.run_query import final_differences, peak_distances
+from protractile.runs.pipeline.comparison import Distributions, PeakDifferences, compare
+from protractile.runs.pipeline.low_pass import SlowPeaks, filter_low_pass, slow_peaks
+from protractile.runs.pipeline.model_quality import compare_models, reference_of
+from protractile.runs.pipeline.results import Results
+from protractile.runs.report.document import render
+from protractile.runs.report.model_tables import law_table, model_table, step_table
+from protractile.runs.report.pages import Addition
+from protractile.runs.report.predictability import comparison_tables, predictability_tables
 from tests.dynamics.two_stops import CHAOTIC
 from tests.runs.case_texts import shipped
 from tests.runs.paper_curves import members

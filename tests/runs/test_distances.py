@@ -10,17 +10,17 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure as Sheet
 
-from dynamics.predictability import measure_horizons
 from protractile.cases import change, run_case
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.folder.cache import Cache
-from runs.pipeline.low_pass import mean_period
-from runs.pipeline.models import MotionPlan, build
-from runs.sweep import output
-from runs.sweep import run as sweep_run
-from runs.sweep.distances import (
+from protractile.dynamics.predictability import measure_horizons
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.low_pass import mean_period
+from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.sweep import output
+from protractile.runs.sweep import run as sweep_run
+from protractile.runs.sweep.distances import (
     AVERAGING_TIME,
     CHANGE,
     DISTANCES,
@@ -29,8 +29,8 @@ from runs.sweep.distances import (
     comparison_end,
     sustained_force,
 )
-from runs.sweep.points import Plan, plan
-from runs.sweep.run import Outcome, run_point
+from protractile.runs.sweep.points import Plan, plan
+from protractile.runs.sweep.run import Outcome, run_point
 from tests.runs.case_texts import refused, shipped
 from tests.runs.summaries import printed, rubbing
 from tests.runs.sweeping import COARSE, run

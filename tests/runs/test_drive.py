@@ -8,21 +8,21 @@ import numpy as np
 import pytest
 from matplotlib import rc_context
 
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import PiecewiseLinear
 from protractile.cases import change, run_case
-from runs import CASES
-from runs.case.build import build_boom
-from runs.case.motion_tables import resolving_times
-from runs.pipeline.drives import drive_lines
-from runs.pipeline.models import build
-from runs.report import theme
-from runs.report.boom_drawing import boom_sheet
-from runs.report.figure_context import extension_note
-from runs.report.figures import draw
-from runs.report.result_tables import drive_table, record_tables, rest_tables
-from runs.report.summary_table import summary_table
-from runs.sweep.points import plan
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import PiecewiseLinear
+from protractile.runs import CASES
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.motion_tables import resolving_times
+from protractile.runs.pipeline.drives import drive_lines
+from protractile.runs.pipeline.models import build
+from protractile.runs.report import theme
+from protractile.runs.report.boom_drawing import boom_sheet
+from protractile.runs.report.figure_context import extension_note
+from protractile.runs.report.figures import draw
+from protractile.runs.report.result_tables import drive_table, record_tables, rest_tables
+from protractile.runs.report.summary_table import summary_table
+from protractile.runs.sweep.points import plan
 from tests.runs.case_texts import edited, read_case, refusal, shipped, table
 from tests.runs.summaries import printed_check
 

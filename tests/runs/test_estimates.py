@@ -8,15 +8,15 @@ from time import process_time
 
 import pytest
 
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.kinds.model import select_kind
-from runs.case.kinds.shell import Shell
-from runs.case.messages import BadInput
-from runs.case.reading import CheckedCase
-from runs.check import check_case
-from runs.pipeline.estimates import (
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.reading import CheckedCase
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.estimates import (
     Cost,
     Preview,
     models_cost,
@@ -24,7 +24,7 @@ from runs.pipeline.estimates import (
     run_cost,
     sweep_cost,
 )
-from runs.sweep import points as sweep_points
+from protractile.runs.sweep import points as sweep_points
 from tests.runs.case_texts import COARSE, edited, refused, shipped
 from tests.runs.summaries import printed
 from tests.system.run_folder import python
@@ -32,8 +32,8 @@ from tests.system.run_folder import python
 PROGRAM = """
 import sys
 from pathlib import Path
-from runs.cli import main
-from runs.report import figures
+from protractile.runs.cli import main
+from protractile.runs.report import figures
 figures.FIGURES = figures.FIGURES[-2:]
 try:
     # Pictures are drawn by other processes.
@@ -119,7 +119,7 @@ def test_short_times_are_in_seconds(seconds: float, text: str) -> None:
 def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolerance: float) -> None:
     """Reference: the meshes, with 21 degrees of freedom per point."""
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-    from shell_model.boom_shell import segment_mesh
+    from protractile.shell_model.boom_shell import segment_mesh
 
     case = shipped(name)
     (shell,) = select_kind(Shell, case.models)

@@ -14,14 +14,14 @@ import numpy as np
 import pytest
 
 import protractile as pt
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.pipeline.models import build
-from runs.report.opensees import _points, write
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.models import build
+from protractile.runs.report.opensees import _points, write
 from studies.motions import friction_case, model_of, move, with_pads
 from tests.other_codes import INSTALLED, run_elsewhere
 from tests.runs.case_texts import elements, read_case, refused, shipped, table
@@ -128,8 +128,8 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
     pytest.importorskip("dolfinx", reason="a shell calibrates it")
     from mpi4py import MPI
 
-    from runs.case.kinds.model import BuildContext
-    from runs.folder.cache import Cache
+    from protractile.runs.case.kinds.model import BuildContext
+    from protractile.runs.folder.cache import Cache
     from studies.calibrated_beams import calibrated_beam
 
     case = with_pads(friction_case(), 0.1, 0.06)

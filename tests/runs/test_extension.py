@@ -9,9 +9,9 @@ import pytest
 import xarray as xr
 
 from protractile.cases import change
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.sweep.points import plan
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.sweep.points import plan
 from tests.beam_model.exact import bonded_frequencies
 from tests.runs.case_texts import COARSE, STEEL, box, edited, elements, read_case, refusal, table
 from tests.system.run_folder import protractile

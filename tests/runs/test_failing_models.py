@@ -10,15 +10,15 @@ from typing import Any
 
 import pytest
 
-from beam_model.segment_model import gap_system
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem
-from dynamics.trajectory import Trajectory
-from runs.folder.cache import VARIABLE
-from runs.paper.rules import judge
-from runs.pipeline import run
-from runs.pipeline.models import MotionPlan
-from runs.pipeline.results import Results
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.trajectory import Trajectory
+from protractile.runs.folder.cache import VARIABLE
+from protractile.runs.paper.rules import judge
+from protractile.runs.pipeline import run
+from protractile.runs.pipeline.models import MotionPlan
+from protractile.runs.pipeline.results import Results
 from tests.runs.case_texts import COARSE
 from tests.system.run_folder import protractile
 
@@ -114,7 +114,7 @@ def test_wall_times_are_this_run_s_but_for_the_motion(monkeypatch: pytest.Monkey
         sleep(0.2 + first["build"])
         return gap_system(*arguments)
 
-    monkeypatch.setattr("runs.case.kinds.model.gap_system", build)
+    monkeypatch.setattr("protractile.runs.case.kinds.model.gap_system", build)
     second = seconds()
     assert second["motion"] == first["motion"]
     assert second["build"] > 0.2 + first["build"]

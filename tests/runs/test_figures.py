@@ -15,16 +15,16 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.lines import Line2D
 
 from protractile.cases import run_case
-from runs.case import reading as case_file
-from runs.case.schema import LimitsTable
-from runs.pipeline.results import Results
-from runs.pipeline.summary import FirstPeak
-from runs.report import theme
-from runs.report.figure_context import Figure, FigureContext, new_sheet
-from runs.report.figures import draw
-from runs.report.force_figures import contact_peaks, first_contacts, friction
-from runs.report.model_tables import model_table
-from runs.report.motion_figures import close_up, energies, heads, horizons, tip
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.schema import LimitsTable
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.summary import FirstPeak
+from protractile.runs.report import theme
+from protractile.runs.report.figure_context import Figure, FigureContext, new_sheet
+from protractile.runs.report.figures import draw
+from protractile.runs.report.force_figures import contact_peaks, first_contacts, friction
+from protractile.runs.report.model_tables import model_table
+from protractile.runs.report.motion_figures import close_up, energies, heads, horizons, tip
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import HORIZONS, changed, rubbing
 

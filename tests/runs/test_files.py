@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from runs.folder.files import (
+from protractile.runs.folder.files import (
     MANIFEST,
     atomic_folder,
     atomic_path,
@@ -40,7 +40,7 @@ def in_the_making(path: Path) -> subprocess.Popen[str]:
     """Start a process that creates a folder, prints its path, and continues at a line of input."""
     program = f"""
 from pathlib import Path
-from runs.folder.files import scratch_folder
+from protractile.runs.folder.files import scratch_folder
 with scratch_folder(Path({str(path)!r})) as part:
     (part / "half").write_text("half")
     print(part, flush=True)

@@ -6,18 +6,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.damping import closed_contact_modes
-from dynamics.equilibrium import equilibrium
 from protractile.cases import change, run_case
-from runs import CASES
-from runs.case.build import build_boom
-from runs.case.load_tables import LoadTable
-from runs.case.motion_tables import HoistTable, WindTable
-from runs.case.motions import with_initial_slack
-from runs.case.reading import select
-from runs.case.schema import Case, EnsembleTable, StartTable
-from runs.pipeline.evaluation import bonded_system
-from runs.pipeline.models import build
+from protractile.dynamics.damping import closed_contact_modes
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.runs import CASES
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.load_tables import LoadTable
+from protractile.runs.case.motion_tables import HoistTable, WindTable
+from protractile.runs.case.motions import with_initial_slack
+from protractile.runs.case.reading import select
+from protractile.runs.case.schema import Case, EnsembleTable, StartTable
+from protractile.runs.pipeline.evaluation import bonded_system
+from protractile.runs.pipeline.models import build
 from tests.runs.case_texts import refusal, shipped
 from tests.runs.summaries import static_tip
 

@@ -12,10 +12,10 @@ from pathlib import Path
 
 import pytest
 
-from runs import CASES
-from runs.folder.versions import packages, program, sources
-from runs.paper.statements import STATEMENTS
-from runs.paper.verdicts import addition, evidence
+from protractile.runs import CASES
+from protractile.runs.folder.versions import packages, program, sources
+from protractile.runs.paper.statements import STATEMENTS
+from protractile.runs.paper.verdicts import addition, evidence
 from tests.runs.case_texts import shipped
 from tests.system.run_folder import ROOT, python
 
@@ -37,7 +37,7 @@ OF_RUNS = {
 OF_CHECKS = {"numpy", "pydantic", "scipy"}
 PROGRAM = """
 import sys
-from runs import cli
+from protractile.runs import cli
 try:
     cli.main(sys.argv[1:])
 except SystemExit as ended:
@@ -59,12 +59,22 @@ def imported(node: ast.AST, for_types: bool) -> Iterator[str]:
         yield from imported(child, for_types)
 
 
+def module_name(path: Path) -> str:
+    """Return the name by which a module is imported; the folders are linked in ``protractile``."""
+    name = ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
+    return name if name.startswith(("protractile", "studies")) else f"protractile.{name}"
+
+
+def room_of(name: str) -> str:
+    """Return the room of a module, which for public names is ``protractile`` itself."""
+    parts = name.split(".")
+    return parts[1] if len(parts) > 1 and parts[1] in ROOMS else parts[0]
+
+
 @pytest.fixture(scope="module")
 def trees() -> dict[str, ast.Module]:
     return {
-        ".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"): ast.parse(
-            path.read_text("utf-8")
-        )
+        module_name(path): ast.parse(path.read_text("utf-8"))
         for room in ROOMS
         for path in (ROOT / room).rglob("*.py")
     }
@@ -82,20 +92,26 @@ def test_no_module_imports_itself_by_way_of_others(
     """The checks of a boom name its type; otherwise imports for types form no cycle either."""
     TopologicalSorter(graph).prepare()
     typed = {name: {*imported(tree, True)} & trees.keys() for name, tree in trees.items()}
-    TopologicalSorter({name: found - {"geometry.boom"} for name, found in typed.items()}).prepare()
+    TopologicalSorter(
+        {name: found - {"protractile.geometry.boom"} for name, found in typed.items()}
+    ).prepare()
 
 
 @pytest.mark.parametrize("room", ROOMS)
 def test_a_room_knows_those_below(room: str, trees: dict[str, ast.Module]) -> None:
-    own = (tree for name, tree in trees.items() if name.split(".")[0] == room)
-    known = {found.split(".")[0] for tree in own for found in imported(tree, True)}
+    own = (tree for name, tree in trees.items() if room_of(name) == room)
+    known = {room_of(found) for tree in own for found in imported(tree, True)}
     assert known & ROOMS.keys() <= ROOMS[room] | {room}
 
 
 def test_the_paper_is_a_client(graph: dict[str, set[str]]) -> None:
-    knowing = {name for name, found in graph.items() if any("runs.paper" in f for f in found)}
-    others = {name for name in knowing if not name.startswith(("runs.paper", "studies"))}
-    assert others == {"runs.client", "runs.case.schema"}
+    knowing = {
+        name for name, found in graph.items() if any("protractile.runs.paper" in f for f in found)
+    }
+    others = {
+        name for name in knowing if not name.startswith(("protractile.runs.paper", "studies"))
+    }
+    assert others == {"protractile.runs.client", "protractile.runs.case.schema"}
 
 
 def answer(*arguments: str) -> tuple[str, set[str]]:
@@ -155,9 +171,23 @@ def test_modules_in_all_folders_count(tmp_path: Path) -> None:
 
 def test_the_packages_are_found_by_themselves() -> None:
     names = {package.name for package in packages()}
-    assert {"geometry", "dynamics", "beam_model", "shell_model", "runs"} <= names
-    assert "tests" not in names
+    assert names == ROOMS.keys() - {"protractile", "studies"}
     assert program()["sources"] == sources(packages())
+
+
+OLD_IMPORT = re.compile(
+    r"^\W*(from|import) (geometry|dynamics|beam_model|shell_model|runs)\b", re.M
+)
+
+
+def test_all_imports_begin_with_the_name_of_the_program() -> None:
+    """The folders are at the top level, and would be imported a second time from there."""
+    files = [
+        path for room in (*ROOMS, "tests", "docs", "examples") for path in (ROOT / room).rglob("*")
+    ]
+    texts = [path for path in files if path.suffix in {".py", ".pyi", ".md", ".ipynb"}]
+    assert len(texts) > 400
+    assert [path for path in texts if OLD_IMPORT.search(path.read_text("utf-8"))] == []
 
 
 PACKAGES = ("beam_model", "dynamics", "geometry", "protractile", "runs", "shell_model")

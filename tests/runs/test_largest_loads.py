@@ -6,31 +6,31 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.lines import lines
-from beam_model.segment_model import gap_system
-from beam_model.statics import static_state
-from dynamics.excitation import Step
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Load, Material, Segment, Support
-from geometry.profiles import hexagon
-from geometry.section import BoxSection
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.lines import lines
+from protractile.beam_model.segment_model import gap_system
+from protractile.beam_model.statics import static_state
 from protractile.cases import run_case
-from runs.case.build import build_boom
-from runs.case.reading import CheckedCase, convert_to_si
-from runs.check import check_case
-from runs.pipeline.design_results import ModelDesignResults
-from runs.pipeline.largest_loads import (
+from protractile.dynamics.excitation import Step
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Load, Material, Segment, Support
+from protractile.geometry.profiles import hexagon
+from protractile.geometry.section import BoxSection
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.reading import CheckedCase, convert_to_si
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.design_results import ModelDesignResults
+from protractile.runs.pipeline.largest_loads import (
     BeamStates,
     StaticExtreme,
     overload_cautions,
     static_table,
 )
-from runs.pipeline.load_table import load_table
-from runs.pipeline.pad_walls import wall_part
-from runs.pipeline.section_forces import section_forces
-from runs.pipeline.statics import boom_with_play, reactions, statics
-from runs.pipeline.strength import Fibres, outer_corners
+from protractile.runs.pipeline.load_table import load_table
+from protractile.runs.pipeline.pad_walls import wall_part
+from protractile.runs.pipeline.section_forces import section_forces
+from protractile.runs.pipeline.statics import boom_with_play, reactions, statics
+from protractile.runs.pipeline.strength import Fibres, outer_corners
 from studies.reference_models.statics import static_response
 from tests.runs.case_texts import CLAMPED, STEEL, box, elements, joint, read_case, table
 from tests.runs.summaries import answers_of, printed_check

@@ -6,8 +6,8 @@ import pytest
 
 pytest.importorskip("rainflow", reason="the cycles are counted by it")
 
-from runs.case.schema import LifeTable
-from runs.pipeline.strength import StressCurve, count_stress_ranges, endurance, life
+from protractile.runs.case.schema import LifeTable
+from protractile.runs.pipeline.strength import StressCurve, count_stress_ranges, endurance, life
 
 
 def test_cycles_are_those_of_the_standard() -> None:

@@ -13,19 +13,19 @@ from urllib.parse import urlsplit
 import numpy as np
 import pytest
 
-from dynamics.equilibrium import equilibrium
-from runs import CASES
-from runs.case.kinds.model import BuildContext
-from runs.case.messages import BadInput
-from runs.case.schema import Case
-from runs.folder.cache import Cache
-from runs.live import beam
-from runs.live.controls import Draft
-from runs.live.server import LivePage, make_server
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.models import build
-from runs.pipeline.run import run_case
-from runs.report.formatting import fixed
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.runs import CASES
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.schema import Case
+from protractile.runs.folder.cache import Cache
+from protractile.runs.live import beam
+from protractile.runs.live.controls import Draft
+from protractile.runs.live.server import LivePage, make_server
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.run import run_case
+from protractile.runs.report.formatting import fixed
 from tests.runs.sweeping import COARSE
 
 LIFT = str(CASES / "lift.toml")
@@ -211,7 +211,7 @@ def test_a_large_run_is_asked_about(draft: Draft, monkeypatch: pytest.MonkeyPatc
     monkeypatch.setattr(page.shells, "run", lambda case, file: iter([{"stage": "shell"}]))
     small = [one["stage"] for one in page.shell({"values": {}})]
     assert small == ["shell", "shell"]
-    monkeypatch.setattr("runs.pipeline.estimates.MAX_TIME", 1.0)
+    monkeypatch.setattr("protractile.runs.pipeline.estimates.MAX_TIME", 1.0)
     (question,) = page.shell({"values": {}})
     assert question["stage"] == "large"
     assert re.fullmatch(r"The run may take .* GB and .*\. Start it anyway\?", question["what"])

@@ -10,23 +10,23 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure as Sheet
 
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
 from protractile.cases import change
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.schema import Case, EnsembleTable
-from runs.pipeline.low_pass import SlowPeaks, slow_peaks
-from runs.pipeline.members import PEAKS, slow_cutoff, steps_for_peaks
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.models import build
-from runs.pipeline.results import Results
-from runs.pipeline.run import Run
-from runs.pipeline.summary import EnsembleSummary
-from runs.report.figures import draw
-from runs.report.output import write
-from runs.report.pages import Addition
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case, EnsembleTable
+from protractile.runs.pipeline.low_pass import SlowPeaks, slow_peaks
+from protractile.runs.pipeline.members import PEAKS, slow_cutoff, steps_for_peaks
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.run import Run
+from protractile.runs.pipeline.summary import EnsembleSummary
+from protractile.runs.report.figures import draw
+from protractile.runs.report.output import write
+from protractile.runs.report.pages import Addition
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import finished
 

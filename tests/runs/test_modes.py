@@ -8,18 +8,18 @@ from typing import get_args
 import numpy as np
 import pytest
 
-from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segments
-from beam_model.kantorovich import kantorovich_segments
-from beam_model.lines import lines
-from beam_model.segment_model import gap_system
-from dynamics.damping import closed_contact_modes
-from geometry.boom import Boom, Material, Segment, Support
-from geometry.section import BoxSection
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import kantorovich_segments
+from protractile.beam_model.lines import lines
+from protractile.beam_model.segment_model import gap_system
 from protractile.cases import run_case
-from runs.case.kinds import KINDS
-from runs.pipeline.modes import Mode, match_modes, modes
-from runs.pipeline.section_forces import LoadedModel
+from protractile.dynamics.damping import closed_contact_modes
+from protractile.geometry.boom import Boom, Material, Segment, Support
+from protractile.geometry.section import BoxSection
+from protractile.runs.case.kinds import KINDS
+from protractile.runs.pipeline.modes import Mode, match_modes, modes
+from protractile.runs.pipeline.section_forces import LoadedModel
 from tests.runs.case_texts import COARSE, read_case, refusal
 from tests.runs.test_actions import CANTILEVER
 from tests.runs.test_statics import ball

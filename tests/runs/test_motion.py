@@ -4,18 +4,18 @@
 import numpy as np
 import pytest
 
-from dynamics.failure import NumericsError
-from dynamics.integrator import AdaptiveStep, FixedStep
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
 from protractile.cases import change, run_case
-from runs.case.reading import select
-from runs.case.schema import DampingTable
-from runs.pipeline.design_results import ModelDesignResults
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.motion_results import Peak
-from runs.pipeline.run import Run
-from runs.pipeline.run import run_case as run_models
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.runs.case.reading import select
+from protractile.runs.case.schema import DampingTable
+from protractile.runs.pipeline.design_results import ModelDesignResults
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.motion_results import Peak
+from protractile.runs.pipeline.run import Run
+from protractile.runs.pipeline.run import run_case as run_models
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import motion_of
 

@@ -13,16 +13,16 @@ import xarray as xr
 from pydantic import ValidationError
 
 from protractile.cases import change
-from runs.case import reading as case_file
-from runs.client import judge
-from runs.folder.cache import Cache
-from runs.pipeline.design_results import ModelDesignResults
-from runs.pipeline.results import Results
-from runs.pipeline.run import Run
-from runs.pipeline.static_results import place_names
-from runs.pipeline.summary import Summary
-from runs.report.output import write, write_csv, write_report
-from runs.report.pages import Addition
+from protractile.runs.case import reading as case_file
+from protractile.runs.client import judge
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.design_results import ModelDesignResults
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.run import Run
+from protractile.runs.pipeline.static_results import place_names
+from protractile.runs.pipeline.summary import Summary
+from protractile.runs.report.output import write, write_csv, write_report
+from protractile.runs.report.pages import Addition
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import finished, model_summary, summary_of
 
@@ -92,7 +92,7 @@ def test_model_without_design_results_keeps_its_motion(
     def singular(*_: object) -> ModelDesignResults:
         raise np.linalg.LinAlgError("Singular matrix")
 
-    monkeypatch.setattr("runs.pipeline.run.evaluate_model", singular)
+    monkeypatch.setattr("protractile.runs.pipeline.run.evaluate_model", singular)
     again = replace(run, results=replace(run.results, summary=run.results.summary.model_copy()))
     again.results.summary.failures = {}
     again.evaluate()

@@ -6,20 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
-from dynamics.contact_table import TableContact
-from dynamics.motion import initial_state
 from protractile.cases import run_case
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.contact import JointTable
-from runs.case.schema import Case
-from runs.pipeline.models import MotionPlan, build
-from runs.pipeline.results import Results
-from runs.pipeline.static_results import positions, station_loads
-from runs.pipeline.summary import Summary
-from runs.report.result_tables import pad_table
-from runs.report.summary_table import summary_table
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.contact_table import TableContact
+from protractile.dynamics.motion import initial_state
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.contact import JointTable
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.static_results import positions, station_loads
+from protractile.runs.pipeline.summary import Summary
+from protractile.runs.report.result_tables import pad_table
+from protractile.runs.report.summary_table import summary_table
 from tests.runs.case_texts import COARSE, elements, read_case, refusal
 from tests.runs.summaries import printed_check
 from tests.touching import contact_laws

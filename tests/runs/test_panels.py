@@ -7,25 +7,25 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.material import Material
-from geometry.section import BoxSection
-from geometry.segment import Segment
-from runs import CASES
-from runs.case import reading
-from runs.case.build import build_boom
-from runs.case.reading import CheckedCase
-from runs.check import check_case
-from runs.pipeline.largest_loads import BeamStates
-from runs.pipeline.models import build
-from runs.pipeline.panels import normal_coefficient, panel_factor, weakest_panels
-from runs.pipeline.static_results import (
+from protractile.geometry.material import Material
+from protractile.geometry.section import BoxSection
+from protractile.geometry.segment import Segment
+from protractile.runs import CASES
+from protractile.runs.case import reading
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.reading import CheckedCase
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.panels import normal_coefficient, panel_factor, weakest_panels
+from protractile.runs.pipeline.static_results import (
     Diagram,
     StaticResult,
     bulge_cautions,
     positions,
     station_loads,
 )
-from runs.pipeline.statics import boom_with_play
+from protractile.runs.pipeline.statics import boom_with_play
 from tests.runs import case_texts
 from tests.runs.case_texts import read_case, shipped
 

@@ -15,18 +15,23 @@ import xarray as xr
 from matplotlib import rc_context
 from PIL import Image
 
-from geometry.arrays import Array
-from geometry.boom import Cylinder
-from runs.case import reading as case_file
-from runs.case.load_tables import LoadTable, PayloadTable
-from runs.pipeline.results import Results
-from runs.report import opengl, sheet, snapshots, theme
-from runs.report.boom_pictures import BoomView, draw_boom
-from runs.report.opengl import RenderingUnavailable
-from runs.report.overlap_pictures import STRESS_PIXELS, StressScale, draw_overlap, draw_stress
-from runs.report.scene import Instant, Scene
-from runs.report.sheet import Camera, Sheet, stage, surface
-from runs.report.snapshots import (
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Cylinder
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.load_tables import LoadTable, PayloadTable
+from protractile.runs.pipeline.results import Results
+from protractile.runs.report import opengl, sheet, snapshots, theme
+from protractile.runs.report.boom_pictures import BoomView, draw_boom
+from protractile.runs.report.opengl import RenderingUnavailable
+from protractile.runs.report.overlap_pictures import (
+    STRESS_PIXELS,
+    StressScale,
+    draw_overlap,
+    draw_stress,
+)
+from protractile.runs.report.scene import Instant, Scene
+from protractile.runs.report.sheet import Camera, Sheet, stage, surface
+from protractile.runs.report.snapshots import (
     characteristic_instants,
     describe_one,
     render_film,

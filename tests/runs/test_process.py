@@ -14,9 +14,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from runs import CASES
-from runs.process import ending, terminal
-from runs.process.terminal import LONGEST, message, shorten
+from protractile.runs import CASES
+from protractile.runs.process import ending, terminal
+from protractile.runs.process.terminal import LONGEST, message, shorten
 
 ROOT = Path(__file__).parents[2]
 

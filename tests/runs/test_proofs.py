@@ -7,16 +7,23 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.material import Material
-from geometry.section import BoxSection
-from geometry.segment import Segment
 from protractile.cases import run_case
-from runs.pipeline.combinations import combination_results, combination_states
-from runs.pipeline.panels import WallStresses
-from runs.pipeline.proofs import Proof, Proofs, prove, reduced_stress, shear_reduction, winter
-from runs.pipeline.summary import Summary
-from runs.report.document import render
-from runs.report.pages import Addition
+from protractile.geometry.material import Material
+from protractile.geometry.section import BoxSection
+from protractile.geometry.segment import Segment
+from protractile.runs.pipeline.combinations import combination_results, combination_states
+from protractile.runs.pipeline.panels import WallStresses
+from protractile.runs.pipeline.proofs import (
+    Proof,
+    Proofs,
+    prove,
+    reduced_stress,
+    shear_reduction,
+    winter,
+)
+from protractile.runs.pipeline.summary import Summary
+from protractile.runs.report.document import render
+from protractile.runs.report.pages import Addition
 from tests.runs.case_texts import CLAMPED, STEEL, box, read_case, refusal, shipped, table
 from tests.runs.test_combinations import CASES, LIFT, by_hand
 from tests.system.run_folder import protractile

@@ -7,14 +7,14 @@ from math import isclose
 import numpy as np
 import pytest
 
-from beam_model.boom_modes import BoomModes
-from beam_model.statics import Elements, StaticState, static_state
-from geometry.arrays import Array
-from geometry.boom import Boom, Joint, Segment
-from runs import CASES
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.pipeline.statics import cylinder_force, reactions
+from protractile.beam_model.boom_modes import BoomModes
+from protractile.beam_model.statics import Elements, StaticState, static_state
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Joint, Segment
+from protractile.runs import CASES
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.statics import cylinder_force, reactions
 from tests.runs.case_texts import shipped
 
 GRAVITY = 9.80665

@@ -16,19 +16,19 @@ from matplotlib import image
 from PIL import Image
 
 from protractile.cases import run_case
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.kinds.shell import Shell
-from runs.paper.rules import judge
-from runs.paper.statements import STATEMENTS
-from runs.paper.verdicts import Verdict, addition, print_verdicts
-from runs.pipeline.model_quality import cautions, stress_cautions
-from runs.pipeline.results import Results
-from runs.pipeline.summary import Snapshots, Summary
-from runs.report.document import render
-from runs.report.figure_context import Figure
-from runs.report.pages import Addition
-from runs.report.terminal_tables import print_models
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.paper.rules import judge
+from protractile.runs.paper.statements import STATEMENTS
+from protractile.runs.paper.verdicts import Verdict, addition, print_verdicts
+from protractile.runs.pipeline.model_quality import cautions, stress_cautions
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.summary import Snapshots, Summary
+from protractile.runs.report.document import render
+from protractile.runs.report.figure_context import Figure
+from protractile.runs.report.pages import Addition
+from protractile.runs.report.terminal_tables import print_models
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import changed, model_summary, printed, summary_of
 from tests.system.run_folder import Page

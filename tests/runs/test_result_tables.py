@@ -9,27 +9,27 @@ import numpy as np
 import pytest
 
 from protractile.cases import change, run_case
-from runs.pipeline.design_results import DesignResults, PlayDifference, PlayEffect
-from runs.pipeline.pads import PadLoad
-from runs.pipeline.results import Results
-from runs.pipeline.statics import Reaction
-from runs.pipeline.strength import HAS_RAINFLOW, Life, WallStress
-from runs.report.formatting import signed_percent
-from runs.report.result_tables import (
+from protractile.runs.pipeline.design_results import DesignResults, PlayDifference, PlayEffect
+from protractile.runs.pipeline.pads import PadLoad
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.statics import Reaction
+from protractile.runs.pipeline.strength import HAS_RAINFLOW, Life, WallStress
+from protractile.runs.report.formatting import signed_percent
+from protractile.runs.report.result_tables import (
     mode_table,
     play_table,
     rest_tables,
     result_tables,
     stress_table,
 )
-from runs.report.summary_table import (
+from protractile.runs.report.summary_table import (
     deviation_note,
     play_effect,
     summary_table,
     utilisation_verdict,
 )
-from runs.report.tables import Table
-from runs.report.terminal_tables import print_results, result_table
+from protractile.runs.report.tables import Table
+from protractile.runs.report.terminal_tables import print_results, result_table
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import printed
 

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.pipeline.proportions import proportion_cautions
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.pipeline.proportions import proportion_cautions
 from tests.runs.case_texts import (
     CLAMPED,
     HINGED,

@@ -11,22 +11,22 @@ from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 
-from dynamics.contact import PowerContact
-from dynamics.excitation import SCurve
-from dynamics.line import Line
-from dynamics.trajectory import Trajectory
-from geometry.boom import Boom, Material, Segment, Stop, Support
-from geometry.joint import Drive
-from geometry.section import BoxSection
-from runs.case.build import build_boom
-from runs.pipeline.model_output import BeamOutput, SegmentMotion
-from runs.report import theme
-from runs.report.boom_drawing import boom_sheet
-from runs.report.overlap_pictures import smooth_corners
-from runs.report.scene import Scene, round_scale
-from runs.report.snapshots import place_of_largest_force
-from runs.report.symbols import PAYLOAD, abbreviate, boom_symbols
-from runs.report.viewer import TRUNCATION, View, few_shapes, pack_view, symbol_lines
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.excitation import SCurve
+from protractile.dynamics.line import Line
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.boom import Boom, Material, Segment, Stop, Support
+from protractile.geometry.joint import Drive
+from protractile.geometry.section import BoxSection
+from protractile.runs.case.build import build_boom
+from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion
+from protractile.runs.report import theme
+from protractile.runs.report.boom_drawing import boom_sheet
+from protractile.runs.report.overlap_pictures import smooth_corners
+from protractile.runs.report.scene import Scene, round_scale
+from protractile.runs.report.snapshots import place_of_largest_force
+from protractile.runs.report.symbols import PAYLOAD, abbreviate, boom_symbols
+from protractile.runs.report.viewer import TRUNCATION, View, few_shapes, pack_view, symbol_lines
 from studies.gallery import change_of_shape
 from tests.runs.case_texts import shipped
 from tests.runs.moving_segments import (

@@ -11,16 +11,16 @@ from typing import Any, get_args, get_origin
 
 import pytest
 
-from geometry.fields import declared_units, describe, fields_of
 from protractile.cases import change
-from runs.case import toml
-from runs.case.build import build_boom
-from runs.case.contact import ContactTable, JointTable
-from runs.case.messages import _tables as tables_of
-from runs.case.reading import convert_to_si
-from runs.case.schema import Case, case_schema
-from runs.case.units import System, Unit
-from runs.sweep.points import plan
+from protractile.geometry.fields import declared_units, describe, fields_of
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.contact import ContactTable, JointTable
+from protractile.runs.case.messages import _tables as tables_of
+from protractile.runs.case.reading import convert_to_si
+from protractile.runs.case.schema import Case, case_schema
+from protractile.runs.case.units import System, Unit
+from protractile.runs.sweep.points import plan
 from tests.runs.case_texts import STEEL, edited, elements, read_case, refused
 from tests.runs.summaries import printed_check
 from tests.touching import contact_laws

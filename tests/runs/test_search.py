@@ -11,17 +11,17 @@ from matplotlib.figure import Figure as Sheet
 from scipy.stats import norm
 
 from protractile.cases import run_case
-from runs.case import reading
-from runs.case.messages import BadInput
-from runs.case.reading import CheckedCase, load
-from runs.case.schema import Case
-from runs.check import check_case
-from runs.pipeline.quantities import case_limits, decay_time
-from runs.report.summary_table import limit_faults, limit_table
-from runs.sweep import output
-from runs.sweep.points import plan
-from runs.sweep.sampling import QUANTILES, normal_points
-from runs.sweep.search import rigid_wall_cautions
+from protractile.runs.case import reading
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.reading import CheckedCase, load
+from protractile.runs.case.schema import Case
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.quantities import case_limits, decay_time
+from protractile.runs.report.summary_table import limit_faults, limit_table
+from protractile.runs.sweep import output
+from protractile.runs.sweep.points import plan
+from protractile.runs.sweep.sampling import QUANTILES, normal_points
+from protractile.runs.sweep.search import rigid_wall_cautions
 from tests.docs.conftest import toml_blocks
 from tests.runs.cantilever import CANTILEVER, LOAD, MASS, static_tip
 from tests.runs.case_texts import CLAMPED, REST, STEEL, THIN, box, edited, elements, joint, table

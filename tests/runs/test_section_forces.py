@@ -11,27 +11,27 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.lines import lines
-from beam_model.segment_model import gap_system
-from dynamics.equilibrium import equilibrium_at
-from dynamics.excitation import Step
-from dynamics.line import Line
-from geometry.boom import Boom, Cylinder, Load, Material, Segment, Support
-from geometry.section import BoxSection
-from geometry.segment import Compression
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.lines import lines
+from protractile.beam_model.segment_model import gap_system
 from protractile.cases import run_case
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.case.toml import dumps
-from runs.pipeline.design_results import DesignResults
-from runs.pipeline.results import Results
-from runs.pipeline.section_forces import section_forces
-from runs.report import theme
-from runs.report.figure_context import FigureContext
-from runs.report.force_figures import stress_history
-from runs.report.model_tables import wall_table
+from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.line import Line
+from protractile.geometry.boom import Boom, Cylinder, Load, Material, Segment, Support
+from protractile.geometry.section import BoxSection
+from protractile.geometry.segment import Compression
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.case.toml import dumps
+from protractile.runs.pipeline.design_results import DesignResults
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.section_forces import section_forces
+from protractile.runs.report import theme
+from protractile.runs.report.figure_context import FigureContext
+from protractile.runs.report.force_figures import stress_history
+from protractile.runs.report.model_tables import wall_table
 from studies.telescoping_column import END, LAW, LENGTH, STIFFNESS, column
 from tests.runs.case_texts import REST, STEEL, box, elements, joint, read_case, shipped, table
 from tests.runs.summaries import answers_of, model_summary, printed_check, summary_of

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from geometry.boom import Boom, Collar, Diaphragm, Segment
-from geometry.profiles import hexagon, octagon, u_section
-from geometry.section import BoxSection, Section
-from runs.case.build import build_boom
-from runs.case.reading import load
-from runs.pipeline.models import build
+from protractile.geometry.boom import Boom, Collar, Diaphragm, Segment
+from protractile.geometry.profiles import hexagon, octagon, u_section
+from protractile.geometry.section import BoxSection, Section
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.reading import load
+from protractile.runs.pipeline.models import build
 from tests.runs.case_texts import COARSE, edited, refused
 from tests.system.run_folder import protractile
 

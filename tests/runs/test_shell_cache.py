@@ -13,17 +13,17 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from dynamics.excitation import Ramp
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext
-from runs.case.load_tables import LoadTable
-from runs.case.schema import Case
-from runs.case.sections import SectionTable
-from runs.folder.cache import Cache, load_or_compute
-from runs.pipeline.models import build
-from runs.process.terminal import shorten
-from shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.dynamics.excitation import Ramp
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.case.load_tables import LoadTable
+from protractile.runs.case.schema import Case
+from protractile.runs.case.sections import SectionTable
+from protractile.runs.folder.cache import Cache, load_or_compute
+from protractile.runs.pipeline.models import build
+from protractile.runs.process.terminal import shorten
+from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from tests.runs.case_texts import shipped
 
 pytestmark = pytest.mark.slow

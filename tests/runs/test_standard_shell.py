@@ -12,19 +12,19 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Step
-from dynamics.gap_system import GapSystem
-from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
-from geometry.boom import Boom, Cylinder, Load, PointMass, Stop
-from runs.case.build import build_boom
-from runs.case.kinds.model import BuildContext
-from runs.pipeline.model_output import ShellOutput
-from runs.pipeline.models import build
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Cylinder, Load, PointMass, Stop
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.pipeline.model_output import ShellOutput
+from protractile.runs.pipeline.models import build
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import reduce_boom
 from tests.runs.case_texts import HINGED, STEEL, box, read_case, table
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
 from tests.touching import touching

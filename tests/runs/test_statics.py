@@ -12,24 +12,24 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
-from dynamics.gap_system import GapSystem
-from dynamics.travel import RowTable, Travel
-from geometry.fields import Distance
-from runs import CASES
-from runs.case.build import build_boom
-from runs.case.load_tables import LoadTable
-from runs.case.reading import CheckedCase, select
-from runs.case.schema import Case, StopTable
-from runs.check import check_case
-from runs.pipeline.design_results import DesignResults, PlayDifference
-from runs.pipeline.evaluation import bonded_system
-from runs.pipeline.model_quality import cautions, quality_notes
-from runs.pipeline.models import build
-from runs.pipeline.section_forces import LoadedModel
-from runs.pipeline.static_results import (
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.travel import RowTable, Travel
+from protractile.geometry.fields import Distance
+from protractile.runs import CASES
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.load_tables import LoadTable
+from protractile.runs.case.reading import CheckedCase, select
+from protractile.runs.case.schema import Case, StopTable
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.design_results import DesignResults, PlayDifference
+from protractile.runs.pipeline.evaluation import bonded_system
+from protractile.runs.pipeline.model_quality import cautions, quality_notes
+from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.section_forces import LoadedModel
+from protractile.runs.pipeline.static_results import (
     extended_instants,
     extended_positions,
     instants,

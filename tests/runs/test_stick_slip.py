@@ -10,26 +10,26 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure as Sheet
 
-from dynamics.contact import PowerContact
-from dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, SCurve, Sine
-from dynamics.failure import NumericsError
-from dynamics.gap_system import GapSystem, Observer
-from dynamics.integrator import simulate
-from dynamics.trajectory import Trajectory
-from dynamics.travel import RowTable, Travel
 from protractile.cases import change, run_case
-from runs.case.build import build_boom
-from runs.case.motions import elastic_drives
-from runs.case.schema import Case
-from runs.case.units import System
-from runs.pipeline.drives import lag_cautions
-from runs.pipeline.residual_vibration import ResidualVibration, farthest_from_rest
-from runs.pipeline.summary import Summary
-from runs.report import theme
-from runs.report.figure_context import FigureContext
-from runs.report.force_figures import drives
-from runs.report.result_tables import result_tables, stick_slip_table
-from runs.sweep.residual_vibration import (
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, SCurve, Sine
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.integrator import simulate
+from protractile.dynamics.trajectory import Trajectory
+from protractile.dynamics.travel import RowTable, Travel
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.motions import elastic_drives
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import System
+from protractile.runs.pipeline.drives import lag_cautions
+from protractile.runs.pipeline.residual_vibration import ResidualVibration, farthest_from_rest
+from protractile.runs.pipeline.summary import Summary
+from protractile.runs.report import theme
+from protractile.runs.report.figure_context import FigureContext
+from protractile.runs.report.force_figures import drives
+from protractile.runs.report.result_tables import result_tables, stick_slip_table
+from protractile.runs.sweep.residual_vibration import (
     VibrationCurve,
     admissible_speed,
     describe,

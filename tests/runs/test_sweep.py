@@ -14,17 +14,17 @@ from matplotlib.figure import Figure as Sheet
 from PIL import Image
 
 from protractile.cases import run_case
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.schema import Case
-from runs.pipeline.quantities import QUANTITIES, settling_time
-from runs.report import theme
-from runs.report.formatting import number
-from runs.sweep import output
-from runs.sweep import run as sweep
-from runs.sweep.figures import in_display_units
-from runs.sweep.points import Plan
-from runs.sweep.run import Outcome
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.quantities import QUANTITIES, settling_time
+from protractile.runs.report import theme
+from protractile.runs.report.formatting import number
+from protractile.runs.sweep import output
+from protractile.runs.sweep import run as sweep
+from protractile.runs.sweep.figures import in_display_units
+from protractile.runs.sweep.points import Plan
+from protractile.runs.sweep.run import Outcome
 from tests.runs.case_texts import refused
 from tests.runs.sweeping import FAST, Planned, run
 
@@ -218,7 +218,7 @@ def test_other_cases_and_sources_are_other_points(
     run(planned("joint.play=0,0.01"))
     run(planned("joint.play=0,0.01", models=["kantorovich-5"]))
     assert len(ran) == 4
-    monkeypatch.setattr("runs.folder.cache.program", lambda: {"sources": "changed"})
+    monkeypatch.setattr("protractile.runs.folder.cache.program", lambda: {"sources": "changed"})
     run(planned("joint.play=0,0.01"))
     assert len(ran) == 6
 

@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
-from runs.pipeline.model_quality import main_models
-from runs.report import theme
-from runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
-from runs.report.formatting import fixed, number, scientific
-from runs.report.tables import ROOMY, Column, Table
+from protractile.runs.pipeline.model_quality import main_models
+from protractile.runs.report import theme
+from protractile.runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
+from protractile.runs.report.formatting import fixed, number, scientific
+from protractile.runs.report.tables import ROOMY, Column, Table
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import printed
 

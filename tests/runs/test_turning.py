@@ -11,29 +11,34 @@ import xarray as xr
 from matplotlib.figure import Figure
 from scipy.integrate import solve_ivp, trapezoid
 
-from beam_model.lines import lines
-from dynamics.excitation import SCurve, Stroke
-from dynamics.frame_motion import FrameMotion
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import build_motion
-from geometry.boom import Boom, Material, PointMass, Segment
-from geometry.cylinder import Cylinder
-from geometry.joint import Drive
-from geometry.support import Support
+from protractile.beam_model.lines import lines
 from protractile.cases import change, run_case
-from runs import CASES
-from runs.case.build import build_boom
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.motion_tables import HoistTable, LuffTable
-from runs.case.motions import turning_changes, turning_loads
-from runs.case.reading import CheckedCase, load
-from runs.case.schema import Case
-from runs.pipeline.estimates import Preview
-from runs.pipeline.models import axial_travels
-from runs.pipeline.turning import drive_moments, shaper_lines, turning_cautions, turning_lines
-from runs.report.crane_position import CranePosition
-from runs.report.result_tables import luffing_table
+from protractile.dynamics.excitation import SCurve, Stroke
+from protractile.dynamics.frame_motion import FrameMotion
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import build_motion
+from protractile.geometry.boom import Boom, Material, PointMass, Segment
+from protractile.geometry.cylinder import Cylinder
+from protractile.geometry.joint import Drive
+from protractile.geometry.support import Support
+from protractile.runs import CASES
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.finite_element import BeamElements
+from protractile.runs.case.motion_tables import HoistTable, LuffTable
+from protractile.runs.case.motions import turning_changes, turning_loads
+from protractile.runs.case.reading import CheckedCase, load
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.estimates import Preview
+from protractile.runs.pipeline.models import axial_travels
+from protractile.runs.pipeline.turning import (
+    drive_moments,
+    shaper_lines,
+    turning_cautions,
+    turning_lines,
+)
+from protractile.runs.report.crane_position import CranePosition
+from protractile.runs.report.result_tables import luffing_table
 from tests.runs.case_texts import read_case, refusal, refused, shipped
 from tests.runs.summaries import static_tip
 

@@ -7,16 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep, FixedStep, Integrator
-from dynamics.motion import Motion
-from geometry.joint import PadSize
-from runs.case.build import build_boom
-from runs.case.kinds import KINDS
-from runs.case.kinds.model import BuildContext
-from runs.case.reading import convert_to_si
-from runs.case.schema import Case
-from runs.pipeline.models import build
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator
+from protractile.dynamics.motion import Motion
+from protractile.geometry.joint import PadSize
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds import KINDS
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.case.reading import convert_to_si
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.models import build
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import rubbing
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from runs.pipeline.results import Results
+from protractile.runs.pipeline.results import Results
 from tests.runs.case_texts import CLAMPED, REST, STEEL, box, elements, joint, refusal, table
 from tests.system.run_folder import protractile
 

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from runs.case.actions import series_notes
-from runs.case.reading import load
-from runs.case.schema import Case
-from runs.case.units import Unit
-from runs.case.user_files import MAX_BYTES, check_not_working_folder
-from runs.folder.files import MANIFEST
-from runs.pipeline.results import prepare
+from protractile.runs.case.actions import series_notes
+from protractile.runs.case.reading import load
+from protractile.runs.case.schema import Case
+from protractile.runs.case.units import Unit
+from protractile.runs.case.user_files import MAX_BYTES, check_not_working_folder
+from protractile.runs.folder.files import MANIFEST
+from protractile.runs.pipeline.results import prepare
 from tests.runs.case_texts import COARSE, read_case, refusal, refused
 
 GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'

@@ -10,20 +10,20 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from beam_model.kantorovich import kantorovich_segments
-from beam_model.segment_model import gap_system
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
+from protractile.beam_model.kantorovich import kantorovich_segments
+from protractile.beam_model.segment_model import gap_system
 from protractile.cases import run_case
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.contact import ContactTable
-from runs.case.schema import Case
-from runs.paper.rules import PEAK_SCATTER, judge
-from runs.paper.statements import STATEMENTS
-from runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
-from runs.pipeline.results import Results
-from runs.report.terminal_tables import print_models
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.contact import ContactTable
+from protractile.runs.case.schema import Case
+from protractile.runs.paper.rules import PEAK_SCATTER, judge
+from protractile.runs.paper.statements import STATEMENTS
+from protractile.runs.paper.verdicts import Judgement, Verdict, decisive, print_verdicts
+from protractile.runs.pipeline.results import Results
+from protractile.runs.report.terminal_tables import print_models
 from tests.runs.case_texts import shipped
 from tests.runs.paper_curves import (
     FIRST_CONTACT,

@@ -11,20 +11,20 @@ from PIL import Image
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from geometry.mesh import mesh_segment
-from geometry.plating import add_thickness
 from protractile.cases import change, run_case
-from runs.case.kinds.shell import Shell
-from runs.case.reading import select
-from runs.case.schema import BucklingTable
-from runs.pipeline.results import Results
-from runs.pipeline.summary import Summary
-from runs.pipeline.wall_buckling import with_locations
-from runs.report import sheet
-from runs.report.boom_pictures import render_buckling
-from runs.report.result_tables import buckling_table
-from runs.report.summary_table import summary_table
-from shell_model.buckling import SegmentBuckling
+from protractile.geometry.mesh import mesh_segment
+from protractile.geometry.plating import add_thickness
+from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.reading import select
+from protractile.runs.case.schema import BucklingTable
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.summary import Summary
+from protractile.runs.pipeline.wall_buckling import with_locations
+from protractile.runs.report import sheet
+from protractile.runs.report.boom_pictures import render_buckling
+from protractile.runs.report.result_tables import buckling_table
+from protractile.runs.report.summary_table import summary_table
+from protractile.shell_model.buckling import SegmentBuckling
 from studies.wall_buckling import TUBE
 from tests.runs.case_texts import shipped
 from tests.runs.moving_segments import moving_scene

@@ -10,13 +10,13 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from geometry.boom import PointMass, Support
-from geometry.mesh import mesh_segment
-from geometry.plating import add_thickness
-from geometry.section import BoxSection, Section
-from shell_model.segment.cross_section import Row
-from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.solver import ShiftedSolver
+from protractile.geometry.boom import PointMass, Support
+from protractile.geometry.mesh import mesh_segment
+from protractile.geometry.plating import add_thickness
+from protractile.geometry.section import BoxSection, Section
+from protractile.shell_model.segment.cross_section import Row
+from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from protractile.shell_model.segment.solver import ShiftedSolver
 from tests.shell_model.booms import box_segment
 
 BOX = BoxSection(height=0.4889, width=0.3259, flange=0.0065, web=0.0065)

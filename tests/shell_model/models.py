@@ -10,20 +10,20 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from beam_model.component import natural_modes
-from beam_model.finite_element import finite_element_segment, finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import ContactLaw
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.boom import Boom, Direction
-from geometry.contact_places import ContactLine
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import ReducedShell, reduce_boom
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
-from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.segment_shell import SegmentShell
+from protractile.beam_model.component import natural_modes
+from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import ContactLaw
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Direction
+from protractile.geometry.contact_places import ContactLine
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
+from protractile.shell_model.reduction.symmetry import SymmetryReduction
+from protractile.shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.statics import static_response
 from tests.shell_model.booms import LATERAL_LAW, LAW
 from tests.touching import touching

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from geometry.arrays import Array, Indices
-from geometry.mesh import mesh_segment
-from geometry.plating import plain_thickness
-from geometry.section import Section
-from shell_model.segment.cross_section import SectionNodes
-from shell_model.segment.forms import DRILLING
+from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.mesh import mesh_segment
+from protractile.geometry.plating import plain_thickness
+from protractile.geometry.section import Section
+from protractile.shell_model.segment.cross_section import SectionNodes
+from protractile.shell_model.segment.forms import DRILLING
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.plates import STEEL
 from studies.reference_models.shell_readings import flange_deflection

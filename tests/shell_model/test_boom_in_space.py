@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import ContactLaw
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from geometry.boom import Boom, BoomError
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import ContactLaw
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, BoomError
 from studies import sections
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
 from tests.shell_model.models import bonded_beams, reduced

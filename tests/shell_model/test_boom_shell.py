@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
-from geometry.boom import BoomError
-from geometry.contact_places import ContactLine
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.krylov import KrylovOptions
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.boom import BoomError
+from protractile.geometry.contact_places import ContactLine
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.reduction.krylov import KrylovOptions
 from tests.shell_model.booms import LAW, flat_boom
 from tests.shell_model.models import reduced
 from tests.touching import touching

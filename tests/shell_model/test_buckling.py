@@ -7,13 +7,18 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.equilibrium import equilibrium_at
-from dynamics.failure import NumericsError
-from geometry.boom import Boom, Support
-from shell_model.boom_shell import ShellOptions
-from shell_model.buckling import SegmentBuckling, ShellState, buckle_segments, buckling_modes
-from shell_model.reduced_shell import ReducedShell, reduce_boom
-from shell_model.stress.stresses import triangle_areas
+from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.boom import Boom, Support
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.buckling import (
+    SegmentBuckling,
+    ShellState,
+    buckle_segments,
+    buckling_modes,
+)
+from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.shell_model.stress.stresses import triangle_areas
 from studies.reference_models.finite_strip import Strips
 from studies.reference_models.plates import STEEL
 from studies.reference_models.single_segment import shell_alone

@@ -9,19 +9,19 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.damping import closed_contact_damping
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Step
-from dynamics.gap_system import GapSystem
-from geometry.boom import Boom, Cylinder, Load, Stop, Support
-from geometry.section import BoxSection
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.stress.stresses import ShellStress, wall_forces
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.damping import closed_contact_damping
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.boom import Boom, Cylinder, Load, Stop, Support
+from protractile.geometry.section import BoxSection
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.stress.stresses import ShellStress, wall_forces
 from studies.reference_models.statics import static_response
 from tests.lowered_pin import level, raised
 from tests.shell_model.booms import boom_in_space, box_segment

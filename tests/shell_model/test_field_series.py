@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from runs.pipeline.model_output import write_field_series
-from shell_model.stress.stresses import ShellStress
+from protractile.runs.pipeline.model_output import write_field_series
+from protractile.shell_model.stress.stresses import ShellStress
 
 
 @pytest.fixture

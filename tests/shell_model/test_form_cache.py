@@ -21,7 +21,7 @@ import ffcx.codegeneration.jit as compiler
 from mpi4py import MPI
 from dolfinx import fem, mesh
 import ufl
-from shell_model import compat
+from protractile.shell_model import compat
 domain = mesh.create_unit_interval(MPI.COMM_SELF, 2)
 if {killed}:
     compiler._compile_objects = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)

@@ -6,15 +6,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.excitation import Ramp, Step
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
-from geometry.boom import Boom, Load, Stop
-from geometry.contact_places import ContactLine
-from shell_model.segment.cross_section import Operator, Row
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.excitation import Ramp, Step
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.boom import Boom, Load, Stop
+from protractile.geometry.contact_places import ContactLine
+from protractile.shell_model.segment.cross_section import Operator, Row
 from studies.reference_models.statics import static_response
 from tests.shell_model.booms import LAW, flat_boom, three_segments
 from tests.shell_model.models import assert_rests_as_beams, bonded_beams, pressed_rest, reduced

@@ -12,19 +12,19 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.lines import lines as lines_of_beams
-from beam_model.segment_model import gap_system
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import Step
-from dynamics.line import Line
-from geometry.arrays import Array
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Load, Support
-from geometry.section import BoxSection
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
-from shell_model.stress.lines import band_boundaries, lines
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.lines import lines as lines_of_beams
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.line import Line
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Load, Support
+from protractile.geometry.section import BoxSection
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.stress.lines import band_boundaries, lines
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, box_segment, flat_boom
 from tests.touching import touching
 

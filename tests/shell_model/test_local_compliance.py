@@ -9,20 +9,20 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from beam_model.calibration import Stiffness, effective_stiffness
-from beam_model.wall_compliance import contact_compliance
-from dynamics.contact import PowerContact
-from geometry.boom import Boom, Collar, PadSize, Stop, Support
-from geometry.probe_responses import PROBE_FREQUENCY
-from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.local_compliance import (
+from protractile.beam_model.calibration import Stiffness, effective_stiffness
+from protractile.beam_model.wall_compliance import contact_compliance
+from protractile.dynamics.contact import PowerContact
+from protractile.geometry.boom import Boom, Collar, PadSize, Stop, Support
+from protractile.geometry.probe_responses import PROBE_FREQUENCY
+from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
+from protractile.shell_model.contact.local_compliance import (
     SLOW,
     compliance,
     probe_loads,
     probe_responses,
     shell_compliance,
 )
-from shell_model.reduction.symmetry import SymmetryReduction
+from protractile.shell_model.reduction.symmetry import SymmetryReduction
 from tests.shell_model.booms import LAW, boom_in_space, box_segment, flat_boom, three_segments
 from tests.shell_model.models import reduced
 from tests.touching import touching

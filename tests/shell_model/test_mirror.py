@@ -8,15 +8,21 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.failure import NumericsError
-from geometry.boom import Collar, Diaphragm, PointMass, Support
-from geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
-from geometry.plating import add_thickness
-from geometry.section import Section
-from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, SymmetryClass
-from shell_model.reduction.symmetry import Job, SymmetryReduction
-from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.solver import times
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.boom import Collar, Diaphragm, PointMass, Support
+from protractile.geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
+from protractile.geometry.plating import add_thickness
+from protractile.geometry.section import Section
+from protractile.shell_model.reduction.mirror import (
+    ALONG_Y,
+    ALONG_Z,
+    BREATHING,
+    TWISTING,
+    SymmetryClass,
+)
+from protractile.shell_model.reduction.symmetry import Job, SymmetryReduction
+from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from protractile.shell_model.segment.solver import times
 from studies.reference_models.shell_readings import flange_deflection
 from tests.shell_model.booms import HELD, box_segment
 from tests.shell_model.conftest import BOX, UNEQUAL, box_shell

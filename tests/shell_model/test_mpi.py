@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.failure import NumericsError
-from geometry.boom import Boom
-from shell_model.boom_shell import ShellOptions, assemble_boom
-from shell_model.buckling import ShellState, buckle_segments
-from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.symmetry import run_collectively
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.boom import Boom
+from protractile.shell_model.boom_shell import ShellOptions, assemble_boom
+from protractile.shell_model.buckling import ShellState, buckle_segments
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.reduction.symmetry import run_collectively
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.unreduced import integrate_directly
 from tests.conftest import ranks_in

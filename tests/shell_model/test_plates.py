@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from dynamics.failure import NumericsError
-from geometry.arrays import Array, Indices
-from shell_model.segment.shell import ON_LINE
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array, Indices
+from protractile.shell_model.segment.shell import ON_LINE
 from studies.reference_models.benchmarks import PUBLISHED, X, Y, Z, grid, twisted_beam
 from studies.reference_models.plates import STEEL, Field, SupportedPlate, rectangle, rigidities
 from studies.reference_models.single_segment import natural_frequencies

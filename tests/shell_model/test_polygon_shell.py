@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact import PowerContact
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from geometry.boom import (
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import (
     Boom,
     Collar,
     Diaphragm,
@@ -21,13 +21,13 @@ from geometry.boom import (
     Stop,
     Support,
 )
-from geometry.contact_places import ContactInterval, ContactLine
-from geometry.polygon import PolygonSection
-from geometry.section import BoxSection, Section
-from shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.cross_section import Row
+from protractile.geometry.contact_places import ContactInterval, ContactLine
+from protractile.geometry.polygon import PolygonSection
+from protractile.geometry.section import BoxSection, Section
+from protractile.shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.reduction.symmetry import SymmetryReduction
+from protractile.shell_model.segment.cross_section import Row
 from studies import sections
 from tests.shell_model.booms import STEEL, flat_boom, two_segments
 from tests.shell_model.conftest import BOX, UNEQUAL, box_shell

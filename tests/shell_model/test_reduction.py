@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.failure import NumericsError
-from geometry.arrays import Array
-from geometry.probe_responses import PROBE_FREQUENCY
-from runs.process.workers import workers
-from shell_model.contact.local_compliance import shell_compliance
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
-from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.segment_shell import SegmentShell
-from shell_model.segment.solver import ShiftedSolver, exact_product, times
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.arrays import Array
+from protractile.geometry.probe_responses import PROBE_FREQUENCY
+from protractile.runs.process.workers import workers
+from protractile.shell_model.contact.local_compliance import shell_compliance
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
+from protractile.shell_model.reduction.symmetry import SymmetryReduction
+from protractile.shell_model.segment.segment_shell import SegmentShell
+from protractile.shell_model.segment.solver import ShiftedSolver, exact_product, times
 from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD

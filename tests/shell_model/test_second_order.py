@@ -11,16 +11,16 @@ from petsc4py import PETSc
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import spsolve
 
-from beam_model.boom_modes import critical_factor
-from beam_model.finite_element import finite_element_segments
-from dynamics.contact import PowerContact
-from dynamics.failure import NumericsError
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom, Collar, Joint, Segment, Support
-from geometry.section import BoxSection
-from shell_model.boom_shell import ShellOptions, segment_mesh
-from shell_model.reduced_shell import ReducedShell, reduce_boom
-from shell_model.segment.segment_shell import assemble_segment
+from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.failure import NumericsError
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom, Collar, Joint, Segment, Support
+from protractile.geometry.section import BoxSection
+from protractile.shell_model.boom_shell import ShellOptions, segment_mesh
+from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.shell_model.segment.segment_shell import assemble_segment
 from studies.reference_models.statics import static_response
 from tests.shell_model.booms import STEEL
 from tests.touching import touching

@@ -6,14 +6,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from beam_model.finite_element import Theory, finite_element_segment
-from geometry.boom import Direction, PointMass, Support
-from geometry.contact_places import ContactInterval
-from geometry.section import BoxSection
-from shell_model.contact.wall_rows import CornerLines
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.solver import times
+from protractile.beam_model.finite_element import Theory, finite_element_segment
+from protractile.geometry.boom import Direction, PointMass, Support
+from protractile.geometry.contact_places import ContactInterval
+from protractile.geometry.section import BoxSection
+from protractile.shell_model.contact.wall_rows import CornerLines
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.reduction.symmetry import SymmetryReduction
+from protractile.shell_model.segment.solver import times
 from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.beam_model.exact import frequencies

@@ -12,17 +12,17 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from dynamics.excitation import Step
-from geometry.arrays import Array
-from geometry.boom import Collar, Diaphragm, Load, Segment, Support
-from geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
-from geometry.plating import PlatedMesh, add_thickness
-from geometry.section import BoxSection
-from runs.report.scene import Scene
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
-from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.segment.solver import ShiftedSolver, times
+from protractile.dynamics.excitation import Step
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Collar, Diaphragm, Load, Segment, Support
+from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
+from protractile.geometry.plating import PlatedMesh, add_thickness
+from protractile.geometry.section import BoxSection
+from protractile.runs.report.scene import Scene
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from protractile.shell_model.segment.solver import ShiftedSolver, times
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, compliance

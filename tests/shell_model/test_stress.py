@@ -9,18 +9,24 @@ import pytest
 import xarray as xr
 from mpi4py import MPI
 
-from geometry.arrays import Array
-from geometry.boom import Boom, Collar, Diaphragm, PadSize, Support
-from geometry.mesh import diaphragm_breaks, mesh_segment
-from geometry.plating import PlatedMesh, add_thickness
-from geometry.profiles import octagon
-from geometry.section import BoxSection, Section
-from shell_model.boom_shell import ShellOptions
-from shell_model.reduced_shell import reduce_boom
-from shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from shell_model.stress.fields import gather_stress_modes
-from shell_model.stress.history import stress_near_places, summarise
-from shell_model.stress.stresses import Modes, ShellStress, Stress, WallForces, wall_forces
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Collar, Diaphragm, PadSize, Support
+from protractile.geometry.mesh import diaphragm_breaks, mesh_segment
+from protractile.geometry.plating import PlatedMesh, add_thickness
+from protractile.geometry.profiles import octagon
+from protractile.geometry.section import BoxSection, Section
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from protractile.shell_model.stress.fields import gather_stress_modes
+from protractile.shell_model.stress.history import stress_near_places, summarise
+from protractile.shell_model.stress.stresses import (
+    Modes,
+    ShellStress,
+    Stress,
+    WallForces,
+    wall_forces,
+)
 from studies.second_order import BOX as COLUMN_BOX
 from studies.second_order import CLAMP, CRITICAL, LENGTH, column
 from studies.taper import arm

@@ -7,20 +7,20 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from dynamics.contact import PowerContact
-from dynamics.gap_system import GapSystem
-from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, PadSize, SlidePad
-from geometry.contact_places import ContactLine
-from geometry.contact_places import pads as places_of_pads
-from geometry.joint import POLYAMIDE, PadSide
-from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.rows import ShellContacts
-from shell_model.contact.surface import SurfaceOptions
-from shell_model.contact.wall_rows import Wall, WallPoints
-from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.segment.cross_section import COMPONENT
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, BoomError, PadSize, SlidePad
+from protractile.geometry.contact_places import ContactLine
+from protractile.geometry.contact_places import pads as places_of_pads
+from protractile.geometry.joint import POLYAMIDE, PadSide
+from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
+from protractile.shell_model.contact.rows import ShellContacts
+from protractile.shell_model.contact.surface import SurfaceOptions
+from protractile.shell_model.contact.wall_rows import Wall, WallPoints
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.segment.cross_section import COMPONENT
 from tests.shell_model.booms import LAW, boom_in_space, flat_boom
 from tests.shell_model.conftest import BOX, box_shell
 from tests.shell_model.models import reduced

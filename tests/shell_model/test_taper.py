@@ -7,21 +7,21 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.excitation import Step
-from dynamics.integrator import AdaptiveStep
-from dynamics.motion import Motion
-from geometry.boom import Boom, BoomError, Diaphragm, Joint, PadSize, Segment, Support
-from geometry.load import Load
-from geometry.profiles import hexagon, u_section
-from geometry.section import COMPONENT, BoxSection, Section
-from geometry.taper import mean_area
-from shell_model.boom_shell import ShellOptions, assemble_segments
-from shell_model.contact.rows import ShellContacts
-from shell_model.contact.surface import SurfaceOptions
-from shell_model.reduced_shell import reduce_boom
-from shell_model.stress.lines import lines
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.integrator import AdaptiveStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.boom import Boom, BoomError, Diaphragm, Joint, PadSize, Segment, Support
+from protractile.geometry.load import Load
+from protractile.geometry.profiles import hexagon, u_section
+from protractile.geometry.section import COMPONENT, BoxSection, Section
+from protractile.geometry.taper import mean_area
+from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
+from protractile.shell_model.contact.rows import ShellContacts
+from protractile.shell_model.contact.surface import SurfaceOptions
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.stress.lines import lines
 from studies.reference_models.statics import static_response
 from studies.sections import LAW, STEEL
 from tests.touching import touching

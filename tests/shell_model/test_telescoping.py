@@ -9,23 +9,23 @@ import pytest
 from mpi4py import MPI
 from scipy.linalg import eigh
 
-from beam_model.finite_element import finite_element_segments
-from beam_model.segment_model import gap_system
-from dynamics.contact import PowerContact
-from dynamics.equilibrium import equilibrium
-from dynamics.excitation import SCurve, Stroke
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from dynamics.trajectory import Trajectory
-from geometry.arrays import Array
-from geometry.axial import Thrust, with_compression
-from geometry.boom import Boom
-from geometry.joint import Drive
-from shell_model.boom_shell import ShellOptions
-from shell_model.contact.local_compliance import compliance, local_compliance
-from shell_model.reduced_shell import ReducedShell, reduce_boom
-from shell_model.telescoping import SLOW, springs, squared
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import SCurve, Stroke
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.boom import Boom
+from protractile.geometry.joint import Drive
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.contact.local_compliance import compliance, local_compliance
+from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.shell_model.telescoping import SLOW, springs, squared
 from tests.dynamics.reference import table_slope
 from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
 from tests.touching import touching

@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from runs.case.build import build_boom
+from protractile.runs.case.build import build_boom
 from studies import contact_size, design_results, direct, mesh, stiffeners, stress, surface_contact
 from studies.motions import friction_case
 

@@ -13,7 +13,7 @@ from typing import Self
 import pytest
 from rich.console import Console
 
-from runs.report.tables import Table
+from protractile.runs.report.tables import Table
 from studies import convergence
 from studies.refined import Reference, Refined, refined_table
 from studies.study import Plot, Study, Verification

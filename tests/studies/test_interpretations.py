@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import pytest
 
-from dynamics.contact import PowerContact
-from runs.case import reading as case_file
-from runs.case.build import build_boom
-from runs.case.kinds.kantorovich import Kantorovich
-from runs.case.schema import Case
-from runs.paper.verdicts import Judgement
+from protractile.dynamics.contact import PowerContact
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.kantorovich import Kantorovich
+from protractile.runs.case.schema import Case
+from protractile.runs.paper.verdicts import Judgement
 from studies import interpretations
 from studies.interpretations import (
     ALL,

@@ -8,9 +8,9 @@ from itertools import product
 import numpy as np
 import pytest
 
-from dynamics.contact import DryFriction
-from geometry.arrays import Array
-from runs.case import reading as case_file
+from protractile.dynamics.contact import DryFriction
+from protractile.geometry.arrays import Array
+from protractile.runs.case import reading as case_file
 from studies.numerics_1997.samples import (
     SERIES,
     STEPS,

@@ -12,8 +12,8 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from runs.case.build import build_boom
-from runs.case.schema import Case
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
 from studies import direct, taper, working_load
 from studies.convergence import STUDIES, verification_table
 from studies.motions import friction_case

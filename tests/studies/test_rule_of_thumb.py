@@ -6,9 +6,9 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from beam_model.statics import static_state
-from runs.case.build import build_boom
-from runs.pipeline.statics import boom_with_play
+from protractile.beam_model.statics import static_state
+from protractile.runs.case.build import build_boom
+from protractile.runs.pipeline.statics import boom_with_play
 from studies.calibrated_beams import EULER, PLAIN, SPRUNG
 from studies.rule_of_thumb import (
     BOOMS,

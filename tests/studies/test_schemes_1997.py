@@ -6,10 +6,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.gap_system import GapSystem
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
 from studies.numerics_1997.schemes import (
     CENTRAL,
     NEWMARK,

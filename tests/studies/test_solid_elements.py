@@ -11,17 +11,23 @@ pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
 
 from mpi4py import MPI
 
-from beam_model.finite_element import Theory, finite_element_segment
-from geometry.arrays import Array
-from geometry.boom import Collar, PointMass, Segment, Support
-from geometry.mesh import mesh_segment
-from geometry.plating import add_thickness
-from geometry.section import BoxSection
-from shell_model.reduction.mirror import ALONG_Y, ALONG_Z, BREATHING, TWISTING, SymmetryClass
-from shell_model.reduction.symmetry import SymmetryReduction
-from shell_model.segment.cross_section import SectionNodes
-from shell_model.segment.segment_shell import assemble_segment
-from shell_model.segment.solver import times
+from protractile.beam_model.finite_element import Theory, finite_element_segment
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Collar, PointMass, Segment, Support
+from protractile.geometry.mesh import mesh_segment
+from protractile.geometry.plating import add_thickness
+from protractile.geometry.section import BoxSection
+from protractile.shell_model.reduction.mirror import (
+    ALONG_Y,
+    ALONG_Z,
+    BREATHING,
+    TWISTING,
+    SymmetryClass,
+)
+from protractile.shell_model.reduction.symmetry import SymmetryReduction
+from protractile.shell_model.segment.cross_section import SectionNodes
+from protractile.shell_model.segment.segment_shell import assemble_segment
+from protractile.shell_model.segment.solver import times
 from studies.reference_models.shell_readings import quadratic_form
 from studies.reference_models.single_segment import natural_frequencies
 from studies.reference_models.solid import SolidFamily, SolidMesh, assemble_solid, mesh_quarter

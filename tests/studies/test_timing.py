@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from runs.case import reading as case_file
-from runs.report.formatting import repeated
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.runs.case import reading as case_file
+from protractile.runs.report.formatting import repeated
 from studies.cost import other_programs, timing
 from studies.cost.bench import (
     PAPER,

@@ -14,20 +14,20 @@ pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from dynamics.contact import DryFriction, PowerContact
-from dynamics.energy import energy_residual
-from dynamics.failure import NumericsError
-from dynamics.gap_builder import GapBuilder, OutputOperator
-from dynamics.integrator import FixedStep
-from dynamics.motion import Motion
-from geometry.arrays import Array
-from geometry.boom import Boom, BoomError, Cylinder, Stop
-from shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
-from shell_model.contact.rows import ShellContacts
-from shell_model.reduced_shell import reduce_boom
-from shell_model.reduction.krylov import KrylovOptions
-from shell_model.segment.cross_section import Operator
-from shell_model.segment.segment_shell import SegmentShell
+from protractile.dynamics.contact import DryFriction, PowerContact
+from protractile.dynamics.energy import energy_residual
+from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_builder import GapBuilder, OutputOperator
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, BoomError, Cylinder, Stop
+from protractile.shell_model.boom_shell import BoomShell, ShellOptions, assemble_boom
+from protractile.shell_model.contact.rows import ShellContacts
+from protractile.shell_model.reduced_shell import reduce_boom
+from protractile.shell_model.reduction.krylov import KrylovOptions
+from protractile.shell_model.segment.cross_section import Operator
+from protractile.shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.resisting_rows import ResistingRows
 from studies.reference_models.unreduced import integrate_directly
 from tests.shell_model.booms import HELD, LAW, boom_in_space, flat_boom, three_segments

@@ -10,8 +10,8 @@ import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-from runs.case import reading as case_file
-from runs.case.build import build_boom
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.build import build_boom
 from studies import validation
 
 ROOT = Path(__file__).parents[2]

@@ -17,8 +17,8 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from runs import cli
-from runs.case.schema import Case
+from protractile.runs import cli
+from protractile.runs.case.schema import Case
 
 ROOT = Path(__file__).parents[2]
 COARSE = str(ROOT / "runs" / "cases" / "coarse.toml")

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from runs import CASES
-from runs.case import reading as case_file
-from runs.folder.cache import Cache
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.run import run_case
-from runs.report.document import render
-from runs.report.figures import draw
-from runs.report.pages import Addition
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.run import run_case
+from protractile.runs.report.document import render
+from protractile.runs.report.figures import draw
+from protractile.runs.report.pages import Addition
 
 pytestmark = pytest.mark.slow
 

@@ -12,11 +12,11 @@ import pytest
 import xarray as xr
 from PIL import Image
 
-from runs.case.build import build_boom
-from runs.pipeline.results import Results
-from runs.report.opengl import RenderingUnavailable, require_opengl
-from runs.report.scene import Scene
-from shell_model.stress.stresses import ShellStress, wall_forces
+from protractile.runs.case.build import build_boom
+from protractile.runs.pipeline.results import Results
+from protractile.runs.report.opengl import RenderingUnavailable, require_opengl
+from protractile.runs.report.scene import Scene
+from protractile.shell_model.stress.stresses import ShellStress, wall_forces
 from tests import at_once
 from tests.short_film import RENDERED
 from tests.system.run_folder import (
@@ -39,8 +39,8 @@ BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-bonded"]
 @pytest.fixture
 def _short_film(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the film, which other tests check."""
-    monkeypatch.setattr("runs.report.snapshots.RENDERED", RENDERED)
-    monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
+    monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", RENDERED)
+    monkeypatch.setattr("protractile.runs.process.workers.workers", at_once.workers)
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +49,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     folder = tmp_path_factory.mktemp("whole") / "out"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("runs.report.snapshots.RENDERED", RENDERED)
+        patch.setattr("protractile.runs.report.snapshots.RENDERED", RENDERED)
         assert protractile("run", COARSE, "--out", folder) == 0
     return folder
 
@@ -199,7 +199,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     def refuse(*arguments: object) -> list[Path]:
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("runs.report.snapshots.RENDERED", (refuse,))
+    monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", (refuse,))
     assert protractile("run", short, "--models", "shell", "--out", again) == 0
     assert "\nno snapshots: no OpenGL\n" in capsys.readouterr().out
     summary = summary_of(again)
@@ -221,7 +221,7 @@ def test_pictures_can_be_left_to_later(
     def refuse(*arguments: object) -> list[Path]:
         raise AssertionError("nobody asked for pictures")
 
-    monkeypatch.setattr("runs.report.snapshots.RENDERED", (refuse,))
+    monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", (refuse,))
     out = short.parent / "out"
     assert protractile("run", short, "--models", "shell", "--no-pictures", "--out", out) == 0
     later = "not requested; protractile snapshot draws them"
@@ -241,7 +241,7 @@ def test_two_shells_of_a_case_keep_their_files_apart(
         Image.new("RGB", (8, 8)).save(path)
         return [path]
 
-    monkeypatch.setattr("runs.report.snapshots.RENDERED", (draw,))
+    monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", (draw,))
     text = short.read_text(encoding="utf-8").replace("mesh_size = 0.25", "mesh_size = 0.5")
     shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
     text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")

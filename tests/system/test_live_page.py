@@ -10,10 +10,10 @@ from pathlib import Path
 
 import pytest
 
-from runs import CASES
-from runs.case.schema import Case
-from runs.live.controls import Draft
-from runs.live.server import LivePage, make_server
+from protractile.runs import CASES
+from protractile.runs.case.schema import Case
+from protractile.runs.live.controls import Draft
+from protractile.runs.live.server import LivePage, make_server
 from tests.system.browser import Page, blank_page, find_browser
 
 pytestmark = pytest.mark.slow

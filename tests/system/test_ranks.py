@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from runs.report import figures
+from protractile.runs.report import figures
 from tests import at_once
 from tests.system.run_folder import (
     COARSE,
@@ -28,9 +28,9 @@ Ranks = Callable[..., subprocess.CompletedProcess[str]]
 COMMANDS = f"""
 {ONE_BLANK_FIGURE}
 import sys
-from runs import cli
-from runs.process import workers
-from runs.report import snapshots
+from protractile.runs import cli
+from protractile.runs.process import workers
+from protractile.runs.report import snapshots
 from tests import at_once
 
 workers.workers = at_once.workers
@@ -46,9 +46,9 @@ for command in sys.argv[1:]:
 # One rank fails while the other waits for it, and does not wait long for the other to speak.
 LONELY_FAILURE = """
 from mpi4py import MPI
-from dynamics.failure import NumericsError
-from runs.process.ranks import end_all_ranks_on_error
-from runs.process import ending
+from protractile.dynamics.failure import NumericsError
+from protractile.runs.process.ranks import end_all_ranks_on_error
+from protractile.runs.process import ending
 
 ending._GRACE_OF_RANKS = 0.5
 comm = MPI.COMM_WORLD
@@ -75,8 +75,8 @@ def test_two_ranks_run_shells_and_beams_as_one_does(
     luffing = "\n[gravity]\nangle = 30.0\n\n[luff]\ntravel = 1.0\ntime = 0.1\n"
     case.write_text(text + luffing, encoding="utf-8")
     models = "kantorovich-4,shell"
-    monkeypatch.setattr("runs.process.workers.workers", at_once.workers)
-    monkeypatch.setattr("runs.report.snapshots.render_files", lambda *arguments: [])
+    monkeypatch.setattr("protractile.runs.process.workers.workers", at_once.workers)
+    monkeypatch.setattr("protractile.runs.report.snapshots.render_files", lambda *arguments: [])
     monkeypatch.setattr(figures, "FIGURES", figures.FIGURES[-1:])
     options = ("--models", models, "--mesh-size", "1", "--no-cache", "--out")
     assert protractile("run", case, *options, tmp_path / "one") == 0
@@ -108,7 +108,7 @@ def test_two_ranks_run_shells_and_beams_as_one_does(
 def test_a_mistake_ends_both_ranks_with_one_line(
     two_ranks: Ranks, arguments: list[str], status: int, line: str
 ) -> None:
-    answer = two_ranks("from runs import cli; cli.main()", *arguments)
+    answer = two_ranks("from protractile.runs import cli; cli.main()", *arguments)
     assert (answer.returncode, complaints(answer)) == (status, [line])
 
 

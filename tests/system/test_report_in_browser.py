@@ -9,11 +9,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from runs.case import reading as case_file
-from runs.case.schema import EnsembleTable
-from runs.client import judge
-from runs.pipeline.results import prepare, read_netcdf
-from runs.report import output
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.schema import EnsembleTable
+from protractile.runs.client import judge
+from protractile.runs.pipeline.results import prepare, read_netcdf
+from protractile.runs.report import output
 from tests.runs.summaries import finished
 from tests.system.browser import Page, blank_page, find_browser
 from tests.system.run_folder import COARSE

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from protractile.cases import run_case
-from runs import CASES
-from runs.case import reading as case_file
-from runs.case.schema import Case
-from runs.paper.rules import judge
-from runs.pipeline.results import Results
+from protractile.runs import CASES
+from protractile.runs.case import reading as case_file
+from protractile.runs.case.schema import Case
+from protractile.runs.paper.rules import judge
+from protractile.runs.pipeline.results import Results
 from tests.runs.case_texts import shipped
 
 pytestmark = pytest.mark.slow

@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from runs.case.messages import BadInput
-from runs.case.reading import load
-from runs.paper.rules import judge
-from runs.pipeline.results import Results, read_fields
+from protractile.runs.case.messages import BadInput
+from protractile.runs.case.reading import load
+from protractile.runs.paper.rules import judge
+from protractile.runs.pipeline.results import Results, read_fields
 from tests.runs.case_texts import CLAMPED, table
 from tests.runs.test_actions import CANTILEVER
 from tests.system.run_folder import (

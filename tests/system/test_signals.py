@@ -23,7 +23,7 @@ SWEEP = "sweep", COARSE, "--models", "timoshenko", "--vary", "joint.play=0.006:0
 # A second signal comes while the first one is being obeyed.
 AGAIN = """
 import signal, time
-from runs.process import ending
+from protractile.runs.process import ending
 
 def clean():
     signal.raise_signal(signal.SIGTERM)
@@ -93,7 +93,7 @@ def test_a_run_ends_in_one_line(tmp_path: Path, number: signal.Signals, stage: s
 # The command, which prints every stage.
 TELLING = """
 from protractile.__main__ import main
-from runs.process import terminal
+from protractile.runs.process import terminal
 
 if __name__ == "__main__":
     terminal.EVERY = 0.0
@@ -134,8 +134,8 @@ def test_second_interrupt_ends_at_once() -> None:
 
 WORKERS = """
 import time
-from runs.process import ending
-from runs.process.workers import workers
+from protractile.runs.process import ending
+from protractile.runs.process.workers import workers
 
 ending.listen()
 with workers(2) as pool:

@@ -17,7 +17,7 @@ pytestmark = pytest.mark.slow
 
 
 MODELS = "--models", "kantorovich-4,beam-fe-bonded"
-COMMAND = "from runs import cli; cli.main()"
+COMMAND = "from protractile.runs import cli; cli.main()"
 PLAYS = "--vary", "joint.play=0.006:0.014:3"
 
 

@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 
 from rich.console import Console
 
-from runs.report.tables import Table
+from protractile.runs.report.tables import Table
 from tests.torture import flipped_bits, full_disk, kills, shared_cache
 
 CAMPAIGNS = {

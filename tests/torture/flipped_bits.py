@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 from mpi4py import MPI
 
-from runs.case import reading as case_file
-from runs.folder.cache import Cache
-from runs.pipeline.model_run import RunContext
-from runs.pipeline.run import run_case
-from runs.process.terminal import NOTICES
-from runs.sweep import run as sweep
-from runs.sweep.points import plan
+from protractile.runs.case import reading as case_file
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.run import run_case
+from protractile.runs.process.terminal import NOTICES
+from protractile.runs.sweep import run as sweep
+from protractile.runs.sweep.points import plan
 from tests.system.run_folder import COARSE
 from tests.torture.shared_cache import Row
 

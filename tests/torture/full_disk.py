@@ -18,9 +18,9 @@ from unittest.mock import patch
 from matplotlib.figure import Figure as Sheet
 from PIL import Image
 
-from runs import cli
-from runs.folder.cache import VARIABLE
-from runs.report.opengl import RenderingUnavailable
+from protractile.runs import cli
+from protractile.runs.folder.cache import VARIABLE
+from protractile.runs.report.opengl import RenderingUnavailable
 from tests import at_once
 from tests.system.run_folder import write_coarse
 from tests.torture.shared_cache import Row
@@ -178,8 +178,8 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
         try:
             # Drawings and processes take all the time, and this disk is one process's.
             with (
-                patch("runs.report.snapshots.RENDERED", (refuse,)),
-                patch("runs.process.workers.workers", at_once.workers),
+                patch("protractile.runs.report.snapshots.RENDERED", (refuse,)),
+                patch("protractile.runs.process.workers.workers", at_once.workers),
                 patch.object(Sheet, "savefig", dot),
             ):
                 cli.main(command)

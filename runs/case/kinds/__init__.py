@@ -3,10 +3,10 @@
 
 from collections.abc import Mapping
 
-from runs.case.kinds.finite_element import BeamElements
-from runs.case.kinds.kantorovich import Kantorovich, Rigid
-from runs.case.kinds.model import ModelTable
-from runs.case.kinds.shell import Shell
+from protractile.runs.case.kinds.finite_element import BeamElements
+from protractile.runs.case.kinds.kantorovich import Kantorovich, Rigid
+from protractile.runs.case.kinds.model import ModelTable
+from protractile.runs.case.kinds.shell import Shell
 
 # Class of each kind by its name in a case file.
 KINDS: Mapping[str, type[ModelTable]] = {

@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Annotated, Self
 import numpy as np
 from pydantic import Discriminator, Tag
 
-from dynamics.gap_system import GapSystem
-from dynamics.line import Line
-from geometry.boom import Boom, BoomError
-from geometry.fields import Name
-from runs.case.kinds.model import (
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.line import Line
+from protractile.geometry.boom import Boom, BoomError
+from protractile.geometry.fields import Name
+from protractile.runs.case.kinds.model import (
     BeamTable,
     BuildContext,
     BuiltModel,
@@ -24,11 +24,11 @@ from runs.case.kinds.model import (
     ModelTable,
     Surrogate,
 )
-from runs.case.kinds.shell import Shell
+from protractile.runs.case.kinds.shell import Shell
 
 if TYPE_CHECKING:
-    from beam_model.calibration import Calibration
-    from shell_model.reduced_shell import ReducedShell
+    from protractile.beam_model.calibration import Calibration
+    from protractile.shell_model.reduced_shell import ReducedShell
 
 
 # Keys of the time integration, which a calibrating shell must not have: only the beam moves.
@@ -107,7 +107,7 @@ class CalibratedTable(BeamTable, init=False):
     def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
         if not isinstance(self.calibrated_by, Shell):
             return super().build(model_boom, context)
-        from beam_model.calibration import calibrate
+        from protractile.beam_model.calibration import calibrate
 
         built_shell = self.calibrated_by.build(model_boom, context)
         assert built_shell.shell is not None
@@ -120,8 +120,8 @@ class CalibratedTable(BeamTable, init=False):
 
     def build_calibrated(self, model_boom: ModelBoom, calibration: Calibration) -> BuiltModel:
         """Return the calibrated beam model of a boom."""
-        from beam_model.calibration import with_stiffnesses
-        from beam_model.lines import lines
+        from protractile.beam_model.calibration import with_stiffnesses
+        from protractile.beam_model.lines import lines
 
         stiff = with_stiffnesses(model_boom.boom, calibration.segments)
         segments = self.segments(stiff)

@@ -9,18 +9,18 @@ from typing import TYPE_CHECKING, Literal, Self
 import numpy as np
 from pydantic import Field
 
-from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segments
-from dynamics.line import Line
-from dynamics.reduction import condense
-from geometry.boom import Boom, BoomError
-from geometry.fields import Flag, Length
-from runs.case.kinds.calibration import CalibratedTable
-from runs.case.kinds.model import BuiltModel, ModelBoom, Surrogate
-from runs.case.kinds.shell import Shell
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.dynamics.line import Line
+from protractile.dynamics.reduction import condense
+from protractile.geometry.boom import Boom, BoomError
+from protractile.geometry.fields import Flag, Length
+from protractile.runs.case.kinds.calibration import CalibratedTable
+from protractile.runs.case.kinds.model import BuiltModel, ModelBoom, Surrogate
+from protractile.runs.case.kinds.shell import Shell
 
 if TYPE_CHECKING:
-    from shell_model.reduced_shell import ReducedShell
+    from protractile.shell_model.reduced_shell import ReducedShell
 
 # Maximum number of elements: a larger dense eigenproblem is an input error.
 MOST_ELEMENTS = 5_000
@@ -103,7 +103,7 @@ class BeamElements(CalibratedTable, init=False):
         system, shapes = condense(shell.system, FIELDS * len(boom.segments))
         along: list[Line] = []
         if shell.fields is not None:
-            from shell_model.stress.lines import lines
+            from protractile.shell_model.stress.lines import lines
 
             along = [line.transform(shapes) for line in lines(shell.fields, boom)]
         return replace(built, system=system, num_dofs=system.num_modes, lines=along)

@@ -5,18 +5,18 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal
 
-from beam_model.component import SegmentModel
-from beam_model.kantorovich import (
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.kantorovich import (
     check_base,
     count_rigid_motions,
     kantorovich_segments,
     rigid_segment,
 )
-from geometry.boom import Boom, BoomError
-from geometry.fields import Few, Flag
-from runs.case.kinds.calibration import CalibratedTable
-from runs.case.kinds.model import BeamTable, ModelBoom, Surrogate
-from runs.case.limits import Count
+from protractile.geometry.boom import Boom, BoomError
+from protractile.geometry.fields import Few, Flag
+from protractile.runs.case.kinds.calibration import CalibratedTable
+from protractile.runs.case.kinds.model import BeamTable, ModelBoom, Surrogate
+from protractile.runs.case.limits import Count
 
 # Maximum number of terms: with more, round-off changes the lowest frequencies by more than 1e-6.
 MOST_TERMS = 60

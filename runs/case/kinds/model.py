@@ -13,25 +13,25 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar, get_a
 import numpy as np
 from pydantic import PrivateAttr
 
-from beam_model.boom_modes import critical_factor
-from beam_model.component import SegmentModel
-from beam_model.segment_model import gap_system
-from dynamics.gap_system import GapSystem
-from dynamics.line import Line
-from geometry.boom import Boom, BoomError
-from geometry.fields import In, Name, Positive
-from runs.case.contact import ContactTable
-from runs.case.limits import CaseTable
+from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.line import Line
+from protractile.geometry.boom import Boom, BoomError
+from protractile.geometry.fields import In, Name, Positive
+from protractile.runs.case.contact import ContactTable
+from protractile.runs.case.limits import CaseTable
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
 
     from mpi4py import MPI
 
-    from beam_model.calibration import Calibration
-    from dynamics.trajectory import Trajectory
-    from runs.folder.cache import Cache
-    from shell_model.reduced_shell import ReducedShell
+    from protractile.beam_model.calibration import Calibration
+    from protractile.dynamics.trajectory import Trajectory
+    from protractile.runs.folder.cache import Cache
+    from protractile.shell_model.reduced_shell import ReducedShell
 
 
 @dataclass(frozen=True)
@@ -49,7 +49,7 @@ class BeamSegments:
     @cached_property
     def lines(self) -> list[Line]:
         """The rows of deflections and section forces along each segment."""
-        from beam_model.lines import lines
+        from protractile.beam_model.lines import lines
 
         return lines(self.boom.bonded if self.model.bonded else self.boom, self.segments)
 
@@ -100,7 +100,7 @@ class BuiltModel:
     num_dofs: int  #: number of degrees of freedom before any reduction
     seconds: dict[str, float] = field(default_factory=dict)  #: wall time of each stage in s
     #: Buckling factor of the axial forces with closed contacts, from
-    #: :func:`dynamics.second_order.buckling_factor`; infinite without axial forces.
+    #: :func:`.dynamics.second_order.buckling_factor`; infinite without axial forces.
     critical_factor: float | None = float("inf")
     shell: ReducedShell | None = None  #: the reduced shell, of a shell model
     calibration: Calibration | None = None  #: calibration of a beam by a shell
@@ -283,7 +283,7 @@ class ModelTable(CaseTable):
         if self.needs_shell:
             from mpi4py import MPI
 
-            from runs.folder.cache import Cache
+            from protractile.runs.folder.cache import Cache
 
             context = BuildContext(MPI.COMM_SELF, cache=Cache.of_user())
         return self.build(model_boom, context).system
@@ -317,8 +317,8 @@ class ModelTable(CaseTable):
             BoomError: the model is not valid for the boom.
             NumericsError: the motion cannot be computed.
         """
-        from dynamics.integrator import AdaptiveStep, FixedStep
-        from dynamics.motion import build_motion
+        from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+        from protractile.dynamics.motion import build_motion
 
         motion = build_motion(
             self.system(), duration, output_step, at_rest, damping_ratio, rayleigh
@@ -361,7 +361,7 @@ class BeamTable(ModelTable, init=False):
         return list(built.lines) if built.beams is None else built.beams.lines
 
     def system_without_play(self, boom: Boom) -> tuple[GapSystem, list[Line]] | None:
-        from beam_model.lines import lines
+        from protractile.beam_model.lines import lines
 
         segments = self.segments(boom)
         return gap_system(boom.bonded, segments), lines(boom.bonded, segments)

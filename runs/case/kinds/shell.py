@@ -8,13 +8,13 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal
 
 import numpy as np
 
-from beam_model.component import SegmentModel
-from beam_model.finite_element import finite_element_segments
-from dynamics.line import Line
-from geometry.boom import Boom, BoomError
-from geometry.fields import In, Length, Positive
-from geometry.refinement import refinement_zones
-from runs.case.kinds.model import (
+from protractile.beam_model.component import SegmentModel
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.dynamics.line import Line
+from protractile.geometry.boom import Boom, BoomError
+from protractile.geometry.fields import In, Length, Positive
+from protractile.geometry.refinement import refinement_zones
+from protractile.runs.case.kinds.model import (
     BeamTable,
     BuildContext,
     BuiltModel,
@@ -22,10 +22,10 @@ from runs.case.kinds.model import (
     ModelTable,
     Surrogate,
 )
-from runs.case.limits import ContactTolerance, Count, Modes, Part
+from protractile.runs.case.limits import ContactTolerance, Count, Modes, Part
 
 if TYPE_CHECKING:
-    from shell_model.boom_shell import ShellOptions
+    from protractile.shell_model.boom_shell import ShellOptions
 
 # Maximum number of triangles: a finer mesh is an input error.
 MOST_TRIANGLES = 20_000_000
@@ -123,9 +123,9 @@ class Shell(ModelTable, init=False):
         return f"mesh {self.mesh_size:g} m, contact {line}"
 
     def build(self, model_boom: ModelBoom, context: BuildContext | None = None) -> BuiltModel:
-        from runs.folder.cache import load_or_compute
-        from shell_model.reduced_shell import reduce_boom
-        from shell_model.standard import with_plays_and_loads
+        from protractile.runs.folder.cache import load_or_compute
+        from protractile.shell_model.reduced_shell import reduce_boom
+        from protractile.shell_model.standard import with_plays_and_loads
 
         assert context is not None
         boom, options = self.content(model_boom.boom)
@@ -143,15 +143,15 @@ class Shell(ModelTable, init=False):
 
     def content(self, boom: Boom) -> tuple[Boom, ShellOptions]:
         """Return all inputs of the reduced shell: a standard boom, and options."""
-        from shell_model.standard import standard_boom
+        from protractile.shell_model.standard import standard_boom
 
         return standard_boom(boom), self.options()
 
     def options(self) -> ShellOptions:
         """Return the options of mesh, contact and reduction."""
-        from shell_model.boom_shell import ShellOptions
-        from shell_model.contact.surface import POINTS, SurfaceOptions
-        from shell_model.reduction.krylov import KrylovOptions
+        from protractile.shell_model.boom_shell import ShellOptions
+        from protractile.shell_model.contact.surface import POINTS, SurfaceOptions
+        from protractile.shell_model.reduction.krylov import KrylovOptions
 
         if self.modes == "auto":
             krylov = KrylovOptions(tolerance=self.tolerance)
@@ -166,14 +166,14 @@ class Shell(ModelTable, init=False):
         )
 
     def lines(self, boom: Boom, built: BuiltModel) -> list[Line]:
-        from shell_model.stress.lines import lines
+        from protractile.shell_model.stress.lines import lines
 
         assert built.shell is not None
         assert built.shell.fields is not None
         return lines(built.shell.fields, boom)
 
     def critical_factor(self, model_boom: ModelBoom) -> float | None:
-        from beam_model.statics import estimate_critical_factor
+        from protractile.beam_model.statics import estimate_critical_factor
 
         return estimate_critical_factor(model_boom.boom)
 
