@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 #
-# `make verify` and `make test` bring up what they need on Debian 12 and 13: Debian packages, and
-# pinned Python packages in .venv. If a conda environment is active whose Python has DOLFINx (see
-# environment.yml), that one is used and nothing but protractile itself is installed in it.
+# `make verify` and `make test` install what they need. DOLFINX says where FEniCSx comes from: conda (the
+# active environment, see environment.yml), pip (Python 3.12 or later, no root) or debian (packages of
+# Debian 12 and 13, root). Unless given, it is the first of these that this machine has.
 
 SHELL_CASES := paper paper-friction three-segments spatial
 VERIFY_CASES := $(SHELL_CASES) drawn-out crane-telescopes hoist slew
@@ -16,31 +16,44 @@ VARY_hoist := hoist.speed=0.2,0.3,0.4,0.5,0.6
 VARY_slew := slew.speed=2,4,6,8,10
 SWEEPS := $(patsubst %,runs/out/%-sweep/sweep.csv,drawn-out hoist slew)
 
-# One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI refuses root else.
+# One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI 4 and 5 refuse root and
+# more ranks than cores else.
 export OMP_NUM_THREADS ?= 1
 export OMPI_ALLOW_RUN_AS_ROOT := 1
 export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+export PRTE_MCA_rmaps_default_mapping_policy := :oversubscribe
 # Runs and tests start many processes, each of which would compile all modules without bytecode.
 export PYTHONDONTWRITEBYTECODE :=
 
+PYTHON ?= python3
 RELEASE := $(shell . /etc/os-release && echo $$ID-$$VERSION_ID)
 FIND_DOLFINX := import importlib.util, sys; sys.exit(importlib.util.find_spec("dolfinx") is None)
-CONDA := $(if $(CONDA_PREFIX),$(shell $(CONDA_PREFIX)/bin/python -c '$(FIND_DOLFINX)' && echo yes))
-ifeq ($(CONDA),yes)
+HAS_CONDA := $(if $(CONDA_PREFIX),$(shell $(CONDA_PREFIX)/bin/python -c '$(FIND_DOLFINX)' && echo yes))
+HAS_PIP := $(shell $(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 12))' 2>/dev/null && echo yes)
+DOLFINX ?= $(if $(HAS_CONDA),conda,$(if $(HAS_PIP),pip,debian))
+ifeq ($(DOLFINX),conda)
 BIN := $(CONDA_PREFIX)/bin
 READY := $(BIN)/protractile
 SPHINX := $(READY)
 else
 BIN := .venv/bin
-READY := .venv/ready-$(RELEASE)
-SPHINX := .venv/sphinx-$(RELEASE)
+READY := .venv/ready-$(DOLFINX)
+SPHINX := .venv/sphinx-$(DOLFINX)
 endif
+VENV_debian := /usr/bin/python3 -m venv --system-site-packages
+VENV_pip := $(PYTHON) -m venv
+NEEDS_debian := .[report,test,mesh]
+NEEDS_pip := .[shell,report,test]
+CONSTRAINTS_debian := .ci/constraints-$(RELEASE).txt
+CONSTRAINTS_pip := .ci/constraints-pip.txt
 
-.PHONY: help install verify snapshots gallery bench convergence validation validity other-codes test fuzz torture quick lint docs matrix clean distclean debian-packages
+.PHONY: help install verify snapshots gallery bench convergence validation validity other-codes test fuzz torture quick lint docs matrix clean distclean packages-debian packages-pip
 .DELETE_ON_ERROR:
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## /\1\t/p' Makefile | expand -t 12
+	@echo "FEniCSx comes from: $(DOLFINX); make TARGET DOLFINX=conda|pip|debian takes another (see README.md)"
 
 install: $(READY) ## install what runs need, into .venv or the active conda environment
 
@@ -116,14 +129,16 @@ runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 runs/out/%-sweep/sweep.csv: runs/cases/%.toml $(SOURCES) | $(READY)
 	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko --vary $(VARY_$*)
 
-.venv/ready-$(RELEASE): pyproject.toml .ci/constraints-$(RELEASE).txt | debian-packages
+# An environment with FEniCSx from elsewhere is made anew, so that it never has two.
+.venv/ready-debian .venv/ready-pip: .venv/ready-%: pyproject.toml $(CONSTRAINTS_$(DOLFINX)) | packages-%
+	@[ -f $@ ] || rm -rf .venv
 	@echo "installing Python packages into .venv (a minute or two) ..."
-	@/usr/bin/python3 -m venv --system-site-packages .venv
-	@PIP_CONSTRAINT=.ci/constraints-$(RELEASE).txt $(BIN)/python -m pip install --quiet --editable '.[test]'
+	@[ -d .venv ] || $(VENV_$*) .venv
+	@PIP_CONSTRAINT=$(CONSTRAINTS_$*) $(BIN)/python -m pip install --quiet --editable '$(NEEDS_$*)'
 	@touch $@
 
-.venv/sphinx-$(RELEASE): $(READY)
-	@PIP_CONSTRAINT=.ci/constraints-$(RELEASE).txt $(BIN)/python -m pip install --quiet --editable '.[docs]'
+.venv/sphinx-debian .venv/sphinx-pip: .venv/sphinx-%: $(READY)
+	@PIP_CONSTRAINT=$(CONSTRAINTS_$*) $(BIN)/python -m pip install --quiet --editable '.[docs]'
 	@touch $@
 
 # In an environment of their own: DOLFINx is built against another numpy than they need.
@@ -137,8 +152,11 @@ $(CONDA_PREFIX)/bin/protractile: pyproject.toml
 	$(BIN)/python -m pip install --no-deps --no-build-isolation --editable .
 	@touch $@
 
-debian-packages:
+packages-debian:
 	@.ci/debian-packages
 
+packages-pip:
+	@$(PYTHON) -c 'import ensurepip, venv' || { echo "$(PYTHON) has no venv; install it (Debian: python3-venv)" >&2; exit 1; }
+
 .ci/constraints-%.txt:
-	@echo "$*: neither Debian 12 nor 13; activate environment.yml's conda environment" >&2; exit 1
+	@echo "$*: neither Debian 12 nor 13; give a Python of 3.12 or later by PYTHON=python3.13" >&2; exit 1

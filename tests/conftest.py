@@ -20,6 +20,7 @@ from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
 from protractile.geometry.section import infer_inner_section, infer_outer_section
 from protractile.runs.folder.cache import VARIABLE
 from protractile.runs.process import terminal
+from protractile.runs.process.ranks import launcher
 from tests.space import in_space
 from tests.unprinted import blank
 
@@ -164,7 +165,7 @@ def opengl() -> None:
 
 def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Return a runner of Python programs on a number of ranks in a folder."""
-    if shutil.which("mpirun") is None:
+    if shutil.which(launcher()) is None:
         pytest.skip("several ranks take mpirun, which is not installed")
     # A test worker that has entered MPI by itself must not pass its own rank on.
     outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
@@ -174,6 +175,8 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
         "OMP_NUM_THREADS": "1",
         "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+        "OMPI_MCA_rmaps_base_oversubscribe": "1",
+        "PRTE_MCA_rmaps_default_mapping_policy": ":oversubscribe",
         # Ranks wait by looking again and again: those that share a core, and yield it, take no
         # other core from the tests of other workers.
         "OMPI_MCA_mpi_yield_when_idle": "1",
@@ -182,10 +185,10 @@ def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     }
 
     def run(ranks: int, program: str, *arguments: str) -> subprocess.CompletedProcess[str]:
-        launcher = ["mpirun", "-n", str(ranks), "--oversubscribe", "--bind-to", "none"]
+        start = [launcher(), "-n", str(ranks), "--bind-to", "none"]
         with _on_one_core():
             return subprocess.run(
-                [*launcher, sys.executable, "-c", program, *arguments],
+                [*start, sys.executable, "-c", program, *arguments],
                 cwd=folder,
                 env=environment,
                 capture_output=True,

@@ -7,10 +7,13 @@ Functions that handle errors do not import, since a process without memory canno
 from __future__ import annotations
 
 import os
+import sys
 import traceback
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
 from tempfile import TemporaryFile, gettempdir
 from typing import TYPE_CHECKING
 
@@ -42,16 +45,16 @@ def enter_mpi(
             if ending.launched_rank() is None:
                 os.environ.update(ending.SINGLE_PROCESS)
             try:
+                world = _world(file)
                 import_module("protractile.shell_model.boom_shell")
-                from mpi4py import MPI
             except ImportError as error:
                 raise BadInput(
                     file,
                     f"model[{number}].kind",
-                    f"a shell needs FEniCSx, which cannot be imported ({error}); install "
-                    f"python3-dolfinx (Debian) or fenics-dolfinx (conda), or {without}",
+                    f"a shell needs FEniCSx, which cannot be imported ({error}); install it (pip "
+                    f"install 'protractile[shell]', or Debian's python3-dolfinx), or {without}",
                 ) from None
-            return MPI.COMM_WORLD
+            return world
     return None
 
 
@@ -75,12 +78,41 @@ def launched_ranks(file: str) -> MPI.Intracomm | None:
     if ending.launched_rank() is None:
         return None
     try:
-        from mpi4py import MPI
+        world = _world(file)
     except ImportError as error:
         raise BadInput(
             file, "mpirun", f"mpi4py cannot be imported ({error}); run without mpirun"
         ) from None
-    return MPI.COMM_WORLD if MPI.COMM_WORLD.size > 1 else None
+    return world if world.size > 1 else None
+
+
+def launcher() -> str:
+    """Return the program that starts ranks of this interpreter: the one beside it, else mpirun."""
+    beside = Path(sys.executable).with_name("mpiexec")
+    return str(beside) if beside.exists() else "mpirun"
+
+
+def _world(file: str) -> MPI.Intracomm:
+    """Return the communicator of all ranks.
+
+    Raises:
+        BadInput: the ranks were started by the launcher of another MPI.
+        ImportError: mpi4py is not installed.
+    """
+    from protractile.runs.case.messages import BadInput
+
+    sizes = (os.environ.get(name, "") for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"))
+    started = next((int(size) for size in sizes if size.isdecimal()), 1)
+    # pip's MPICH aborts under Open MPI. Other pairs start every rank as the only one.
+    aborts = find_spec("dolfinx_solver") is not None and "PMIX_RANK" in os.environ
+    if not aborts:
+        from mpi4py import MPI
+
+    if aborts or MPI.COMM_WORLD.size < started:
+        raise BadInput(
+            file, "mpirun", f"the ranks were started by another MPI; start them by {launcher()}"
+        )
+    return MPI.COMM_WORLD
 
 
 def explain(error: Exception) -> tuple[str, int] | None:

@@ -56,6 +56,8 @@ def require_opengl() -> None:
         raise RenderingUnavailable(f"VTK finds no working OpenGL and dies of {name}; {REMEDY}")
     if probe.returncode > 0:
         *_, why = "it does not say why", *probe.stderr.strip().splitlines()
+        if why == "ModuleNotFoundError: No module named 'pyvista'":
+            raise RenderingUnavailable("pictures need pip install 'protractile[report]'")
         raise RenderingUnavailable(
             f"pyvista makes no picture: {why.removeprefix('RuntimeError: ')}"
         )

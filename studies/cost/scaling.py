@@ -28,6 +28,7 @@ from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.process.ranks import launcher
 from protractile.runs.process.terminal import show_notices
 from protractile.runs.report.tables import Table
 from studies.cost.timing import write_tables
@@ -165,11 +166,11 @@ def _exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
 
 def _measure_run(ranks: int, *what: object) -> dict[str, Any]:
     """Return the measurements of a run in separate processes."""
-    launcher = [] if ranks == 1 else ["mpirun", "-n", str(ranks), "--oversubscribe"]
-    if launcher and shutil.which("mpirun") is None:
+    start = [] if ranks == 1 else [launcher(), "-n", str(ranks)]
+    if start and shutil.which(start[0]) is None:
         raise FileNotFoundError("several ranks take mpirun, which is not installed")
     done = subprocess.run(
-        [*launcher, sys.executable, "-m", "studies.cost.scaling", *map(str, what)],
+        [*start, sys.executable, "-m", "studies.cost.scaling", *map(str, what)],
         env={**os.environ, "OMP_NUM_THREADS": "1"},
         capture_output=True,
         text=True,

@@ -15,6 +15,7 @@ from typing import NamedTuple
 import pytest
 
 from protractile.runs import cli
+from protractile.runs.process.ranks import launcher
 from tests.runs.case_texts import COARSE
 from tests.system.run_folder import python, write_coarse
 from tests.unprinted import ONE_BLANK_FIGURE
@@ -265,8 +266,8 @@ def test_a_shell_without_fenicsx_is_one_line(protractile: Protractile) -> None:
         "protractile: case.toml: model[6].kind: a shell needs FEniCSx, which cannot be imported "
     )
     assert err.endswith(
-        "; install python3-dolfinx (Debian) or fenics-dolfinx (conda), or run the other models "
-        "with --models\n"
+        "; install it (pip install 'protractile[shell]', or Debian's python3-dolfinx), or run the "
+        "other models with --models\n"
     )
     assert not Path("out").exists()
 
@@ -279,9 +280,21 @@ def test_a_beam_is_exported_without_fenicsx(protractile: Protractile) -> None:
     to = "export case.toml --to opensees --model"
     status, _, err = protractile(f"{to} beam-fe")
     assert (status, err.count("\n")) == (2, 1)
-    assert err.endswith(" (conda), or export another one with --model\n")
+    assert err.endswith(" python3-dolfinx), or export another one with --model\n")
     line = "'shell' is no beam elements with play; give 'beam-fe' or 'timoshenko'"
     assert protractile(f"{to} shell") == told(2, f"case.toml: --model: {line}")
+
+
+def test_ranks_of_another_mpi_are_refused(tmp_path: Path) -> None:
+    """Each of two processes that MPICH starts is the only rank of Open MPI."""
+    variables = {"PMI_RANK": "0", "PMI_SIZE": "2"} if launcher() == "mpirun" else {"PMIX_RANK": "0"}
+    command = "-m", "protractile", "run", "case.toml", "--models", "shell"
+    ended = in_a_process(tmp_path, *command, **variables)
+    assert (ended.returncode, ended.stderr) == (
+        2,
+        "protractile: case.toml: mpirun: the ranks were started by another MPI; start them by "
+        f"{launcher()}\n",
+    )
 
 
 def test_beams_need_no_fenicsx(tmp_path: Path) -> None:

@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from protractile.runs.process.ranks import launcher
 from tests.fuzz.contract import PROGRESS
 from tests.system.run_folder import ROOT, write_coarse
 from tests.torture.shared_cache import COMMAND, IN_THE_MAKING, Row, left
@@ -26,7 +27,7 @@ from tests.unprinted import ONE_BLANK_FIGURE
 # The first moment of all is late in a command, where it writes.
 _SEED = 76
 _COMMAND = sys.executable, "-c", COMMAND
-_RANKS = "mpirun", "-n", "2", "--oversubscribe", *_COMMAND
+_RANKS = launcher(), "-n", "2", *_COMMAND
 
 # Models and what is varied of each command.
 _COLD_SHELL = (
