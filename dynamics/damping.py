@@ -12,7 +12,8 @@ the circular frequencies of the segments, and a factor η,
 
 gives Φᵀ C Φ = 2ζ ω. The speed of a segment without contact decays at the rate ζ ω₁. C is positive
 semidefinite at least for η ≤ ½, since Φ_eᵀ Ω Φ_e ≤ (Φ_eᵀ Ω² Φ_e)^½ ≤ ω (Hansen 1980). η is the
-largest permitted value up to 1.
+largest permitted value up to 1. The coordinates of a load on a rope belong to Φ_r and to Φ_e⁺: its
+mass may exceed that of the boom, so that bending has a small part of the first mode.
 """
 
 from __future__ import annotations
@@ -80,7 +81,7 @@ def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = Non
     if not omega.size:
         return system
     rates_of_modes = np.where(rigid, 0.5 * omega[0], system.omega)
-    bent = np.where(rigid[:, None], 0.0, shapes)
+    bent = np.where(rigid[:, None], system.hung.T @ (system.hung @ shapes), shapes)
     required = np.diag(omega) - (shapes - bent).T @ (rates_of_modes[:, None] * (shapes - bent))
     damping = bent.T @ (rates_of_modes[:, None] * bent)
     eta = 1.0 / max(1.0, eigh(damping, required, eigvals_only=True)[-1])

@@ -85,6 +85,8 @@ class GapSystem:
         geometric_stiffness: K_G (num_modes, num_modes) of axial forces that ``omega2`` does not
             include, at a fixed extension. Before time integration, :meth:`in_own_modes` includes
             it.
+        hung: unit vectors (num_directions, num_modes) of the coordinates of a load on a rope; none
+            unless given.
 
     Raises:
         ValueError: shapes do not agree, or a number is not finite or out of range.
@@ -108,11 +110,12 @@ class GapSystem:
     initial_impulse: Array = field(default_factory=lambda: np.zeros(0))
     travels: Sequence[Travel] = ()
     geometric_stiffness: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    hung: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
     def __post_init__(self) -> None:
         n, m, places = self.omega2.size, len(self.laws), len(self.stations)
         of_modes = {name: (n,) for name in ("damping", "released_load", "initial_impulse")}
-        empty = of_modes | {name: (0, n) for name in ("dashpots", "friction_rows")}
+        empty = of_modes | {name: (0, n) for name in ("dashpots", "friction_rows", "hung")}
         for name, zeros in empty.items():
             if getattr(self, name).size == 0:
                 object.__setattr__(self, name, np.zeros(zeros))
@@ -126,6 +129,7 @@ class GapSystem:
             "rows": (m, n),
             "station_of_row": (m,),
             "friction_rows": (len(self.frictions), n),
+            "hung": (len(self.hung), n),
         }
         arrays = [(name, getattr(self, name), shape) for name, shape in shapes.items()]
         arrays += [(f"excitation {e}", x.load, (n,)) for e, x in enumerate(self.excitations)]
@@ -256,4 +260,5 @@ class GapSystem:
             initial_impulse=self.initial_impulse @ shapes,
             travels=[travel.transform(shapes) for travel in self.travels],
             geometric_stiffness=np.zeros((0, 0)),
+            hung=self.hung @ shapes,
         )

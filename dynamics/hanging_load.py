@@ -203,6 +203,7 @@ class HangingLoad:
             observers={**wide.observers, "load_height": Observer(height)},
             excitations=excitations,
             travels=travels,
+            hung=np.sqrt(self.mass) * coordinates,
         )
 
     def separate_rope(self, motion: Trajectory) -> Trajectory:

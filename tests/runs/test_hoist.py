@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from protractile.cases import change, run_case
-from protractile.dynamics.damping import closed_contact_modes
+from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
@@ -17,7 +17,7 @@ from protractile.runs.case.motions import with_initial_slack
 from protractile.runs.case.reading import select
 from protractile.runs.case.schema import Case, EnsembleTable, StartTable
 from protractile.runs.pipeline.evaluation import bonded_system
-from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.models import build, initial_motion
 from tests.runs.case_texts import refusal, shipped
 from tests.runs.summaries import static_tip
 
@@ -94,6 +94,15 @@ def test_rope_of_a_boom_without_play_is_straight_at_rest(case: Case) -> None:
         closed_contact_modes(one)[0][0] for one in (with_initial_slack(bonded, case), same)
     )
     assert own == pytest.approx(other, rel=0.02)
+
+
+def test_modes_with_a_heavy_load_have_the_given_damping(case: Case) -> None:
+    """Reference: analytic, the ratio of the case; it was 1.81 % in the first mode."""
+    hung = HoistTable(mass=20000.0, stiffness=1.0e6, hanging=True)
+    case = case.model_copy(update={"hoist": hung})
+    motion = initial_motion(build(case, build_boom(case), case.models[0]).system, case)
+    ratios = closed_contact_damping(motion.system, motion.position)[1]
+    assert ratios[:8] == pytest.approx(0.01, rel=1e-9)
 
 
 def test_dropped_load(case: Case) -> None:
