@@ -60,9 +60,7 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     bonded = system.rows[~closed & ~np.isin(system.station_of_row, system.grounded)]
     free = null_space(bonded) if bonded.size else np.eye(system.num_modes)
     rows = system.rows @ free
-    omega2, combination = eigh(
-        free.T @ (system.omega2[:, None] * free) + (rows.T * stiffness) @ rows
-    )
+    omega2, combination = eigh(free.T @ system.stiffness @ free + (rows.T * stiffness) @ rows)
     # Without elastic modes, the scale of round-off is the largest ω² with closed contacts.
     least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
     moving = omega2 > 1.0e-6 * least

@@ -45,6 +45,9 @@ def loads(case: Case, segments: Sequence[Segment]) -> Iterator[Load]:
             yield Load(len(segments) - 1, "z", weight, segments[-1].end, Step())
     if gravity is not None:
         yield from _inertia_loads(-gravity.across, "z", Step(), segments)
+        if case.hoist is not None and case.hoist.dropped:
+            weight = -case.hoist.mass * gravity.across
+            yield Load(len(segments) - 1, "z", weight, segments[-1].end, ReleasedLoad())
     for number, base in enumerate(case.base, start=1):
         history = build_history(f"base[{number}]", base)
         yield from _inertia_loads(-base.acceleration, base.direction, history, segments)

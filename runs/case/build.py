@@ -51,7 +51,7 @@ def build_boom(case: Case) -> Boom:
     )
     along = 0.0 if case.gravity is None else case.gravity.along
     hoist = case.hoist
-    hanging = hoist.mass if hoist and hoist.hanging and not hoist.dropped else 0.0
+    hanging = hoist.mass if hoist and hoist.hanging else 0.0
     rope = Thrust(len(segments) - 1, segments[-1].end, hanging * along)
     thrusts = (*actions.thrusts(case, segments), rope)
     segments = with_compression(segments, joints, thrusts, along)
@@ -68,7 +68,7 @@ def build_boom(case: Case) -> Boom:
         case.cylinders,
         (
             *motions.hoist_changes(case, segments, joints),
-            *motions.turning_changes(frame, segments, joints, hanging),
+            *motions.turning_changes(frame, segments, joints, case.hoist),
         ),
     )
     check_contacts_at_rest(boom)

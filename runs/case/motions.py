@@ -8,7 +8,7 @@ from dataclasses import replace
 from math import pi
 
 from protractile.dynamics.contact import Gap
-from protractile.dynamics.excitation import HistorySum, is_constant
+from protractile.dynamics.excitation import History, HistorySum, Release, is_constant
 from protractile.dynamics.frame_motion import FrameAcceleration, FrameMotion, Spin
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.hanging_load import HangingLoad, Pendulum, RopeForce
@@ -20,7 +20,7 @@ from protractile.geometry.load import AngularAcceleration, Load
 from protractile.geometry.telescoping import drives_below, drives_of, telescoping_stations
 from protractile.runs.case.contact import JointTable
 from protractile.runs.case.load_tables import build_history
-from protractile.runs.case.motion_tables import DriveTable
+from protractile.runs.case.motion_tables import DriveTable, HoistTable
 from protractile.runs.case.schema import Case, GravityTable
 
 # Slack in m of a rope that never pulls.
@@ -96,11 +96,14 @@ def turning_loads(
 
 
 def turning_changes(
-    frame: FrameMotion, segments: Sequence[Segment], joints: Sequence[Joint], hanging: float
+    frame: FrameMotion,
+    segments: Sequence[Segment],
+    joints: Sequence[Joint],
+    hoist: HoistTable | None,
 ) -> Iterator[AxialChange]:
     """Yield the changes of axial forces due to slewing and luffing, and centrifugal terms.
 
-    ``hanging`` is the mass in kg of a load on a rope, which counts as a mass at the tip.
+    A load that stays on its rope counts as a mass at the tip.
     """
     if not (frame.slew.kinks or frame.luff.kinks):
         return
@@ -111,8 +114,8 @@ def turning_changes(
         for direction in directions
         if (spin := Spin(frame, direction)).peak
     )
-    if hanging:
-        masses[-1] += (PointMass(segments[-1].end, hanging),)
+    if hoist is not None and hoist.hanging and not hoist.dropped:
+        masses[-1] += (PointMass(segments[-1].end, hoist.mass),)
     drives_of_segments = [tuple(drives_of(joints, number)) for number in range(len(segments))]
     for drives in dict.fromkeys(drives_of_segments):
         extension = HistorySum(tuple(drive.history for drive in drives))
@@ -175,7 +178,7 @@ def check_hoist(case: Case) -> None:
 
 
 def hanging_load(case: Case, boom: Boom) -> HangingLoad | None:
-    """Return the hoisted load of a checked case; None if there is none, or if it is dropped."""
+    """Return the load on the rope of a checked case; None without a load, or if it is dropped."""
     table = case.hoist
     if table is None or case.gravity is None or table.dropped:
         return None
@@ -204,14 +207,19 @@ def hanging_load(case: Case, boom: Boom) -> HangingLoad | None:
 def hoist_changes(
     case: Case, segments: Sequence[Segment], joints: Sequence[Joint]
 ) -> Iterator[AxialChange]:
-    """Yield the change of axial forces while the rope lifts a load from the ground."""
+    """Yield the change of axial forces when the rope lifts a load, or drops it."""
     table = case.hoist
-    if table is None or case.gravity is None or table.hanging or not case.gravity.along:
+    if table is None or case.gravity is None or not case.gravity.along:
         return
-    rope = Thrust(len(segments) - 1, segments[-1].end, table.mass * case.gravity.along)
+    if table.hanging and not table.dropped:
+        return
+    weight = table.mass * case.gravity.along
+    rope = Thrust(len(segments) - 1, segments[-1].end, -weight if table.dropped else weight)
     loaded_segments = with_compression(segments, joints, [rope])
-    stretch = table.mass * case.gravity.acceleration / table.rope_stiffness
-    force = RopeForce(table.history("hoist"), stretch, table.slack)
+    force: History = Release()
+    if not table.dropped:
+        stretch = table.mass * case.gravity.acceleration / table.rope_stiffness
+        force = RopeForce(table.history("hoist"), stretch, table.slack)
     yield AxialChange(force, [segment.compression for segment in loaded_segments])
 
 
@@ -222,9 +230,6 @@ def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
         NumericsError: see :func:`with_initial_slack`.
     """
     load, tip = hanging_load(case, boom), system.observers["tip"].row
-    if case.hoist is not None and case.gravity is not None and case.hoist.dropped:
-        pull = case.hoist.mass * case.gravity.across
-        return replace(system, released_load=system.released_load - pull * tip)
     if load is None:
         return system
     return with_initial_slack(load.attach(system, tip, boom.segments[-1].end), case)

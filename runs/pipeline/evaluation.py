@@ -69,7 +69,8 @@ def results_at_rest(
     # The boom vibrates without the load that is released at t = 0.
     released = loaded.system.released_load.any()
     after = min((time for time in equilibria if time > 0.0 or not released), default=0.0)
-    first = modes(loaded, equilibria[after]) if equilibria else []
+    still = loaded._replace(system=loaded.system.at_time(after))
+    first = modes(still, equilibria[after]) if equilibria else []
     return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
 
