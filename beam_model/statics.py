@@ -7,7 +7,7 @@ supports, f the load, and w the static deflection.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -19,18 +19,24 @@ from protractile.beam_model.boom_modes import BoomModes, critical_factor
 from protractile.beam_model.component import Component, SegmentModel
 from protractile.beam_model.elements import Theory
 from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
+from protractile.beam_model.lines import lines
 from protractile.beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
 from protractile.beam_model.wall_compliance import station_compliance, with_wall_springs
 from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.line import Line
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import contact_centres, pad_places
+from protractile.geometry.load import Load
 
 # Minimum number of elements of the longest segment in a boom with axial forces or tapers.
 ELEMENTS_WITH_AXIAL_FORCE = 20
+
+# Function of a gap system and the lines along its segments that returns the completed system.
+Completion = Callable[[GapSystem, Sequence[Line]], GapSystem]
 
 
 class NodeReaction(NamedTuple):
@@ -103,6 +109,8 @@ def static_state(
     elements: Elements | None = None,
     walls: float = 1.0,
     time: float = 0.0,
+    complete: Completion | None = None,
+    hung: Sequence[Load] = (),
 ) -> StaticState:
     """Return the static state of a boom of beam elements with wall compliance at pads.
 
@@ -112,21 +120,28 @@ def static_state(
         walls: factor of the compliance of walls under pads, see
             :mod:`.beam_model.wall_compliance`; 0 for rigid walls.
         time: time of the loads in s.
+        complete: adds what the boom lacks, such as a load on a rope; nothing unless given.
+        hung: forces at t = 0 of a load that ``complete`` adds.
 
     Raises:
         NumericsError: there is no equilibrium.
     """
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
-    system = with_wall_springs(
-        system_without_drives(boom, modes, EACH_SIDE), boom, walls
-    ).gather_loads()
+    system = with_wall_springs(system_without_drives(boom, modes, EACH_SIDE), boom, walls)
+    if complete is not None:
+        # The coordinates of wall springs come after those of the segments.
+        basis = np.eye(modes.omega2.size, system.num_modes)
+        along = lines(boom, elements.segments) if boom.axial_changes else ()
+        system = complete(system, [line.transform(basis) for line in along])
+    system = system.gather_loads()
     position = equilibrium_at(system, time)
+    loaded = replace(boom, loads=(*boom.loads, *hung))
     reactions = [
         reaction
         for number, component in enumerate(elements.unsupported)
         for reaction in _reactions(
-            boom, number, component, modes, position[: modes.omega2.size], time
+            loaded, number, component, modes, position[: modes.omega2.size], time
         )
     ]
     return StaticState(boom, system, position, reactions)

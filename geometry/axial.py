@@ -120,12 +120,25 @@ def joint_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: i
     return segments[inner].compression.transferred if is_lock else 0.0
 
 
-def foot_thrust(segments: Sequence[Segment], joints: Sequence[Joint], number: int) -> float:
-    """Return the axial force in N on a segment's foot; 0 if a joint carries the force."""
-    segment = segments[number]
+def foot_thrust(
+    segments: Sequence[Segment],
+    joints: Sequence[Joint],
+    number: int,
+    time: Array | float = 0.0,
+    changes: Sequence[AxialChange] = (),
+) -> Array:
+    """Return the axial force (...) in N on a segment's foot at times (...) in s.
+
+    It is 0 if a joint carries the force. Arguments as in :func:`axial_force`.
+    """
+    segment, time = segments[number], np.asarray(time)
     if segment.foot is None or _lock(joints, number) is not None:
-        return 0.0
-    return segment.compression.transferred
+        return np.zeros(time.shape)
+    total = np.full(time.shape, segment.compression.transferred)
+    for change in changes:
+        if change.compressions:
+            total = total + change.history(time) * change.compressions[number].transferred
+    return total
 
 
 def pin_moments(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[tuple[int, Array]]:
@@ -137,7 +150,7 @@ def pin_moments(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[tuple[i
     for number, segment in enumerate(boom.segments):
         foot = segment.foot
         if foot is not None and foot.depth != 0.0:
-            moment = foot.depth * foot_thrust(boom.segments, boom.joints, number)
+            moment = foot.depth * float(foot_thrust(boom.segments, boom.joints, number))
             yield number, moment * bodies[number].moment(foot.x, "z")
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from rich.console import Console
 
 from protractile.beam_model.statics import StaticState
-from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
+from protractile.dynamics.damping import closed_contact_damping
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.motion import constant_load_equilibrium
@@ -57,6 +57,7 @@ from protractile.runs.pipeline.statics import (
     Statics,
     contact_and_support_reactions,
     cylinder_force,
+    first_frequency,
     statics,
 )
 from protractile.runs.pipeline.turning import shaper_lines, turning_lines
@@ -124,7 +125,7 @@ def check_case(checked: CheckedCase) -> Check:
     boom_with_laws = boom if static is None else static.with_play.boom
     beam = None if static is None else BeamStates.of(case, boom_with_laws)
     extremes = [] if beam is None else beam.extremes(case.system)
-    advise = partial(deflection_advice, beam)
+    advise = partial(deflection_advice, case, beam)
     panels = [] if beam is None else weakest_panels(beam.boom.segments, *beam.rests)
     tables = [
         segment_table(case, boom),
@@ -357,10 +358,7 @@ def _static_lines(
         yield "There is no static equilibrium under the loads at t = 0."
         return
     state, bonded = static
-    hertz, bonded_hertz = (
-        float(closed_contact_modes(one.system, one.position)[0][0]) / (2.0 * np.pi)
-        for one in static
-    )
+    hertz, bonded_hertz = (first_frequency(case, one) for one in static)
     on_walls = state.boom.pads_on_walls
     walls = ", with the compliance of walls under pads" if on_walls else ""
     without = "with bonded joints and rigid walls:" if on_walls else "without play"
@@ -379,7 +377,7 @@ def _static_lines(
             f"{causes} {tilt.inner!r} by {milli(tilt.rotation)} mrad in {tilt.outer!r}, which "
             f"moves the tip by {milli(tilt.tip)} mm, under the loads at t = {rest.time:.4g} s."
         )
-    yield from pad_wall_lines(beam)
+    yield from pad_wall_lines(case, beam)
     yield from filter(None, [rigid_wall_note(case.models, boom)])
     yield from tip_cautions(_BEAMS, state.tip, boom, advise)
     yield from period_cautions(_BEAMS, hertz, case)

@@ -144,12 +144,14 @@ def axial_force(where: str, table: AxialTable, case: Case) -> float:
             f"{where}.force",
             "missing; it is the force in N towards the base, or give the falls of a hoist rope",
         )
-    mass = case.payload.mass if table.mass is None and case.payload is not None else table.mass
+    mass = table.mass
     if mass is None:
-        raise BoomError(
-            f"{where}.mass",
-            "missing, and there is no payload; it is the mass in kg that the rope carries",
-        )
+        if case.payload is None and case.hoist is None:
+            raise BoomError(
+                f"{where}.mass",
+                "missing, and there is no payload; it is the mass in kg that the rope carries",
+            )
+        mass = sum(one.mass for one in (case.payload, case.hoist) if one is not None)
     gravity = payload_gravity(case.payload) if case.gravity is None else case.gravity.acceleration
     return mass * gravity / table.falls
 

@@ -68,7 +68,9 @@ def build_boom(case: Case) -> Boom:
         case.cylinders,
         (
             *motions.hoist_changes(case, segments, joints),
-            *motions.turning_changes(frame, segments, joints, case.hoist),
+            *motions.turning_changes(
+                frame, segments, joints, 0.0 if hoist and hoist.dropped else hanging
+            ),
         ),
     )
     check_contacts_at_rest(boom)

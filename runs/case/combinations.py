@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Load cases and combinations: static cases with changed keys and with factors on loads.
 
-The case of a combination has the masses of its load case. If the payload and the dead weight have
+The case of a combination has the masses of its load case. A load on a rope hangs at rest, as a
+mass at the tip. If the payload and the dead weight have
 different factors, a force at the tip, across and along the boom, adds the difference in weight.
 """
 
@@ -66,16 +67,15 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
     """Return the case with the keys of a load case, and with its loads times ``factors``.
 
     Raises:
-        BoomError: an angle needs gravity, an extension has no joint, or the load of a hoist is not
-            given as payload.
+        BoomError: an angle needs gravity, or an extension has no joint.
     """
     gravity, payload = case.gravity, case.payload
     if table.angle is not None:
         if gravity is None:
             raise BoomError("angle", "the case has no table gravity, whose angle it replaces")
         gravity = gravity.model_copy(update={"angle": table.angle})
-    if table.payload:
-        mass = table.payload + (payload.mass if payload else 0.0)
+    if hung := _hung_mass(case, table):
+        mass = hung + (payload.mass if payload else 0.0)
         payload = (payload or PayloadTable(mass=mass)).model_copy(update={"mass": mass})
     replacements: Mapping[str, Any] = {
         key: getattr(case if getattr(table, key) is None else table, key)
@@ -94,8 +94,6 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
             "spectra": (),
         }
     )
-    if case.hoist is not None and table.payload is None:
-        raise BoomError("payload", "missing; give the mass in kg that hangs on the rope of [hoist]")
     dead = factors["dead"]
     segments = [_times(one, dead, "load", "lateral_load") for one in combined.segments]
     loads = [_times(one, factors[one.group], one.amount) for one in combined.loads]
@@ -115,7 +113,7 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
         gravity = _times(gravity, dead, "acceleration")
     elif payload is not None:
         payload = payload.model_copy(update={"gravity": 0.0})
-    masses: list[tuple[Group, float]] = [("payload", table.payload or 0.0)]
+    masses: list[tuple[Group, float]] = [("payload", hung)]
     if case.payload is not None:
         masses.append((case.payload.group, case.payload.mass))
     extra = acceleration * sum((factors[group] - weight_factor) * mass for group, mass in masses)
@@ -135,6 +133,13 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
             "payload": payload,
         }
     )
+
+
+def _hung_mass(case: Case, table: LoadCaseTable) -> float:
+    """Return the mass in kg at the tip in addition to the table ``payload`` of the case."""
+    if table.payload is not None:
+        return table.payload
+    return 0.0 if case.hoist is None else case.hoist.mass
 
 
 def _times(table: Table, factor: float, *keys: str) -> Table:
@@ -217,8 +222,8 @@ def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
         yield "dead", "the weight of the boom"
     if case.payload is not None:
         yield case.payload.group, "the weight of the payload"
-    if table.payload:
-        yield "payload", f"the payload of {table.name!r}"
+    if _hung_mass(case, table):
+        yield "payload", f"the payload of {table.name!r}" if table.payload else "the load of hoist"
     parts: dict[str, Sequence[LoadTable | AxialTable | GroundAccelerationTable]] = {
         "load": case.loads if table.loads is None else table.loads,
         "axial": case.axial if table.axial is None else table.axial,

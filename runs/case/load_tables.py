@@ -137,7 +137,7 @@ class AxialTable(CaseTable):
     falls: Count | None = None
     """the number of falls of a hoist rope, which share the mass on it"""
     mass: Annotated[Positive, In("kg")] | None = None
-    """the mass in kg that the rope carries; the payload's unless given"""
+    """the mass in kg that the rope carries; that of payload and hoist unless given"""
     group: Group = "payload"
     """the group of the force, whose factor combinations give"""
 
@@ -180,7 +180,7 @@ class LoadCaseTable(CaseTable):
     """inner segment = extension in m, in place of the joint's extension"""
     payload: Annotated[NotNegative, In("kg")] | None = None
     """a mass in kg at the tip in addition to the table payload; it weighs along and across the
-    boom, as a load of the group payload"""
+    boom, as a load of the group payload; the mass of the table hoist, if any, unless given"""
     loads: Annotated[tuple[LoadTable, ...], Few] | None = Field(None, alias="load")
     """the loads in place of all [[load]] of the case; the loads of the case unless given"""
     axial: Annotated[tuple[AxialTable, ...], Few] | None = None

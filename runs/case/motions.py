@@ -20,7 +20,7 @@ from protractile.geometry.load import AngularAcceleration, Load
 from protractile.geometry.telescoping import drives_below, drives_of, telescoping_stations
 from protractile.runs.case.contact import JointTable
 from protractile.runs.case.load_tables import build_history
-from protractile.runs.case.motion_tables import DriveTable, HoistTable
+from protractile.runs.case.motion_tables import DriveTable
 from protractile.runs.case.schema import Case, GravityTable
 
 # Slack in m of a rope that never pulls.
@@ -96,14 +96,11 @@ def turning_loads(
 
 
 def turning_changes(
-    frame: FrameMotion,
-    segments: Sequence[Segment],
-    joints: Sequence[Joint],
-    hoist: HoistTable | None,
+    frame: FrameMotion, segments: Sequence[Segment], joints: Sequence[Joint], hanging: float
 ) -> Iterator[AxialChange]:
     """Yield the changes of axial forces due to slewing and luffing, and centrifugal terms.
 
-    A load that stays on its rope counts as a mass at the tip.
+    ``hanging`` is the mass in kg of a load on a rope, which counts as a mass at the tip.
     """
     if not (frame.slew.kinks or frame.luff.kinks):
         return
@@ -114,8 +111,8 @@ def turning_changes(
         for direction in directions
         if (spin := Spin(frame, direction)).peak
     )
-    if hoist is not None and hoist.hanging and not hoist.dropped:
-        masses[-1] += (PointMass(segments[-1].end, hoist.mass),)
+    if hanging:
+        masses[-1] += (PointMass(segments[-1].end, hanging),)
     drives_of_segments = [tuple(drives_of(joints, number)) for number in range(len(segments))]
     for drives in dict.fromkeys(drives_of_segments):
         extension = HistorySum(tuple(drive.history for drive in drives))

@@ -36,6 +36,7 @@ from protractile.runs.pipeline.static_results import (
     instants,
     positions,
     static_result,
+    vibrating_state,
 )
 from protractile.runs.pipeline.statics import reactions, statics
 from protractile.runs.pipeline.strength import HAS_RAINFLOW, life, wall_stresses
@@ -66,11 +67,10 @@ def results_at_rest(
         [static_result(loaded, time, position) for time, position in positions.items()]
         for positions in (equilibria, extended)
     )
-    # The boom vibrates without the load that is released at t = 0.
-    released = loaded.system.released_load.any()
-    after = min((time for time in equilibria if time > 0.0 or not released), default=0.0)
-    still = loaded._replace(system=loaded.system.at_time(after))
-    first = modes(still, equilibria[after]) if equilibria else []
+    first = []
+    if equilibria:
+        still, rest = vibrating_state(loaded.system, equilibria)
+        first = modes(loaded._replace(system=still), rest)
     return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
 

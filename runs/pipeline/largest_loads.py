@@ -14,7 +14,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from protractile.beam_model.lines import lines
-from protractile.beam_model.statics import Elements, static_state, static_theory
+from protractile.beam_model.statics import Elements, static_theory
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import foot_thrust
@@ -34,6 +34,7 @@ from protractile.runs.pipeline.static_results import (
     positions,
     static_result,
 )
+from protractile.runs.pipeline.statics import state_at_rest
 from protractile.runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
 from protractile.runs.report.formatting import amount, number, without_round_off
 from protractile.runs.report.tables import Column, Table
@@ -103,7 +104,7 @@ class BeamStates(NamedTuple):
         """
         boom = boom.without_drives
         elements = Elements(boom, _ELEMENTS)
-        system = static_state(boom, elements).system
+        system = state_at_rest(case, boom, elements).system
         lines_of_elements = lines(boom, elements.segments)
         # The coordinates of wall springs come after the coordinates of the segments.
         basis = np.eye(lines_of_elements[0].rows["deflection"].shape[1], system.num_modes)
@@ -197,7 +198,8 @@ class BeamStates(NamedTuple):
                 for name in ("shear", "lateral_shear", "normal")
                 if name in line.rows
             ]
-            thrust = foot_thrust(self.boom.segments, self.boom.joints, index)
+            boom = self.boom
+            thrust = foot_thrust(boom.segments, boom.joints, index, self.time, boom.axial_changes)
             along = parts.pop() if "normal" in line.rows else np.zeros(len(self.rests))
             whole = np.linalg.norm([*parts, thrust + along], axis=0)
             what = f"foot reaction at {system.text(x, 'm', 5)}"

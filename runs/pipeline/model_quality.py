@@ -290,7 +290,7 @@ def _advice(case: Case, boom: Boom, name: str) -> str:
     """Return the advice on a large deflection of the named model."""
     if any(model.name == name and model.needs_shell for model in case.models):
         with suppress(*NUMERICAL_ERRORS):
-            return deflection_advice(BeamStates.of(case, boom_with_play(case, boom)))
+            return deflection_advice(case, BeamStates.of(case, boom_with_play(case, boom)))
     return CHECK_UNITS
 
 

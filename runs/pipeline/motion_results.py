@@ -122,7 +122,7 @@ def evaluate_motion(
                 name = f"{plane.name}bending moment"
                 peaks.append(_peak(name, segment.name, "N m", time, largest_at, at_rest))
         if "moment" in curves and jumps:
-            peaks += _reactions(model, number, trajectory, positions)
+            peaks += _reactions(model, number, trajectory, positions, rest_times)
         if (fibre_set := Fibres.of(segment, line)) is not None:
             largest, most = largest_stresses(segment, fibre_set, curves, forces_at_rest, time)
             fibres.append(largest)
@@ -167,9 +167,12 @@ def _output_peaks(
 
 
 def _reactions(
-    model: LoadedModel, number: int, trajectory: Trajectory, positions: Array
+    model: LoadedModel, number: int, trajectory: Trajectory, positions: Array, rest_times: Array
 ) -> Iterator[Peak]:
-    """Yield the peaks of the support reactions of a segment, from jumps of its section forces."""
+    """Yield the peaks of the support reactions of a segment, from jumps of its section forces.
+
+    ``positions`` (num_rests, num_modes) are equilibria at ``rest_times`` (num_rests,) in s.
+    """
     boom, line, time = model.boom, model.lines[number], trajectory.time
     states = trajectory.states, positions
 
@@ -194,8 +197,10 @@ def _reactions(
         if "torque" in line.rows:
             yield _peak("torque at the support", where, "N m", time, *jump("torque", support.x))
         if support is segment.foot and (segment.compression or "normal" in line.rows):
-            foot = foot_thrust(boom.segments, boom.joints, number)
-            along = [foot + each for each in jump("normal", support.x)]
+            along = [
+                each + foot_thrust(boom.segments, boom.joints, number, times, boom.axial_changes)
+                for each, times in zip(jump("normal", support.x), (time, rest_times), strict=True)
+            ]
             yield _peak("reaction along the boom", where, "N", time, *along)
             whole = [np.linalg.norm(parts, axis=0) for parts in zip(*across, along, strict=True)]
             yield _peak("reaction, across and along", where, "N", time, *whole)

@@ -8,13 +8,13 @@ from dataclasses import replace
 from itertools import product
 from typing import Any
 
-from protractile.beam_model.statics import static_state
 from protractile.geometry.boom import Boom, Collar
 from protractile.geometry.joint import PadSize
 from protractile.geometry.typography import join_words
-from protractile.runs.case.schema import Model
+from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.proportions import CHECK_UNITS
+from protractile.runs.pipeline.statics import state_at_rest
 from protractile.runs.report.formatting import milli
 
 # Share of the tip deflection below which walls do not matter, share above which remedies are
@@ -24,7 +24,7 @@ _NO_SHARE, LARGE_SHARE, HELPFUL = 5.0e-4, 0.1, 0.9
 GOVERNING_SHARE = 0.5
 
 
-def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
+def pad_wall_lines(case: Case, beam: BeamStates) -> Iterator[str]:
     """Yield sentences on the share of the static tip deflection that walls under pads cause.
 
     If the share is large, a list of remedies follows. The states are those of a boom with the
@@ -34,7 +34,7 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
         NumericsError: the boom has no equilibrium after a change that a remedy makes.
     """
     boom, rest = beam.boom, beam.farthest
-    tip, time, part = rest.tip, rest.time, wall_part(beam)
+    tip, time, part = rest.tip, rest.time, wall_part(case, beam)
     if part is None or abs(part) < _NO_SHARE:
         return
     share = part * tip
@@ -45,7 +45,9 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
     )
     if part < LARGE_SHARE:
         return
-    remedies = ((static_state(changed, time=time).tip, what) for what, changed in _remedies(boom))
+    remedies = (
+        (state_at_rest(case, changed, time=time).tip, what) for what, changed in _remedies(boom)
+    )
     better = sorted((there / tip, there, what) for there, what in remedies)
     better = [one for one in better if one[0] < HELPFUL]
     if better:
@@ -56,7 +58,7 @@ def pad_wall_lines(beam: BeamStates) -> Iterator[str]:
         yield from (f"- {milli(there)} mm: {what}" for _, there, what in better)
 
 
-def wall_part(beam: BeamStates) -> float | None:
+def wall_part(case: Case, beam: BeamStates) -> float | None:
     """Return the share of the largest static tip deflection that walls under pads cause.
 
     The share is 1 if walls cause all of it; None without pads on walls, or if a section is unknown.
@@ -64,13 +66,13 @@ def wall_part(beam: BeamStates) -> float | None:
     boom, rest = beam.boom, beam.farthest
     if not boom.pads_on_walls or any(segment.section is None for segment in boom.segments):
         return None
-    rigid = static_state(boom, walls=0.0, time=rest.time).tip
+    rigid = state_at_rest(case, boom, walls=0.0, time=rest.time).tip
     return 1.0 - rigid / rest.tip if rest.tip else 0.0
 
 
-def deflection_advice(beam: BeamStates | None) -> str:
+def deflection_advice(case: Case, beam: BeamStates | None) -> str:
     """Return the advice to change the pads if walls under them govern, else to check the units."""
-    governing = beam is not None and (wall_part(beam) or 0.0) > GOVERNING_SHARE
+    governing = beam is not None and (wall_part(case, beam) or 0.0) > GOVERNING_SHARE
     return "walls under pads cause most of it; change the pads" if governing else CHECK_UNITS
 
 

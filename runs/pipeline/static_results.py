@@ -7,7 +7,7 @@ moment causes tension at the top, a positive lateral moment tension at larger y.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import zip_longest
@@ -113,8 +113,15 @@ def instants(system: GapSystem, duration: float) -> list[float]:
     At t = 0 a released load still acts; another time is then without it. The ``load`` of the system
     includes all constant loads. ``duration`` is that of the motion in s.
     """
-    winches = [travel for travel in system.travels if not travel.telescopes]
-    times, values = _sample_histories([*system.excitations, *winches], system, duration)
+    # Hoisting changes no static state of a load that hangs, without contact with the ground.
+    of_load = system.rows - system.rows @ system.hung.T @ system.hung
+    grounded = bool(system.hung.size) and not np.abs(of_load).max(axis=1, initial=0.0).all()
+    changes = [
+        travel
+        for travel in system.travels
+        if not travel.telescopes and (grounded or not any(travel.shifts))
+    ]
+    times, values = _sample_histories([*system.excitations, *changes], system, duration)
     if system.released_load.any():
         values = np.vstack([values, times <= 0.0])
     return _distinct_times(times, values, [0, *values.argmax(axis=1), *values.argmin(axis=1)])
@@ -164,6 +171,18 @@ def positions(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float,
     """
     first = _equilibria(system, times[:1])
     return first | _equilibria(system, times[1:]) if first else {}
+
+
+def vibrating_state(
+    system: GapSystem, equilibria: Mapping[float, Array]
+) -> tuple[GapSystem, Array]:
+    """Return the system at rest and the equilibrium (num_modes,) about which the boom vibrates.
+
+    A load that is released at t = 0 no longer acts. ``equilibria`` are those of :func:`positions`.
+    """
+    released = system.released_load.any()
+    after = min((time for time in equilibria if time > 0.0 or not released), default=0.0)
+    return system.at_time(after), equilibria[after]
 
 
 def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -11,13 +12,24 @@ from typing import NamedTuple
 import numpy as np
 
 from protractile.beam_model.statics import Elements, StaticState, net_reactions, static_state
+from protractile.dynamics.damping import closed_contact_modes
+from protractile.dynamics.excitation import Step
 from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.line import Line
 from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import contact_centres
 from protractile.geometry.cylinder import force_name
+from protractile.geometry.load import Load
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.static_results import station_loads
+from protractile.runs.pipeline.models import complete_system
+from protractile.runs.pipeline.static_results import (
+    instants,
+    positions,
+    station_loads,
+    vibrating_state,
+)
 
 # Fraction of the largest reaction below which a reaction counts as zero.
 ROUND_OFF = 1.0e-9
@@ -50,11 +62,41 @@ def statics(case: Case, boom: Boom) -> Statics | None:
     with_play = not all(model.bonded for model in case.models)
     with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
         elements = Elements(boom)
-        bonded = static_state(boom.bonded, elements)
+        bonded = state_at_rest(case, boom.bonded, elements)
         if not with_play:
             return Statics(bonded, bonded)
-        return Statics(static_state(boom_with_play(case, boom), elements), bonded)
+        return Statics(state_at_rest(case, boom_with_play(case, boom), elements), bonded)
     return None
+
+
+def state_at_rest(
+    case: Case,
+    boom: Boom,
+    elements: Elements | None = None,
+    walls: float = 1.0,
+    time: float = 0.0,
+) -> StaticState:
+    """Return the static state of a case's boom, with the load on its rope.
+
+    Arguments and errors as in :func:`.beam_model.statics.static_state`.
+    """
+    hoist, gravity = case.hoist, case.gravity
+    hung = []
+    if hoist is not None and gravity is not None and hoist.hanging and not hoist.dropped:
+        last, weight = len(boom.segments) - 1, -hoist.mass * gravity.across
+        hung = [Load(last, "z", weight, boom.segments[last].end, Step())]
+
+    def complete(system: GapSystem, lines: Sequence[Line]) -> GapSystem:
+        return complete_system(system, case, boom, lines)
+
+    return static_state(boom, elements, walls, time, complete, hung)
+
+
+def first_frequency(case: Case, state: StaticState) -> float:
+    """Return the first natural frequency in Hz about a static state at t = 0."""
+    rests = positions(state.system, instants(state.system, case.time.duration))
+    omega, _ = closed_contact_modes(*vibrating_state(state.system, rests))
+    return float(omega[0]) / (2.0 * np.pi)
 
 
 def boom_with_play(case: Case, boom: Boom) -> Boom:
@@ -111,7 +153,8 @@ def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
     forces: dict[tuple[int, float], float] = defaultdict(float)
     for number, segment in enumerate(boom.segments):
         if segment.foot is not None:
-            forces[number, segment.foot.x] = foot_thrust(boom.segments, boom.joints, number)
+            thrust = foot_thrust(boom.segments, boom.joints, number, 0.0, boom.axial_changes)
+            forces[number, segment.foot.x] = float(thrust)
     for number, cylinder in enumerate(boom.cylinders, start=1):
         push = cylinder.direction[0] * cylinder_force(state, number)
         foot = boom.segments[cylinder.segment].foot

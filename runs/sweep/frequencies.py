@@ -17,7 +17,6 @@ import xarray as xr
 
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.failure import NUMERICAL_ERRORS
-from protractile.dynamics.motion import initial_state
 from protractile.geometry.arrays import Array
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext, ModelBoom
@@ -25,7 +24,9 @@ from protractile.runs.case.schema import Case, Model
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
 from protractile.runs.pipeline.model_run import ignore_progress
+from protractile.runs.pipeline.models import build_on
 from protractile.runs.pipeline.results import CONVENTIONS
+from protractile.runs.pipeline.static_results import instants, positions, vibrating_state
 from protractile.runs.process.terminal import Progress
 from protractile.runs.report.tables import Column, Table
 from protractile.runs.sweep.figures import draw_frequencies
@@ -55,8 +56,10 @@ def first_frequencies(
         context = None if comm is None else BuildContext(comm, cache=cache)
         try:
             with np.errstate(all="ignore"):
-                system, _, _ = initial_state(model.build(booms, context).system, case.start.at_rest)
-                omega = closed_contact_modes(system)[0][:MODES]
+                system = build_on(booms, case, model, context).system.gather_loads()
+                rests = positions(system, instants(system, case.time.duration))
+                state = vibrating_state(system, rests) if rests else (system,)
+                omega = closed_contact_modes(*state)[0][:MODES]
         except NUMERICAL_ERRORS:
             continue
         frequencies[row, : omega.size] = omega / (2.0 * np.pi)

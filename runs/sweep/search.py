@@ -161,5 +161,5 @@ def rigid_wall_cautions(case: Case, name: str) -> list[str]:
     if model.needs_shell or statics(case, boom) is None:
         return []
     beam = BeamStates.of(case, boom_with_play(case, boom))
-    cautions = [one for one in pad_wall_lines(beam) if one.startswith("caution")]
+    cautions = [one for one in pad_wall_lines(case, beam) if one.startswith("caution")]
     return [f"{one} {name} has rigid walls: the bound is unsafe; take a shell" for one in cautions]

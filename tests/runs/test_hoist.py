@@ -12,13 +12,17 @@ from protractile.dynamics.damping import closed_contact_damping, closed_contact_
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
-from protractile.runs.case.load_tables import LoadTable
+from protractile.runs.case.load_tables import AxialTable, CombinationTable, LoadCaseTable, LoadTable
 from protractile.runs.case.motion_tables import HoistTable, WindTable
 from protractile.runs.case.motions import with_initial_slack
-from protractile.runs.case.reading import select
+from protractile.runs.case.reading import CheckedCase, select
 from protractile.runs.case.schema import Case, EnsembleTable, StartTable
+from protractile.runs.check import check_case
+from protractile.runs.pipeline.combinations import combination_results, combination_states
 from protractile.runs.pipeline.evaluation import bonded_system
+from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.models import build, initial_motion
+from protractile.runs.pipeline.statics import boom_with_play
 from tests.runs.case_texts import REST, STEEL, elements, refusal, shipped, table
 from tests.runs.summaries import static_tip
 
@@ -95,6 +99,50 @@ def test_rope_of_a_boom_without_play_is_straight_at_rest(case: Case) -> None:
         closed_contact_modes(one)[0][0] for one in (with_initial_slack(bonded, case), same)
     )
     assert own == pytest.approx(other, rel=0.02)
+
+
+@pytest.mark.parametrize("hanging", [True, False])
+def test_combinations_have_the_hoisted_mass_as_payload(case: Case, hanging: bool) -> None:
+    """Reference: the same load written as a load case's payload, and the rope's pull by hand.
+
+    Combinations of a case with a hoist and without a load case's payload ended with a traceback.
+    """
+    rope = AxialTable(falls=4)
+    factors = {"dead": 1.22, "payload": 1.34}
+    combination = CombinationTable.model_validate({"name": "A1", "factors": factors})
+    hoist = case.hoist.model_copy(update={"hanging": hanging})
+    hung = case.model_copy(
+        update={"hoist": hoist, "axial": (rope,), "combinations": (combination,)}
+    )
+    by_hand = hung.model_copy(
+        update={
+            "hoist": None,
+            "axial": (AxialTable(force=5350.0 * 9.80665 / 4.0),),
+            "load_cases": (LoadCaseTable(name="lift", payload=5000.0),),
+        }
+    )
+    (own,), (other,) = combination_results(hung), combination_results(by_hand)
+    assert own.extremes == other.extremes
+    assert own.largest("tip").largest < -2.0
+    # Without factors the state is that of the hanging load.
+    (plain,) = combination_states(hung.model_copy(update={"combinations": ()}))
+    beam = BeamStates.of(hung, boom_with_play(hung, build_boom(hung)))
+    assert plain.beam.farthest.tip == pytest.approx(beam.farthest.tip, rel=1e-6)
+
+
+def test_check_counts_the_load_on_the_rope() -> None:
+    """Reference: a run of beam elements whose rows are rigid in the walls, as pads at corners are.
+
+    The static states had the load along the boom only: the tip rested at -543 mm.
+    """
+    checked = CheckedCase(select(shipped("hoist"), "", ["timoshenko"]))
+    results = run_case(change(checked.case, **{"time.duration": 5.0, "time.output_step": 0.05}))
+    (model,) = results.summary.design.models.values()
+    frame = check_case(checked).frames["Static results at t = 0 and under the maximum loads"]
+    (tip,) = frame[frame.iloc[:, 0] == "tip"]["maximum"]
+    right = min(one.tip for one in model.static)
+    assert right == pytest.approx(-1.816, abs=0.001)
+    assert float(tip.removesuffix(" mm").replace("−", "-")) == pytest.approx(1e3 * right, rel=3e-3)
 
 
 def test_modes_with_a_heavy_load_have_the_given_damping(case: Case) -> None:

@@ -128,7 +128,7 @@ def test_a_joint_rotates_by_its_play_and_by_walls(tmp_path: Path) -> None:
     case = read_case(tmp_path, boom_of(RAMP))
     beam = BeamStates.of(case, boom_with_play(case, build_boom(case)))
     (tilt,) = beam.farthest.tilts
-    part = wall_part(beam)
+    part = wall_part(case, beam)
     assert part is not None
     play, walls = 0.002 - 0.004 / 1.8 * (14.0 - 6.1), part * beam.farthest.tip
     assert walls < -0.002
