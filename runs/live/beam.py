@@ -80,6 +80,7 @@ _MARKERS: Mapping[Path, tuple[str, float]] = {
     symbols.MOMENT: ("star-triangle-up-open", 0.0),
     symbols.CLOCKWISE: ("star-triangle-down-open", 0.0),
     symbols.PAYLOAD: ("circle", 0.0),
+    symbols.HUNG: ("square", 0.0),
     symbols.PINNED: ("triangle-up", 0.0),
     symbols.CLAMPED: ("line-ns-open", 0.0),
     symbols.ELASTIC: ("diamond-tall-open", 0.0),

@@ -57,6 +57,7 @@ def _rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
         for direction, acceleration in (("z", -case.gravity.across), (_AXIAL, case.gravity.along)):
             if acceleration:
                 yield _LoadRow("gravity", _ALL, direction, _CONSTANT, acceleration * boom.mass, "N")
+        yield from _hoist_rows(case, boom)
     for i, segment in enumerate(case.segments, start=1):
         for key, direction in (("load", "z"), ("lateral_load", "y")):
             if load := getattr(segment, key):
@@ -76,6 +77,19 @@ def _rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
         name = boom.segments[thrust.segment].name
         place = f"{name} at {case.system.text(thrust.x, 'm', 5)}"
         yield _LoadRow(f"axial[{i}]", place, _AXIAL, _CONSTANT, thrust.force, "N")
+
+
+def _hoist_rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
+    """Yield the weight of the load on the rope, across and along the boom."""
+    if case.hoist is None or case.gravity is None:
+        return
+    history = _CONSTANT if case.hoist.hanging else "from lift-off"
+    history = "until t = 0" if case.hoist.dropped else history
+    place = f"{boom.segments[-1].name} at {case.system.text(boom.segments[-1].end, 'm', 5)}"
+    for direction, acceleration in (("z", -case.gravity.across), (_AXIAL, case.gravity.along)):
+        if acceleration:
+            weight = acceleration * case.hoist.mass
+            yield _LoadRow("hoist", place, direction, history, weight, "N")
 
 
 def _place(boom: Boom, load: Load, system: System) -> str:

@@ -161,9 +161,10 @@ class Proof(NamedTuple):
         name, cause = KINDS[self.kind].name, "spectrum" if self.kind == "fatigue" else "combination"
         place = "" if self.place in name.split() else f", {self.place}"
         place += "" if self.x is None else f" at x = {system.text(self.x, 'm')}"
+        of = f", {cause} {self.combination!r}" if self.combination else ""
         return (
             f"{name}{place}: {demand}{KINDS[self.kind].effect} {relation} {resistance} "
-            f"({100.0 * self.utilisation:.3g} %), {cause} {self.combination!r}"
+            f"({100.0 * self.utilisation:.3g} %){of}"
         )
 
 
@@ -172,19 +173,23 @@ class Proofs(NamedTuple):
 
     proofs: list[Proof]
     notes: list[str]
+    of: str = " of the combinations"  #: what is proved, in the sentence on the number of proofs
 
     def governing(self, system: System) -> str:
         """Return a sentence on the governing proof and the number of proofs that fail."""
         if not self.proofs:
             return "The case has no numbers for a proof."
-        failed, governs = sum(not one.holds for one in self.proofs), self.proofs[0]
-        what = f"{len(self.proofs)} proofs" + (
-            " of the combinations" if governs.combination else ""
-        )
+        governs = self.proofs[0]
+        change = "" if governs.holds else f". Remedy: {governs.remedy}"
+        return f"{self.count}. Governing: {governs.text(system)}{change}."
+
+    @property
+    def count(self) -> str:
+        """The number of proofs that fail, in words, without a full stop."""
+        failed = sum(not one.holds for one in self.proofs)
+        what = f"{len(self.proofs)} proofs{self.of}"
         text = f"{failed} of {what} fail" if failed else f"All {what} are satisfied"
-        text += "; local plate stress is not proved" if _NO_SHELL in self.notes else ""
-        change = f". Remedy: {governs.remedy}" if failed else ""
-        return f"{text}. Governing: {governs.text(system)}{change}."
+        return text + ("; local plate stress is not proved" if _NO_SHELL in self.notes else "")
 
 
 def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
@@ -203,13 +208,18 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
         fatigue = Proof("fatigue", name, name, x, damage.sum, 1.0, "1", damage.spectrum)
         governing["fatigue", name] = fatigue
     proofs = sorted(governing.values(), key=lambda one: -one.utilisation)
-    return Proofs(proofs, [*_missing_data_notes(case, states)])
+    of = " of the load cases" if case.load_cases else ""
+    notes = [*_missing_data_notes(case, states)]
+    return Proofs(proofs, notes, " of the combinations" if case.combinations else of)
 
 
 def _proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
-    name, beam, table = state.combined.name, state.beam, state.combined.combination
+    beam, table = state.beam, state.combined.combination
+    name = state.combined.name if case.combinations or case.load_cases else ""
     if beam is None:
-        raise NumericsError(f"{name}: no static equilibrium; the boom is unrestrained or buckles")
+        raise NumericsError(
+            f"{state.combined.name}: no static equilibrium; the boom is unrestrained or buckles"
+        )
     for rule in (_wall_proofs, _boom_proofs, _station_proofs, _foot_proofs):
         for one in rule(beam, table, case):
             if one.kind in table.proofs:

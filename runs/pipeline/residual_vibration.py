@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Residual vibration of the tip by telescoping, compared with vibration at constant extension.
+"""Residual vibration of the tip by drives or a winch, compared with vibration without them.
 
 The amplitude is the largest distance of the tip from its static position, at the current extension
 and under the current loads.
@@ -36,12 +36,13 @@ _level = partial(Metric, unit="m", shown_unit="mm", charted=False)
 
 @dataclass(frozen=True, slots=True)
 class ResidualVibration(Record):
-    """Residual vibration of the tip during and after telescoping."""
+    """Residual vibration of the tip during and after telescoping or hoisting."""
 
-    title = "Residual vibration during telescoping"
+    title = "Residual vibration of the tip"
     notes = (
         "Largest distance of the tip from its static position at the current extension and under "
-        "the current loads. Last columns: the same distance for the boom without telescoping.",
+        "the current loads. Last columns: the same distance with drives and winch at rest, in "
+        "their initial and final positions.",
     )
 
     #: largest distance of the tip from its static position in m
@@ -61,8 +62,8 @@ class ResidualVibration(Record):
         float | None,
         _level(
             "residual_vibration_initial",
-            title="vibration at the initial extension",
-            heading="at initial\nextension",
+            title="vibration at the initial position of drives",
+            heading="at initial\nposition",
         ),
     ]
     #: largest distance in m at constant final extension; None if it cannot be computed
@@ -70,8 +71,8 @@ class ResidualVibration(Record):
         float | None,
         _level(
             "residual_vibration_final",
-            title="vibration at the final extension",
-            heading="at final\nextension",
+            title="vibration at the final position of drives",
+            heading="at final\nposition",
         ),
     ]
 
@@ -79,7 +80,7 @@ class ResidualVibration(Record):
 def residual_vibration(
     system: GapSystem, trajectory: Trajectory, case: Case, model: Model
 ) -> ResidualVibration | None:
-    """Return the residual vibration; None without telescoping or without equilibria.
+    """Return the residual vibration; None without drives and winch, or without equilibria.
 
     The ``load`` of the system includes all constant loads.
     """

@@ -162,8 +162,11 @@ def play_effect(results: Results) -> str:
     sentences = [f"Play {verb} {join_words(several)}." for several, verb in parts if several]
     frequency = first.get("first frequency")
     if frequency is not None and frequency.bonded and not is_negligible(frequency):
-        both = f"from {amount(frequency.bonded, 'Hz')} to {amount(frequency.with_play, 'Hz')}"
-        sentences.append(f"Play changes the first frequency {both}.")
+        # Play itself, which opens contacts, has no part in this frequency.
+        sentences.append(
+            f"First natural frequency: {amount(frequency.with_play, 'Hz')} with joints in contact, "
+            f"{amount(frequency.bonded, 'Hz')} with bonded joints."
+        )
     return " ".join(sentences)
 
 
@@ -270,8 +273,8 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
             yield "Static values leave friction out: friction may keep φ below 1."
     if "Residual vibration of the tip, mm" in rows:
         yield (
-            "Residual vibration: amplitude about the static deflection; without telescoping: at "
-            "the initial and the final extension."
+            "Residual vibration: amplitude about the static deflection; with drives at rest: in "
+            "their initial and final positions."
         )
     if "Contact force, maximum, kN" in rows:
         yield (
@@ -319,11 +322,11 @@ def _span(values: Iterable[float | None]) -> str:
 
 
 def _vibration(results: ModelDesignResults) -> str | None:
-    """Return the residual vibration, and the vibration at the final extension, as text."""
+    """Return the residual vibration, and the vibration with drives at rest, as text."""
     if (vibration := results.residual_vibration) is None:
         return None
     static = f"{_milli(vibration.initial)}, {_milli(vibration.final)}"
-    return f"{_milli(vibration.tip)}\n(without telescoping\n{static})"
+    return f"{_milli(vibration.tip)}\n(with drives at rest\n{static})"
 
 
 def _milli(deflection: float | None) -> str:

@@ -7,7 +7,7 @@ A symbol is a matplotlib path in units of its size, relative to its position.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -70,6 +70,10 @@ REST_ABOVE = Path([[-0.4, 0.25], [0.4, 0.25], [0.4, 0.6], [-0.4, 0.6], [-0.4, 0.
 REST_BELOW = _rotated(REST_ABOVE, 180.0)
 PAYLOAD = Path.make_compound_path(
     _strokes([(0.0, 0.0), (0.0, -0.45)]), Path.circle((0.0, -0.72), 0.27)
+)
+HUNG = _strokes(
+    [(0.0, 0.0), (0.0, -1.3)],
+    [(-0.3, -1.3), (0.3, -1.3), (0.3, -1.9), (-0.3, -1.9), (-0.3, -1.3)],
 )
 FORCE_DOWN = _strokes([(0.0, 1.0), (0.0, 0.0)], [(-0.2, 0.35), (0.0, 0.0), (0.2, 0.35)])
 FORCE_UP = _rotated(FORCE_DOWN, 180.0)
@@ -153,6 +157,9 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
     if case.payload is not None:
         payload = f"mass at the tip, {number(case.payload.mass, 4)} kg"
         yield _mass(len(boom.segments) - 1, boom.tip, payload)
+    if case.hoist is not None:
+        hung = f"load on the rope, {number(case.hoist.mass, 4)} kg"
+        yield replace(_mass(len(boom.segments) - 1, boom.tip, hung), path=HUNG)
     names = [segment.name for segment in boom.segments]
     for table in case.loads:
         yield _load(table, boom, names.index(table.segment))

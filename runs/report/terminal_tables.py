@@ -191,8 +191,9 @@ def print_proofs(
     for table in combination_tables([one.result for one in states], case, name):
         table.show(console)
     proof_table(results, case).show(console)
-    print_text(console, results.governing(case.system))
     failed = [one for one in results.proofs if not one.holds]
+    # The lines on stderr begin with the governing proof.
+    print_text(console, f"{results.count}." if failed else results.governing(case.system))
     for one in failed:
         say(message(f"{shorten(file)}: {one.text(case.system)}. Remedy: {one.remedy}"))
     return 1 if failed else 0

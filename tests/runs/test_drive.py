@@ -191,7 +191,7 @@ def test_run_reports_its_drive(tmp_path: Path) -> None:
     assert pressed.columns[1].cells == [one.force for one in ended.stations]
     assert tilts.notes[0].endswith("to wall compliance. Extension as at 0.2 s.")
     # Both stand for too short to swing farther than they start.
-    standing = ["(without telescoping", f"{1e3 * begun.tip:.1f}, {1e3 * ended.tip:.1f})"]
+    standing = ["(with drives at rest", f"{1e3 * begun.tip:.1f}, {1e3 * ended.tip:.1f})"]
     assert str(cells["Residual vibration of the tip, mm"]).splitlines()[1:] == standing
     (table,), swing = record_tables(results), own.residual_vibration
     told = swing.tip, swing.time, swing.initial, swing.final

@@ -244,10 +244,22 @@ def test_exit_status_and_width(
     shown = capsys.readouterr()
     assert max(map(len, shown.out.splitlines())) <= 80
     assert ("All 5 proofs of the combinations are satisfied" in shown.out) == (status == 0)
+    # Proofs that fail are on stderr alone.
+    assert ("Governing" in shown.out) == (status == 0)
     failed = shown.err.strip().splitlines()
     assert len(failed) == 2 * status
     assert not failed or "static strength, arm" in shown.err
     assert not failed or "exceeds" in failed[0]
+
+
+def test_a_case_without_combinations_is_proved_itself(tmp_path: Path) -> None:
+    """Reference: by construction. The sentences named combinations."""
+    case = read_case(tmp_path, ARM).model_copy(update={"combinations": (), "load_cases": ()})
+    case = case.model_copy(update={"spectra": ()})
+    proofs = prove(case, combination_states(case))
+    sentence = proofs.governing(case.system)
+    assert "combination" not in sentence
+    assert sentence.startswith(f"All {len(proofs.proofs)} proofs are satisfied")
 
 
 def test_the_first_screen_of_the_report(tmp_path: Path) -> None:
