@@ -5,8 +5,8 @@ A wall under a pad bends as a plate. Neighbouring walls, which are stiff in thei
 along the folds. So the unfolded walls of a segment form one continuous plate on line supports at
 the folds, with a free edge at the end of the segment. Elements are the conforming rectangles of
 Bogner, Fox and Schmit (1965): products of cubic Hermite polynomials along the boom and around the
-section, so that matrices are Kronecker products. The distortion of the whole section is neglected.
-So the estimate is too small for sloping walls far from collars and diaphragms.
+section, so that matrices are Kronecker products. The folds themselves move as the section distorts
+(:mod:`.beam_model.distortion`); the compliance of a contact is the sum of both.
 """
 
 from __future__ import annotations
@@ -16,12 +16,13 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
 from scipy.linalg import block_diag
 from scipy.sparse import csc_matrix, kron
 from scipy.sparse.linalg import splu
 
 from protractile.beam_model.calibration import with_springs
+from protractile.beam_model.distortion import Press, distortion_compliance
+from protractile.beam_model.hermite import HermiteAxis
 from protractile.beam_model.segment_model import EACH_SIDE
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
@@ -34,9 +35,9 @@ from protractile.geometry.segment import NO_COMPRESSION, Segment
 _REACH = 1.5
 # Element length as a fraction of the smaller side of the section, and its growth away from a pad.
 _LENGTH, _GROWTH = 0.2, 1.6
-
-# Gauss points and weights, exact for products of two cubics.
-_PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+# Fractions of the compliance of a station's contacts that is added, so that a singular matrix has
+# an inverse, and below which the station is rigid.
+_SINGULAR, _RIGID = 1.0e-9, 1.0e-6
 
 
 class PressedArea(NamedTuple):
@@ -55,34 +56,6 @@ class PressedArea(NamedTuple):
     spans: tuple[tuple[float, float], ...]
 
 
-class _Axis:
-    """Cubic Hermite functions between nodes in m; the end nodes of a closed axis coincide."""
-
-    def __init__(self, nodes: Array, closed: bool) -> None:
-        self.nodes = nodes
-        num_dofs = 2 * (self.nodes.size - closed)
-        identity = np.eye(num_dofs)[np.arange(2 * self.nodes.size) % num_dofs]
-        self._shapes = CubicHermiteSpline(self.nodes, identity[::2], identity[1::2])
-        self._sums = self._shapes.antiderivative()
-
-    def integrals(self, weights: Array) -> list[csc_matrix]:
-        """Return ∫ φφ, ∫ φ′φ′, ∫ φ″φ″ and ∫ φφ″ of the functions φ, each (num_dofs, num_dofs).
-
-        Args:
-            weights: factors (num_elements,) of the elements.
-        """
-        lengths = np.diff(self.nodes)[:, None]
-        x = (self.nodes[:-1, None] + 0.5 * lengths * (1.0 + _PLACES)).ravel()
-        scale = (0.5 * lengths * weights[:, None] * _WEIGHTS).ravel()[:, None]
-        value, slope, curvature = (self._shapes(x, order) for order in range(3))
-        pairs = (value, value), (slope, slope), (curvature, curvature), (value, curvature)
-        return [csc_matrix((scale * left).T @ right) for left, right in pairs]
-
-    def mean(self, start: float, end: float) -> Array:
-        """Return the row (num_dofs,) of the mean value between two positions in m."""
-        return np.asarray((self._sums(end) - self._sums(start)) / (end - start))
-
-
 def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> GapSystem:
     """Return the system of a beam with springs for the compliance of walls under pads.
 
@@ -98,9 +71,10 @@ def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> Gap
 
 
 def contact_compliance(boom: Boom) -> Array:
-    """Return the local compliance (num_rows, num_rows) in m/N of walls at contact rows.
+    """Return the local compliance (num_rows, num_rows) in m/N of segments at contact rows.
 
-    It is zero for contacts at corners.
+    It includes the bending of walls under pads, and the distortion of sections. Under symmetric
+    forces on its corners, a box has none.
 
     Args:
         boom: boom of beams with a contact row for each side,
@@ -109,18 +83,33 @@ def contact_compliance(boom: Boom) -> Array:
     rows = _contact_rows(boom)
     stops = sum(len(stop.sides) for _, stop in boom.numbered_stops)
     compliance = np.zeros((len(rows) + stops,) * 2)
+    # Load cases and combinations share the cached results of the unloaded segments.
+    unloaded = [
+        replace(segment, load=0.0, lateral=None, compression=NO_COMPRESSION, masses=())
+        for segment in boom.segments
+    ]
+
+    def add(at: list[int], outward: Array) -> None:
+        # The signs relate the directions of rows to the outward normals of faces.
+        sides = np.array([rows[i][1] for i in at])
+        compliance[np.ix_(at, at)] += np.outer(sides, sides) * outward
+
     # Vertical and lateral pads at one x belong together: flanges that bend make webs bulge.
     for place in {(pad.number, pad.x) for pad, _ in rows if pad.patch is not None}:
         at = [i for i, (pad, _) in enumerate(rows) if (pad.number, pad.x) == place and pad.patch]
-        joint, sides = rows[at[0]][0].joint, np.array([rows[i][1] for i in at])
-        inner = boom.segments[joint.inner]
+        joint = rows[at[0]][0].joint
+        inner = unloaded[joint.inner]
         areas = tuple(_pad_area(*rows[i], inner) for i in at)
-        for segment in (inner, boom.segments[joint.outer]):
-            # Load cases and combinations share the cached walls of the unloaded segment.
-            segment = replace(segment, load=0.0, lateral=None, compression=NO_COMPRESSION)
-            # The signs relate the directions of rows to the outward normals of areas.
-            outward = wall_compliance(segment, areas)
-            compliance[np.ix_(at, at)] += np.outer(sides, sides) * outward
+        for segment in (inner, unloaded[joint.outer]):
+            add(at, wall_compliance(segment, areas))
+    # A distortion extends from one station of a joint to the next.
+    for number, joint in enumerate(boom.joints):
+        at = [i for i, (pad, _) in enumerate(rows) if pad.number == number]
+        members = unloaded[joint.inner], unloaded[joint.outer]
+        for member, segment in enumerate(members if at else ()):
+            if segment.section is not None:
+                presses = tuple(_press(*rows[i], members, member) for i in at)
+                add(at, distortion_compliance(segment, presses))
     return compliance
 
 
@@ -128,7 +117,7 @@ def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
     """Return the compliance of walls in m/N by joint, direction and index of the station.
 
     It is the compliance of the softer side with all its pads in contact, 0 if a side has a contact
-    at a corner.
+    on a rigid corner.
     """
     walls = contact_compliance(boom)
     sides: dict[tuple[int, Direction, int, Side], list[int]] = {}
@@ -139,8 +128,12 @@ def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
     for (number, direction, k, _), rows in sides.items():
         compliance_matrix = walls[np.ix_(rows, rows)]
         compliance = 0.0
-        if np.diag(compliance_matrix).all():
-            compliance = 1.0 / float(np.linalg.solve(compliance_matrix, np.ones(len(rows))).sum())
+        if scale := float(np.trace(compliance_matrix)):
+            # Corners of a box only move against each other: their compliance is singular.
+            regular = compliance_matrix + _SINGULAR * scale * np.eye(len(rows))
+            compliance = 1.0 / float(np.linalg.solve(regular, np.ones(len(rows))).sum())
+        if compliance < _RIGID * scale:
+            compliance = 0.0
         compliances[number, direction, k] = max(
             compliance, compliances.get((number, direction, k), 0.0)
         )
@@ -164,6 +157,20 @@ def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
     halves = (1, -1) if pad.face is None else (pad.half,)
     spans = tuple((half * near, half * far) for half in halves)
     return PressedArea(pad.patch.start, pad.patch.end, pad.direction, side, spans)
+
+
+def _press(pad: Pad, side: Side, members: tuple[Segment, Segment], member: int) -> Press:
+    """Return the force of a contact on the inner (0) or the outer segment (1) of its joint."""
+    if pad.patch is not None:
+        area = _pad_area(pad, side, members[0])
+        parts = tuple((1.0 / len(area.spans), *span) for span in area.spans)
+        return Press(pad.midpoint, pad.direction, side, parts)
+    # The corners of the segment carry the force in static equilibrium.
+    face = members[member].section_at(pad.midpoint).face(pad.direction, side)
+    point = (pad.inner, pad.outer)[member][0 if pad.direction == "z" else 1]
+    high = (point - face.low) / face.width
+    parts = (1.0 - high, face.low, face.low), (high, face.high, face.high)
+    return Press(pad.midpoint, pad.direction, side, parts)
 
 
 @lru_cache(maxsize=64)
@@ -206,7 +213,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     # Collars over a whole wall end at the folds of the wall, except for round-off.
     at_fold = np.abs(np.subtract.outer(edges, folds)).min(axis=1) < section.near
     edges = np.unique(np.concatenate([folds, edges[~at_fold]]))
-    around = _Axis(_graded_nodes(edges, length, (0.0, folds[-1])), closed=True)
+    around = HermiteAxis(_graded_nodes(edges, length, (0.0, folds[-1])), closed=True)
     plates = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
 
     closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
@@ -215,7 +222,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     cuts = np.unique([low, high, *pad_ends, *closed_at, *collar_ends])
     # A pad at the end of a segment ends there, except for round-off.
     cuts = cuts[np.diff(cuts, prepend=-np.inf) > section.near]
-    along_x = _Axis(_graded_nodes(cuts, length, (start, end)), closed=False)
+    along_x = HermiteAxis(_graded_nodes(cuts, length, (start, end)), closed=False)
     midpoints = 0.5 * (along_x.nodes[:-1] + along_x.nodes[1:])
     midpoints_around = 0.5 * (around.nodes[:-1] + around.nodes[1:])
     doubled = np.zeros((midpoints.size, midpoints_around.size))

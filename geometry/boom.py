@@ -146,14 +146,27 @@ class Boom:
         return any(joint.drive is not None for joint in self.joints)
 
     @property
-    def pads_on_walls(self) -> bool:
-        """True if a pad bears on a wall, which bends; pads on corners and points bend none."""
-        return any(
+    def yielding(self) -> str:
+        """What gives way at contacts with play, in words; empty if nothing does.
+
+        Sections with inclined plates distort. The walls of boxes bend under pads; pads on corners
+        and points bend none.
+        """
+        loose = [joint for joint in self.joints if not joint.bonded]
+        sections = [
+            self.segments[number].section
+            for joint in loose
+            for number in (joint.outer, joint.inner)
+        ]
+        if any(one is not None and len(one.faces) < len(one.plates) for one in sections):
+            return "sections under pads" if any(j.padded for j in loose) else "sections at stations"
+        on_walls = any(
             pad is not None and pad.bears == "wall"
-            for joint in self.joints
+            for joint in loose
             if self.segments[joint.inner].section is not None
             for pad in (*joint.pads, joint.pad)
         )
+        return "walls under pads" if on_walls else ""
 
     @property
     def compressed(self) -> bool:

@@ -248,11 +248,12 @@ def _buckling(checked: CheckedCase) -> Table:
         Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
     ]
     walls = (
-        "The factor of a shell is estimated by a beam whose walls bend under pads. In a run the "
-        "webs of both segments are tied to each other at each station, so that walls do not bend: "
+        f"The factor of a shell is estimated by a beam with elastic {checked.boom.yielding}. In a "
+        "run the webs of both segments are tied to each other at each station, so that walls do "
+        "not bend: "
         "the factor of the run may be higher."
     )
-    notes = [walls] if checked.boom.pads_on_walls and any(m.needs_shell for m in models) else []
+    notes = [walls] if checked.boom.yielding and any(m.needs_shell for m in models) else []
     return Table("Buckling under the axial forces, joints in contact", columns, notes)
 
 
@@ -272,8 +273,8 @@ def _damping_ratios(preview: Preview) -> Table:
         for model in (case.models if any(coefficients) else ())
     ]
     headings = ("model", *(f"mode {number}" for number in range(1, SHOWN_MODES + 1)))
-    walls = "In this table walls under pads are rigid, also for shells."
-    notes = [walls] if boom.pads_on_walls else []
+    note = f"In this table {boom.yielding} are rigid, also for shells."
+    notes = [note] if boom.yielding else []
     return Table.of_rows("", "Damping ratios, joints in contact", headings, rows, notes)
 
 
@@ -359,9 +360,9 @@ def _static_lines(
         return
     state, bonded = static
     hertz, bonded_hertz = (first_frequency(case, one) for one in static)
-    on_walls = state.boom.pads_on_walls
-    walls = ", with the compliance of walls under pads" if on_walls else ""
-    without = "with bonded joints and rigid walls:" if on_walls else "without play"
+    soft = state.boom.yielding
+    walls = f", with the compliance of {soft}" if soft else ""
+    without = f"with bonded joints and rigid {soft.split()[0]}:" if soft else "without play"
     yield (
         f"Static tip deflection (t = 0) {_BEAMS}{walls}: {milli(state.tip)} mm; {without} "
         f"{milli(bonded.tip)} mm."
@@ -370,7 +371,7 @@ def _static_lines(
         f"First natural frequency, joints in contact, {_BEAMS}{walls}: {number(hertz, 4)} Hz; "
         f"{without} {number(bonded_hertz, 4)} Hz."
     )
-    causes = "Play and the walls under pads rotate" if on_walls else "Play rotates"
+    causes = f"Play and the {soft} rotate" if soft else "Play rotates"
     rest = beam.farthest
     for tilt in rest.tilts:
         yield (

@@ -294,7 +294,7 @@ def without_negligible(groups: Sequence[Sequence[StaticExtreme]]) -> list[list[S
 def beam_note(boom: Boom) -> str:
     """Return a sentence on the model of the statics."""
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
-    walls = ", with elastic walls under pads," if boom.pads_on_walls else ""
+    walls = f", with elastic {boom.yielding}," if boom.yielding else ""
     return f"A separate {theory} beam{walls} gives these estimates."
 
 

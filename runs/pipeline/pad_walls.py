@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Share of the tip deflection that walls under slide pads cause by bending, and remedies."""
+"""Share of the tip deflection that soft walls and sections at contacts cause, and remedies."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ GOVERNING_SHARE = 0.5
 
 
 def pad_wall_lines(case: Case, beam: BeamStates) -> Iterator[str]:
-    """Yield sentences on the share of the static tip deflection that walls under pads cause.
+    """Yield sentences on the share of the static tip deflection that walls or sections cause.
 
     If the share is large, a list of remedies follows. The states are those of a boom with the
     contact laws of the first model with play.
@@ -38,10 +38,12 @@ def pad_wall_lines(case: Case, beam: BeamStates) -> Iterator[str]:
     if part is None or abs(part) < _NO_SHARE:
         return
     share = part * tip
-    caution = "caution: walls" if part > GOVERNING_SHARE else "Walls"
+    what, where = boom.yielding.split(maxsplit=1)
+    how, source = ("distort", "a frame of plates") if what == "sections" else ("bend", "plates")
     yield (
-        f"{caution} bend under pads, which moves the tip by {milli(share)} of {milli(tip)} mm, "
-        f"{100.0 * part:.2g} %, under the loads at t = {time:.4g} s (estimate from plates)."
+        f"{f'caution: {what}' if part > GOVERNING_SHARE else what.capitalize()} {how} {where}, "
+        f"which moves the tip by {milli(share)} of {milli(tip)} mm, "
+        f"{100.0 * part:.2g} %, under the loads at t = {time:.4g} s (estimate from {source})."
     )
     if part < LARGE_SHARE:
         return
@@ -59,36 +61,37 @@ def pad_wall_lines(case: Case, beam: BeamStates) -> Iterator[str]:
 
 
 def wall_part(case: Case, beam: BeamStates) -> float | None:
-    """Return the share of the largest static tip deflection that walls under pads cause.
+    """Return the share of the largest static tip deflection that walls or sections cause.
 
-    The share is 1 if walls cause all of it; None without pads on walls, or if a section is unknown.
+    The share is 1 if they cause all of it; None if nothing yields, or if a section is unknown.
     """
     boom, rest = beam.boom, beam.farthest
-    if not boom.pads_on_walls or any(segment.section is None for segment in boom.segments):
+    if not boom.yielding or any(segment.section is None for segment in boom.segments):
         return None
     rigid = state_at_rest(case, boom, walls=0.0, time=rest.time).tip
     return 1.0 - rigid / rest.tip if rest.tip else 0.0
 
 
 def deflection_advice(case: Case, beam: BeamStates | None) -> str:
-    """Return the advice to change the pads if walls under them govern, else to check the units."""
-    governing = beam is not None and (wall_part(case, beam) or 0.0) > GOVERNING_SHARE
-    return "walls under pads cause most of it; change the pads" if governing else CHECK_UNITS
+    """Return the advice to change the pads if walls or sections govern, else to check the units."""
+    if beam is None or (wall_part(case, beam) or 0.0) <= GOVERNING_SHARE:
+        return CHECK_UNITS
+    return f"{beam.boom.yielding} cause most of it; change the pads"
 
 
 def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
-    """Return a sentence that names the beams with rigid walls under pads; empty without them."""
+    """Return a sentence that names the beams without what yields; empty without them."""
     with_play = [model for model in models if not model.bonded]
     names = [repr(model.name) for model in with_play if not model.needs_shell]
     elastic = [repr(model.name) for model in with_play if model.needs_shell]
-    if not names or not boom.pads_on_walls:
+    if not names or not boom.yielding:
         return ""
     others = f", elastic in {join_words(elastic)}" if elastic else ""
-    return f"Walls under pads are rigid in {join_words(names)}{others}."
+    return f"{boom.yielding.capitalize()} are rigid in {join_words(names)}{others}."
 
 
 def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
-    """Yield changes that stiffen the walls under pads: a description and the changed boom."""
+    """Yield changes that stiffen walls or sections: a description and the changed boom."""
 
     def longer(pad: PadSize, longest: float) -> dict[str, Any]:
         return {"length": max(min(2.0 * pad.length, longest), pad.length)}
@@ -107,9 +110,12 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
     without = " and offset left out" if offset else ""
     corners = _with_pads(boom, lambda *_: {"bears": "corner", "offset": 0.0})
     yield f"pads that bear on the corners, bears = 'corner'{without}", corners
+    walls = _with_pads(boom, lambda *_: {"bears": "wall"})
+    yield "pads that bear on the walls, beside the corners, bears = 'wall'", walls
+    place = "pad" if any(joint.padded for joint in boom.joints) else "station"
     collars = (
-        "collars around both segments at each pad, as thick as the walls and one box height long "
-        "(the boom can then not telescope)"
+        f"collars around both segments at each {place}, as thick as the walls and one section "
+        "height long (the boom can then not telescope)"
     )
     if (changed := _with_collars(boom)) != boom:
         yield collars, changed
@@ -131,13 +137,13 @@ def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) 
 
 
 def _with_collars(boom: Boom) -> Boom:
-    """Return the boom with collars at all pads, each as thick as the wall.
+    """Return the boom with collars at all contacts, each as thick as the wall.
 
     A new collar extends half the height of the section on both sides of the station. Where there is
     a collar, it stays.
     """
     segments = list(boom.segments)
-    for joint in (joint for joint in boom.joints if joint.padded):
+    for joint in (joint for joint in boom.joints if not joint.bonded):
         for index, x in product((joint.outer, joint.inner), joint.stations):
             segment, section = segments[index], segments[index].section_at(x)
             reach, thickness = 0.5 * section.size("z"), section.face("z", 1).thickness

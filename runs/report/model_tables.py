@@ -223,11 +223,11 @@ def buckling_table(results: Results) -> Table | None:
         "buckles. The static tip deflection includes second-order effects.",
     ]
     boom, kinds = results.boom, {one.kind for one in models.values()}
-    if boom.pads_on_walls and not boom.telescopes and "shell" in kinds:
+    if boom.yielding and not boom.telescopes and "shell" in kinds:
         notes.append(
             "For a shell, the webs of both segments are tied to each other at each station, so "
-            "that walls under pads do not bend. `protractile check` estimates the factor with "
-            "walls that bend, which may be lower."
+            f"that {boom.yielding} are rigid. `protractile check` estimates the factor with "
+            "elastic ones, which may be lower."
         )
     return Table("Axial forces", columns, notes, "axial")
 

@@ -166,8 +166,8 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
         "Remedies, each with the static tip deflection that it gives under these loads (for local "
         "plate stresses, run a shell with the remedy):",
         "- -317.9 mm: pads that bear on the corners, bears = 'corner'",
-        "- -333 mm: collars around both segments at each pad, as thick as the walls and one box "
-        "height long (the boom can then not telescope)",
+        "- -333 mm: collars around both segments at each pad, as thick as the walls and one "
+        "section height long (the boom can then not telescope)",
     ]
     (load,) = case.loads
     sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})
