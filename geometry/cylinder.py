@@ -3,13 +3,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from math import cos, hypot, sin
-from typing import TYPE_CHECKING, Annotated, NamedTuple
+from math import cos, hypot, isfinite, sin
+from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
+from pydantic import BeforeValidator, GetCoreSchemaHandler
 from pydantic.dataclasses import dataclass
+from pydantic_core import CoreSchema, PydanticCustomError
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.fields import (
@@ -21,12 +23,53 @@ from protractile.geometry.fields import (
     Place,
     Positive,
     SegmentRef,
+    is_number,
 )
 from protractile.geometry.load import LoadedSegment
 from protractile.geometry.support import Pin, Support
 
 if TYPE_CHECKING:
     from protractile.geometry.boom import Boom
+
+
+@dataclass(frozen=True, slots=True, config=PART)
+class EarthPoint:
+    """A point in earth axes, from the pin of the foot about which the boom luffs."""
+
+    front: Annotated[Number, In("m")]
+    """the horizontal distance in m in front of the foot pin"""
+    below: Annotated[Number, In("m")]
+    """the vertical distance in m below the foot pin"""
+
+
+_Coordinates = tuple[Number, Number]
+
+
+def _ground(value: Any) -> Any:
+    """Validate a pair or a point in earth axes. Errors of a union type would be unreadable."""
+    if isinstance(value, EarthPoint):
+        return value
+    earth = isinstance(value, Mapping)
+    if earth or isinstance(value, list | tuple):
+        numbers = list(value.values() if earth else value)
+        finite = all(is_number(one) and isfinite(one) for one in numbers)
+        if finite and (value.keys() == {"front", "below"} if earth else len(numbers) == 2):
+            return EarthPoint(**value) if earth else tuple(map(float, numbers))
+    raise PydanticCustomError("ground", "a point of the ground")
+
+
+class _AnyGround:
+    """Validation of a point of the ground: in the axes of the boom, or in earth axes."""
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        check = BeforeValidator(_ground, json_schema_input_type=_Coordinates | EarthPoint)
+        return handler.generate_schema(Annotated[_Coordinates | EarthPoint, check])
+
+
+# Type of a point of the ground in the axes of the boom. In a case it may be an EarthPoint.
+Ground = Annotated[tuple[float, float], _AnyGround(), In("m")]
 
 
 @dataclass(frozen=True, slots=True, config=PART)
@@ -52,8 +95,10 @@ class Cylinder:
     """the x of the lug in m"""
     depth: Annotated[Number, In("m")] = 0.0
     """the depth in m of the lug below the segment's axis"""
-    ground: tuple[Annotated[Number, In("m")], Annotated[Number, In("m")]] = field(kw_only=True)
-    """the other end in m: its x, and its height above the boom's axis"""
+    ground: Ground = field(kw_only=True)
+    """the other end in m, which does not luff: { front, below }, its distances in front of and
+    below the foot pin in earth axes; or [x, height above the axis] in the axes of the boom at the
+    luffing angle gravity.angle of the case"""
     stiffness: Annotated[Positive, In("N/m")] = field(kw_only=True)
     """the axial stiffness in N/m; of two cylinders side by side their sum"""
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
@@ -86,10 +131,29 @@ class Cylinder:
 
     def luffed(self, turn: float, foot: Support) -> Cylinder:
         """Return the cylinder in the axes of a boom turned about ``foot`` by ``turn`` in rad."""
+        return self.on_earth(0.0, foot).in_boom_axes(turn, foot)
+
+    def on_earth(self, angle: float, foot: Support) -> Cylinder:
+        """Return the cylinder with its ground in earth axes.
+
+        Args:
+            angle: luffing angle in rad at which the ground in the axes of the boom is given.
+            foot: support whose pin the boom luffs about.
+        """
+        if isinstance(self.ground, EarthPoint):
+            return self
         along, up = self.ground[0] - foot.x, self.ground[1] + foot.depth
-        cosine, sine = cos(turn), sin(turn)
-        ground = (foot.x + along * cosine + up * sine, -foot.depth - along * sine + up * cosine)
-        return replace(self, ground=ground)
+        front, height = along * cos(angle) - up * sin(angle), along * sin(angle) + up * cos(angle)
+        return replace(self, ground=EarthPoint(front, -height))
+
+    def in_boom_axes(self, angle: float, foot: Support) -> Cylinder:
+        """Return the cylinder with its ground in the axes of a boom at a luffing angle in rad."""
+        point = self.ground
+        if not isinstance(point, EarthPoint):
+            return self
+        along = point.front * cos(angle) - point.below * sin(angle)
+        up = -point.front * sin(angle) - point.below * cos(angle)
+        return replace(self, ground=(foot.x + along, up - foot.depth))
 
     def normal_force(self, x: Array, foot: Support | None) -> Array:
         """Return the segment's axial force (num_places,) in N at x in m per N of cylinder force.
@@ -110,8 +174,13 @@ class Cylinder:
             spatial: whether the boom is three-dimensional.
 
         Raises:
-            BoomError: the cylinder has no length, or a flat boom has two side by side.
+            BoomError: the cylinder has no length, its ground is in earth axes, or a flat boom has
+                two side by side.
         """
+        if isinstance(self.ground, EarthPoint):
+            raise BoomError(
+                f"{where}.ground", "a boom has no earth axes; give x and z in m of its own axes"
+            )
         if not 0.0 < self.length < float("inf"):
             raise BoomError(
                 f"{where}.ground", "must be another point than the lug; give x and z in m"

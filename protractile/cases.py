@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from protractile.runs.case import reading
+from protractile.runs.case.build import hold_ground
 from protractile.runs.case.messages import BadInput, refusing
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
@@ -95,7 +96,7 @@ def change(case: Case, **values: Any) -> Case:
         except InvalidVariation as reason:
             raise BadInput(_CASE, key, str(reason)) from None
     with refusing(_CASE):
-        changed = Case.model_validate(tables)
+        changed = hold_ground(Case.model_validate(tables), case)
     reading.check(changed, _CASE)
     return changed
 

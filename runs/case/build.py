@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from math import radians
 from typing import Any
 
 from protractile.dynamics.energy import DRIVEN_ENERGIES
@@ -13,6 +14,7 @@ from protractile.dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, BoomError, Joint, Lateral, Material, PointMass, Segment
 from protractile.geometry.boom_checks import check_order
+from protractile.geometry.cylinder import Cylinder, EarthPoint
 from protractile.geometry.fields import describe, resolve_distances
 from protractile.geometry.joint import BareJoint
 from protractile.geometry.section import (
@@ -21,6 +23,7 @@ from protractile.geometry.section import (
     infer_inner_section,
     infer_outer_section,
 )
+from protractile.geometry.support import Support
 from protractile.geometry.support_check import check_contacts_at_rest
 from protractile.geometry.taper import check_alike, mean_area, middle_section
 from protractile.runs.case import actions, motions
@@ -65,7 +68,7 @@ def build_boom(case: Case) -> Boom:
         (*actions.loads(case, segments), *motions.turning_loads(frame, segments, joints)),
         tuple(actions.stops(case)),
         case.observe,
-        case.cylinders,
+        _cylinders(case),
         (
             *motions.hoist_changes(case, segments, joints),
             *motions.turning_changes(
@@ -76,6 +79,43 @@ def build_boom(case: Case) -> Boom:
     check_contacts_at_rest(boom)
     motions.check_elastic_drives(case, boom)
     return boom
+
+
+def hold_ground(changed: Case, original: Case) -> Case:
+    """Return a changed case whose cylinders stand where they stand in the original case.
+
+    If the luffing angle is changed, the ground of cylinders in the axes of the boom, which holds at
+    the original angle, is given in earth axes.
+    """
+    if changed.gravity is None or original.gravity is None:
+        return changed
+    foot, angle = _foot(changed), original.gravity.angle
+    if foot is None or changed.gravity.angle == angle or not changed.cylinders:
+        return changed
+    on_earth = tuple(one.on_earth(radians(angle), foot) for one in changed.cylinders)
+    return changed.model_copy(update={"cylinders": on_earth})
+
+
+def _cylinders(case: Case) -> tuple[Cylinder, ...]:
+    """Return the cylinders with their ground in the axes of the boom."""
+    angle = radians(0.0 if case.gravity is None else case.gravity.angle)
+    foot = _foot(case)
+    for number, one in enumerate(case.cylinders, start=1):
+        if foot is None and isinstance(one.ground, EarthPoint):
+            what = "no segment has a support, from whose pin front and below are measured; give one"
+            raise BoomError(f"cylinder[{number}].ground", what)
+    if foot is None:
+        return case.cylinders
+    return tuple(one.in_boom_axes(angle, foot) for one in case.cylinders)
+
+
+def _foot(case: Case) -> Support | None:
+    """Return the foot of the first segment that has one, about whose pin the boom luffs."""
+    for table, ends in zip(case.segments, _spans(case.segments, case.joints), strict=True):
+        if table.supports:
+            supports = [resolve_distances(one, *ends) for one in table.supports]
+            return min(supports, key=lambda support: support.x)
+    return None
 
 
 def check_ensemble_data(case: Case, boom: Boom) -> None:

@@ -14,10 +14,9 @@ from math import cos, radians, sin
 from typing import Any, NamedTuple, TypeVar, get_args
 
 from protractile.geometry.boom import BoomError
-from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.typography import choices
 from protractile.runs.case.actions import axial_force, payload_gravity
-from protractile.runs.case.build import build_boom, check_names
+from protractile.runs.case.build import build_boom, check_names, hold_ground
 from protractile.runs.case.limits import CaseTable
 from protractile.runs.case.load_tables import (
     AxialTable,
@@ -81,19 +80,19 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
         key: getattr(case if getattr(table, key) is None else table, key)
         for key in ("loads", "axial", "base")
     }
-    combined = case.model_copy(
+    changed = case.model_copy(
         update={
             **replacements,
             "gravity": gravity,
             "payload": payload,
             "joints": _joints(case, table),
-            "cylinders": tuple(_luffed_cylinders(case, table)),
             **dict.fromkeys(("hoist", "slew", "luff")),
             "load_cases": (),
             "combinations": (),
             "spectra": (),
         }
     )
+    combined = hold_ground(changed, case)
     dead = factors["dead"]
     segments = [_times(one, dead, "load", "lateral_load") for one in combined.segments]
     loads = [_times(one, factors[one.group], one.amount) for one in combined.loads]
@@ -158,17 +157,6 @@ def _joints(case: Case, table: LoadCaseTable) -> tuple[Any, ...]:
         else joint
         for joint in case.joints
     )
-
-
-def _luffed_cylinders(case: Case, table: LoadCaseTable) -> Iterator[Cylinder]:
-    """Yield the cylinders with ground points in the coordinates of the luffed boom."""
-    turn = 0.0
-    if table.angle is not None and case.gravity is not None:
-        turn = radians(table.angle - case.gravity.angle)
-    boom = build_boom(case) if turn and case.cylinders else None
-    for number, one in enumerate(case.cylinders):
-        foot = boom.segments[boom.cylinders[number].segment].foot if boom else None
-        yield one if foot is None else one.luffed(turn, foot)
 
 
 def check_combinations(case: Case) -> None:

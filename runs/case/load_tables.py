@@ -174,8 +174,8 @@ class LoadCaseTable(CaseTable):
     name: Name
     """the name of the load case"""
     angle: Annotated[float, Field(strict=True, ge=-90.0, le=90.0), In("deg")] | None = None
-    """the luffing angle in degrees, in place of gravity.angle; the ground of cylinders turns with
-    it about the foot"""
+    """the luffing angle in degrees, in place of gravity.angle; the ground of cylinders stays where
+    it is on the earth"""
     extension: Annotated[dict[str, NotNegative], In("m")] = Field(default_factory=dict)
     """inner segment = extension in m, in place of the joint's extension"""
     payload: Annotated[NotNegative, In("kg")] | None = None

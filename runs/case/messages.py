@@ -59,6 +59,7 @@ _VALID_INPUT = {
     "contact_tolerance": "a number from {least} to below 1, or 'any'",
     "place": "a number of m, 'tail', 'head' or a distance in m from one of them such as "
     "{{ tail = 0.2 }}",
+    "ground": "a list of two numbers, or a table of two such as {{ front = 0.7, below = 1.1 }}",
     "literal_error": "{expected}",
     "tuple_type": "a list",
 }

@@ -17,7 +17,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.fields import describe, fields_of, is_number
 from protractile.geometry.fit import pad_room, room
 from protractile.runs.case import reading
-from protractile.runs.case.build import build_boom
+from protractile.runs.case.build import build_boom, hold_ground
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
@@ -206,7 +206,7 @@ class Draft:
                 raise BadInput(self.file, key, f"must be a number of the case, got {value!r}")
             self._numbers[key][0].put(tables, float(value))
         with refusing(self.file):
-            return Case.model_validate(tables)
+            return hold_ground(Case.model_validate(tables), self.case)
 
     @property
     def shells(self) -> list[Shell]:

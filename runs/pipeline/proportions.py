@@ -76,7 +76,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
         *_missing_loads(case, boom),
         *_ineffective_inputs(case),
         *_materials(case),
-        *_cylinders(case, boom),
+        *_cylinders(boom),
         *_joints(case),
         *_gaps(boom),
         *_pads(case, boom),
@@ -141,13 +141,11 @@ def _materials(case: Case) -> Iterator[str]:
                 )
 
 
-def _cylinders(case: Case, boom: Boom) -> Iterator[str]:
+def _cylinders(boom: Boom) -> Iterator[str]:
     """Yield cautions on cylinders that pull, hold a sliding segment, or are at an unusual place."""
-    for number, (table, cylinder) in enumerate(
-        zip(case.cylinders, boom.cylinders, strict=True), start=1
-    ):
+    for number, cylinder in enumerate(boom.cylinders, start=1):
         segment = boom.segments[cylinder.segment]
-        if (height := table.ground[1]) > -table.depth:
+        if (height := cylinder.ground[1]) > -cylinder.depth:
             yield (
                 f"cylinder[{number}].ground: a height of {height:g} m is above the lug, and the "
                 "cylinder would pull; usual is below, where heights are negative"

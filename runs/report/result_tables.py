@@ -245,14 +245,13 @@ def drive_table(results: Results) -> Table:
 def luffing_table(results: Results) -> Table | None:
     """Return the table of cylinder lengths and forces in luffing; None without luffing."""
     boom, data = results.boom, results.trajectories
-    if results.case.luff is None or not boom.cylinders:
+    foot = next((one.foot for one in boom.segments if one.foot), None)
+    if results.case.luff is None or not boom.cylinders or foot is None:
         return None
     frame = frame_motion(results.case, boom.segments)
     time, rows = data["time"].values, []
     turns = frame.luff_angle(time) - frame.luff_angle(time[0])
     for position, cylinder in enumerate(boom.cylinders, start=1):
-        foot = boom.segments[cylinder.segment].foot
-        assert foot is not None
         luffed = [cylinder.luffed(turn, foot) for turn in turns.tolist()]
         lengths = np.array([one.length for one in luffed])
         arms = cylinder.arm(foot) / np.array([one.arm(foot) for one in luffed])

@@ -22,7 +22,7 @@ from protractile.geometry.section import BoxSection
 from protractile.geometry.typography import choices
 from protractile.runs.case import reading as case_file
 from protractile.runs.case import toml
-from protractile.runs.case.build import build_boom
+from protractile.runs.case.build import build_boom, hold_ground
 from protractile.runs.case.messages import BadInput, refusing
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SectionTable
@@ -98,7 +98,7 @@ def plan(
     case_file.select(whole, file, models, mesh_size, 0)
     tables = tables_of(whole)
     variations = parse(texts, tables, file)
-    first = _set_numbers(file, tables, tuple((v, v.values[0]) for v in variations))
+    first = _set_numbers(file, whole, tables, tuple((v, v.values[0]) for v in variations))
     units = [whole.system.unit(unit_of(variation.places[0], first)) for variation in variations]
     variations = [
         replace(one, places=tuple(with_size(place, first) for place in one.places))
@@ -156,7 +156,7 @@ def make_points(
     tables = tables_of(whole)
 
     def case_of(settings: Sequence[Setting]) -> Case:
-        return case_file.select(_set_numbers(file, tables, settings), file, models)
+        return case_file.select(_set_numbers(file, whole, tables, settings), file, models)
 
     plates = {} if plates is None else plates
     for settings in combinations:
@@ -173,14 +173,14 @@ def make_points(
         yield Point(values, label, case_file.select(case, file, None, mesh_size))
 
 
-def _set_numbers(file: str, tables: Tables, settings: Sequence[Setting]) -> Case:
+def _set_numbers(file: str, whole: Case, tables: Tables, settings: Sequence[Setting]) -> Case:
     changed = deepcopy(tables)
     try:
         for variation, value in settings:
             for place in variation.places:
                 place.put(changed, value)
         with refusing(file):
-            return Case.model_validate(changed)
+            return hold_ground(Case.model_validate(changed), whole)
     except OverflowError:
         what = "a value is too large for SI units; give smaller ones"
         raise BadInput(file, f"--vary {_label(settings)}", what) from None
