@@ -10,9 +10,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import fields, replace
+from itertools import pairwise
 from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args
 
 from pydantic import (
+    AfterValidator,
     BeforeValidator,
     ConfigDict,
     Field,
@@ -146,6 +148,30 @@ def _place(value: Any) -> Any:
 def is_number(value: Any) -> bool:
     """Return whether a value is a number; booleans are not."""
     return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def rising(what: str, falling: str = "") -> AfterValidator:
+    """Return the check that the first numbers of pairs rise, and that others do not.
+
+    Args:
+        what: the first numbers in messages, for example ``times``.
+        falling: the second numbers, if they must not rise.
+    """
+
+    def check(pairs: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+        for number, (before, after) in enumerate(pairwise(pairs), start=1):
+            wrong = ""
+            if after[0] == before[0]:
+                wrong = f"{what} must rise; entry {number + 1} repeats that of entry {number}"
+            elif after[0] < before[0]:
+                wrong = f"{what} must rise; entry {number + 1} is below entry {number}: sort them"
+            elif falling and after[1] > before[1]:
+                wrong = f"{falling} must not rise; entry {number + 1} is above entry {number}"
+            if wrong:
+                raise PydanticCustomError("unsuitable", "{what}", {"what": wrong})
+        return pairs
+
+    return AfterValidator(check)
 
 
 class _AnyPlace:

@@ -3,14 +3,13 @@
 
 from __future__ import annotations
 
-from itertools import pairwise
 from typing import Annotated
 
 from pydantic import Field, model_validator
 from pydantic.dataclasses import dataclass as part
 from pydantic_core import PydanticCustomError
 
-from protractile.geometry.fields import PART, In, Positive
+from protractile.geometry.fields import PART, In, Positive, rising
 
 
 @part(frozen=True, slots=True, config=PART)
@@ -31,19 +30,18 @@ class Material:
     yield_strength: Annotated[Positive, In("Pa")] | None = None
     """the yield strength in Pa, for utilisations"""
     yield_by_thickness: Annotated[
-        tuple[tuple[Positive, Positive], ...], In("m", "Pa"), Field(max_length=20)
+        tuple[tuple[Positive, Positive], ...],
+        In("m", "Pa"),
+        Field(max_length=20),
+        rising("thicknesses", falling="strengths"),
     ] = ()
     """pairs of a plate thickness in m and the yield strength in Pa up to it, ascending, instead of
     yield_strength; thicker plates have the last one"""
 
     @model_validator(mode="after")
     def _check_strengths(self) -> Material:
-        pairs = self.yield_by_thickness
-        if pairs and self.yield_strength is not None:
+        if self.yield_by_thickness and self.yield_strength is not None:
             what = {"what": "has yield_strength and yield_by_thickness; give one of them"}
-            raise PydanticCustomError("unsuitable", "{what}", what)
-        if any(before[0] >= after[0] for before, after in pairwise(pairs)):
-            what = {"what": "the thicknesses of yield_by_thickness must ascend"}
             raise PydanticCustomError("unsuitable", "{what}", what)
         return self
 

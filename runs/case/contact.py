@@ -12,7 +12,16 @@ from pydantic.dataclasses import dataclass
 from protractile.dynamics.contact import ContactLaw, PowerContact, restitution_damping
 from protractile.dynamics.contact_table import TableContact
 from protractile.geometry.boom import Direction
-from protractile.geometry.fields import PART, BoomError, Distance, In, NotNegative, Number, Positive
+from protractile.geometry.fields import (
+    PART,
+    BoomError,
+    Distance,
+    In,
+    NotNegative,
+    Number,
+    Positive,
+    rising,
+)
 from protractile.geometry.joint import BareJoint, Carrier, Drive
 from protractile.geometry.section import Side
 from protractile.runs.case.limits import (
@@ -83,6 +92,7 @@ Forces = Annotated[
     tuple[tuple[Number, Number], ...],
     In("m", "N"),
     Field(min_length=1, max_length=MOST_POINTS),
+    rising("depths"),
     AfterValidator(_check_points),
 ]
 

@@ -21,13 +21,14 @@ from protractile.geometry.fields import (
     Place,
     Positive,
     is_number,
+    rising,
 )
 from protractile.runs.case.limits import MOST_TIMES, CaseTable, Count, Text, error_at
 
 # Groups of loads with a common factor in a combination.
 Group = Literal["dead", "payload", "wind", "dynamic", "test"]
 
-Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1")]
+Times = Annotated[tuple[tuple[Number, Number], ...], In("s", "1"), rising("times")]
 
 
 class HistoryTable(CaseTable):

@@ -20,7 +20,16 @@ from protractile.dynamics.excitation import (
     Stroke,
 )
 from protractile.geometry.boom import BoomError
-from protractile.geometry.fields import Few, Flag, In, NotNegative, Number, Positive, describe
+from protractile.geometry.fields import (
+    Few,
+    Flag,
+    In,
+    NotNegative,
+    Number,
+    Positive,
+    describe,
+    rising,
+)
 from protractile.runs.case.limits import MOST_TIMES, CaseTable, Text
 from protractile.runs.case.load_tables import HistoryTable
 
@@ -34,13 +43,10 @@ _SAME_TIME = 1.0e-9
 
 Ratio = Annotated[float, Field(strict=True, ge=0.0, lt=1.0)]
 
-TravelPairs = Annotated[
-    tuple[tuple[Number, Number], ...], In("s", "m"), Field(min_length=2, max_length=MOST_TIMES)
-]
-
-
-Angles = Annotated[
-    tuple[tuple[Number, Number], ...], In("s", "deg"), Field(min_length=2, max_length=MOST_TIMES)
+TimePairs = Annotated[
+    tuple[tuple[Number, Number], ...],
+    Field(min_length=2, max_length=MOST_TIMES),
+    rising("times"),
 ]
 
 
@@ -58,7 +64,7 @@ class TravelTable(CaseTable):
     given"""
     start: Annotated[NotNegative, In("s")] = 0.0
     """the time in s at which the travel begins"""
-    table: TravelPairs | None = None
+    table: Annotated[TimePairs, In("s", "m")] | None = None
     """pairs of a time in s and the extension in m since the start, linear between them and constant
     beyond, instead of a travel"""
     file: Text | None = None
@@ -186,7 +192,7 @@ class LuffTable(TravelTable):
     """the angle in degrees by which the boom turns, positive where the tip rises"""
     speed: Annotated[Positive, In("deg/s")] | None = None
     """the speed in deg/s, instead of the duration"""
-    table: Angles | None = None
+    table: Annotated[TimePairs, In("s", "deg")] | None = None
     """pairs of a time in s and the angle in degrees since the start, on a cubic spline that is at
     rest at both ends, instead of a travel"""
 

@@ -137,7 +137,7 @@ MOMENT = '[[load]]\nsegment = "beam"\nx = 6.0\nmagnitude = 2.0e4\nmoment = true\
         ('[[load]]\nsegment = "beam"\nmagnitude = 1.0\nramp = 1.0\nfrequency = 1.0',
          "load[1].frequency: ramp is given; leave one of them out"),
         ("[[base]]\nacceleration = 1.0\ntable = [[0.0, 1.0], [0.0, 2.0]]",
-         "base[1].table: times must rise"),
+         "base[1].table: times must rise; entry 2 repeats that of entry 1"),
         ('[[base]]\nacceleration = 1.0\nfile = "none.csv"',
          "base[1].file: '{folder}/none.csv' cannot be read (No such file or directory); give a CSV "
          "file of two columns, time in s and factor; a heading may say other units"),

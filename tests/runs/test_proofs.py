@@ -295,7 +295,7 @@ def test_shipped_cases_are_proved() -> None:
     ("change", "message"),
     [
         (("0.016, 3.45e8", "0.008, 3.45e8"),
-         "material: the thicknesses of yield_by_thickness must ascend"),
+         "material.yield_by_thickness: thicknesses must rise; entry 2 repeats that of entry 1"),
         (("yield_by", "yield_strength = 3e8\nyield_by"),
          "material: has yield_strength and yield_by_thickness; give one of them"),
         (('["empty", "loaded"]', '["empty", "full"]'), "spectrum[1].load_cases: 'full' is no load "
