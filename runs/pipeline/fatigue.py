@@ -124,13 +124,12 @@ def _damage(case: Case, category: float, stress: Mapping[tuple[str, bool], Array
     """Return the damage of the worst fibre of a detail from its stresses in all load cases."""
     shares = []
     for spectrum in case.spectra:
-        # The closed sequence of the states of all load cases.
+        # The sequence of the states of all load cases, which repeats.
         parts = [stress[name, spectrum.motion] for name in spectrum.load_cases]
         sequence = np.concatenate(parts, axis=1)
         of_fibres = []
         for one in sequence:
-            start = int(np.abs(one).argmax())
-            sizes, counts = count_stress_ranges([*np.roll(one, -start), one[start]])
+            sizes, counts = count_stress_ranges(one)
             raised = case.life.partial_factor * sizes
             of_fibres.append(float((counts / endurance(raised, MEGA * category)).sum()))
         shares.append(spectrum.repeats * np.array(of_fibres))

@@ -435,7 +435,8 @@ def life_table(results: Results) -> Table:
     if any(life.life_damage is not None for life in lives):
         columns.append(Column("damage of the life", [one.life_damage for one in lives], ".3g"))
     notes = [
-        "Rainflow ranges of the bending stress where it varies most. Damage-equivalent "
+        "Rainflow ranges of the bending stress where it varies most, of a run that is repeated: "
+        "its end leads to its start. Damage-equivalent "
         "range: one cycle of this range does the damage of all cycles of a run, on an S-N curve of "
         "slope 3; it may exceed the largest range."
     ]

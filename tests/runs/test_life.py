@@ -1,20 +1,80 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rainflow cycles and S-N curves of the standards."""
 
+from collections import Counter
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 pytest.importorskip("rainflow", reason="the cycles are counted by it")
 
+from protractile.cases import run_case
 from protractile.runs.case.schema import LifeTable
 from protractile.runs.pipeline.strength import StressCurve, count_stress_ranges, endurance, life
+from tests.runs.case_texts import CLAMPED, STEEL, box, elements, read_case
 
 
 def test_cycles_are_those_of_the_standard() -> None:
-    """Reference: external, ASTM E1049-85, figure 6: 3 and 4, 6, 8, 9 in half cycles."""
-    sizes, counts = count_stress_ranges([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
-    expected = {3.0: 0.5, 4.0: 1.5, 6.0: 0.5, 8.0: 1.0, 9.0: 0.5}
-    assert dict(zip(sizes.tolist(), counts.tolist(), strict=True)) == expected
+    """Reference: external, ASTM E1049-85, figure 7 for repeated histories: 3, 4, 7 and 9 once."""
+    stress = np.array([-2.0, 1.0, -3.0, 5.0, -1.0, 3.0, -4.0, 4.0, -2.0])
+    for start in range(8):
+        # The history may begin anywhere.
+        sizes, counts = count_stress_ranges(np.roll(stress[:-1], start))
+        counted = {size: counts[sizes == size].sum() for size in sizes.tolist()}
+        assert counted == {3.0: 1.0, 4.0: 1.0, 7.0: 1.0, 9.0: 1.0}
+
+
+def test_a_repetition_of_loading_also_unloads() -> None:
+    """Reference: by hand, 20000/2e6 (100/71)³ for a rise to 100 MPa; noise makes no cycles."""
+    rise = 100e6 * np.minimum(np.linspace(0.0, 2.0, 401), 1.0)
+    noise = 1e4 * np.resize([0.0, 1.0], 200)
+    rise[-200:] -= noise
+    found = life(
+        StressCurve("a", (0.0, 0.0, 0.1), rise), LifeTable(detail_category=71.0, repeats=20_000)
+    )
+    assert found.cycles == 1.0
+    assert found.life_damage == pytest.approx(20_000 / 2e6 * (100.0 / 71.0) ** 3, rel=1e-6)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_a_repetition_adds_what_the_history_written_twice_adds(seed: int) -> None:
+    """Reference: other code, rainflow cycles of the history twice in a row, less those of one."""
+    import rainflow
+
+    stress = np.random.default_rng(seed).normal(0.0, 50e6, 100)
+    added = Counter(dict(rainflow.count_cycles([*stress, *stress])))
+    added.subtract(dict(rainflow.count_cycles(stress)))
+    sizes, counts = count_stress_ranges(stress)
+    cubes = sum(count * size**3 for size, count in added.items())
+    assert counts @ sizes**3 == pytest.approx(cubes, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("load", "ramp", "damping", "damage"),
+    [(-7704.9, 2.0, 0.3, 0.0282), (-3852.45, 0.001, 0.05, 0.0570)],
+)
+def test_damage_of_a_load_that_remains(
+    tmp_path: Path, load: float, ramp: float, damping: float, damage: float
+) -> None:
+    """Reference: by hand, a load that rises slowly to 100 MPa or suddenly to 50 MPa.
+
+    Slowly: one full cycle. Suddenly: full cycles of 110.6, 77.1, 56.3, 41.0 and 29.9 MPa, from each
+    trough to the next peak of the decaying vibration, whose stress includes higher modes.
+    """
+    text = f"""
+title = "Load that remains"
+time = {{ duration = 4.0, output_step = 0.002 }}
+damping = {{ modal = {damping} }}
+life = {{ detail_category = 71.0, repeats = 20000 }}
+load = [{{ segment = "a", x = "head", magnitude = {load}, ramp = {ramp} }}]
+{STEEL}
+{box("a", 4.0, (0.2, 0.15, 0.008, 0.006), CLAMPED)}
+{elements("beam", theory="euler-bernoulli")}
+"""
+    results = run_case(read_case(tmp_path, text))
+    (found,) = results.summary.design.models["beam"].life
+    assert found.life_damage == pytest.approx(damage, rel=0.005)
 
 
 def test_a_curve_has_the_points_of_the_code() -> None:
