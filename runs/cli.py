@@ -273,7 +273,7 @@ def sweep(
         points.plan, case, models=_names(models), mesh_size=mesh_size, reference=against
     )
     if sensitivity:
-        plan, rejected_keys = sampling.plan_changes(case, _names(models), mesh_size)
+        plan, changed_numbers = sampling.plan_changes(case, _names(models), mesh_size)
     elif samples is not None:
         plan, samples_table = sampling.plan_samples(case, _names(models), mesh_size, samples)
     else:
@@ -295,10 +295,11 @@ def sweep(
                 tools = folder, pool, report_progress, cache
                 plan, outcomes = search.run_until(plan, bound, plan_of, *tools)
         if sensitivity:
-            table = sampling.changes(plan, outcomes)
+            table = sampling.changes(plan, changed_numbers, outcomes)
             sampling.write_changes(table, folder)
             print(printable(str(folder / sampling.CHANGES_CSV)))
-            sampling.print_influences(table, plan.points[0].case, rejected_keys, Terminal())
+            the_case = plan.points[0].case
+            sampling.print_influences(table, the_case, changed_numbers, Terminal())
         elif samples is not None:
             results = sampling.results_of(plan, outcomes)
             sampling.write(results, samples_table, folder)

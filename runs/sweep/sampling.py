@@ -4,13 +4,16 @@
 Tolerances are normal distributions, ``{ mean = 0.003, sd = 0.0005 }``. Samples are scrambled Sobol
 points (Owen 1998), mapped to normal quantiles. A linear map then gives them the exact means and
 variances and no correlation (moment matching, Barraquand 1995), so that the mean and the standard
-deviation of a linear result are exact. Sensitivities are central differences.
+deviation of a linear result are exact. Sensitivities are central differences, one-sided where a
+side is refused.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
+from typing import NamedTuple
 
 import matplotlib
 import numpy as np
@@ -54,6 +57,14 @@ NONE = 1.0e-9
 
 # Relative change by which each number is increased and decreased.
 CHANGE = 0.01
+# Signs of the changes.
+SIDES = (-1, 1)
+# Notes on the keys of refused points, by the signs of the valid changes.
+_REFUSED = {
+    (): "Refused with 1 % less and with 1 % more: {}.",
+    (1,): "Refused with 1 % less, so that the change is that with 1 % more: {}.",
+    (-1,): "Refused with 1 % more, so that the change is that with 1 % less: {}.",
+}
 # Maximum number of rows in the terminal.
 MOST_ROWS = 20
 # Relative change of a result below which it counts as round-off.
@@ -196,12 +207,37 @@ def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
         sheet.savefig(path)
 
 
+class Change(NamedTuple):
+    """A number of the case that is decreased and increased."""
+
+    key: str  #: its key
+    #: Index of the point with the number decreased (-1) or increased (+1), of the valid ones.
+    points: Mapping[int, int]
+
+    def relative(self, results: pd.DataFrame) -> pd.Series[float]:
+        """Return the relative changes of results for an increase of the number by 1 %.
+
+        They are central differences, or one-sided where a side has no result. The first row of
+        ``results`` is the case itself.
+        """
+        base = results.iloc[0]
+        below, above = (
+            results.iloc[self.points[side]] if side in self.points else base * np.nan
+            for side in SIDES
+        )
+        differences = 0.5 * (above - below), above - base, base - below
+        first, *others = (one / base.abs() for one in differences)
+        for one in others:
+            first = first.fillna(one)
+        return first
+
+
 def plan_changes(
     file: str, models: Sequence[str] | None, mesh_size: float | None
-) -> tuple[Plan, list[str]]:
-    """Return the plan of a sensitivity analysis, and the keys whose change makes the case invalid.
+) -> tuple[Plan, list[Change]]:
+    """Return the plan of a sensitivity analysis, and the changed numbers with their points.
 
-    The first point is the case itself. Two points follow for each number, below and above it.
+    The first point is the case itself. A changed number that makes the case invalid has no point.
 
     Raises:
         BadInput: the case is invalid, or does not have exactly one model to run.
@@ -213,32 +249,36 @@ def plan_changes(
         raise BadInput(file, "--sensitivity", what)
     plates: dict[Sequence[Setting], Plates] = {}
     points: list[Point] = [*make_points(case, file, models, mesh_size, [()], plates)]
-    rejected_keys = []
+    changed_numbers = []
     tables = tables_of(case)
     for place, value in numbers({k: v for k, v in tables.items() if k not in _OTHER}):
         if not (isinstance(value, float) and value):
             continue
-        values = (1.0 - CHANGE) * value, (1.0 + CHANGE) * value
-        variation = Variation(place.name, values, (place,))
-        try:
-            settings = [[(variation, value)] for value in values]
-            points += make_points(case, file, models, mesh_size, settings, plates)
-        except BadInput:
-            rejected_keys.append(place.name)
-    return Plan(file, case.title, (), (), (), points), rejected_keys
+        indices: dict[int, int] = {}
+        values = {side: (1.0 + side * CHANGE) * value for side in SIDES}
+        variation = Variation(place.name, tuple(values.values()), (place,))
+        for side, changed in values.items():
+            settings = [[(variation, changed)]]
+            with suppress(BadInput):
+                points += make_points(case, file, models, mesh_size, settings, plates)
+                indices[side] = len(points) - 1
+        changed_numbers.append(Change(place.name, indices))
+    return Plan(file, case.title, (), (), (), points), changed_numbers
 
 
-def changes(plan: Plan, outcomes: Sequence[Outcome]) -> pd.DataFrame:
-    """Return a table of relative changes of results for an increase of each key by 1 %.
+def changes(
+    plan: Plan, changed_numbers: Sequence[Change], outcomes: Sequence[Outcome]
+) -> pd.DataFrame:
+    """Return a table of relative changes of results for an increase of each number by 1 %.
 
     It has a column per result and a row per key that has an effect. Rows are in descending order
     of the largest effect on the main results.
     """
     (results,) = results_of(plan, outcomes).values()
-    base, below, above = results.iloc[0], results.iloc[1::2], results.iloc[2::2]
-    keys = [point.label.partition("=")[0] for point in plan.points[1::2]]
-    parts = (above.to_numpy() - below.to_numpy()) / (2.0 * base.abs().to_numpy())
-    table = pd.DataFrame(parts, keys, results.columns).replace([np.inf, -np.inf], np.nan)
+    parts = [one.relative(results) for one in changed_numbers if one.points]
+    keys = [one.key for one in changed_numbers if one.points]
+    table = pd.DataFrame(parts, columns=results.columns).set_axis(keys)
+    table = table.replace([np.inf, -np.inf], np.nan)
     table = table.mask(table.abs() < ROUND_OFF, 0.0)
     largest = table.reindex(columns=SHOWN).abs().max(axis=1)
     order = largest.sort_values(ascending=False, kind="stable")
@@ -257,7 +297,7 @@ def write_changes(data: pd.DataFrame, folder: Path) -> None:
 
 
 def print_influences(
-    data: pd.DataFrame, case: Case, invalid_keys: Sequence[str], console: Console
+    data: pd.DataFrame, case: Case, changed_numbers: Sequence[Change], console: Console
 ) -> None:
     """Print the table of the keys with the largest influence."""
     top = data.head(MOST_ROWS)
@@ -267,7 +307,10 @@ def print_influences(
         for one in QUANTITIES
         if one.name in SHOWN and one.name in top
     ]
-    notes = [f"Refused with 1 % more or less: {join_words(invalid_keys)}."] if invalid_keys else []
+    notes = []
+    for valid, words in _REFUSED.items():
+        if keys := [one.key for one in changed_numbers if (*one.points,) == valid]:
+            notes.append(words.format(join_words(keys)))
     if len(data) > len(top):
         notes.append(f"{len(data) - len(top)} more numbers are in {CHANGES_CSV}.")
     title = f"Change of results in % by 1 % of each number: {case.models[0].name}"

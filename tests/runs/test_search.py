@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Bounds and limits of results, their changes by each number of a case, and their scatter."""
 
+import re
 from functools import partial
 from pathlib import Path
 
@@ -11,7 +12,9 @@ from matplotlib.figure import Figure as Sheet
 from scipy.stats import norm
 
 from protractile.cases import run_case
+from protractile.runs import CASES
 from protractile.runs.case import reading
+from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase, load
 from protractile.runs.case.schema import Case
@@ -19,9 +22,19 @@ from protractile.runs.check import check_case
 from protractile.runs.pipeline.quantities import case_limits, decay_time
 from protractile.runs.report.summary_table import limit_faults, limit_table
 from protractile.runs.sweep import output
-from protractile.runs.sweep.points import plan
-from protractile.runs.sweep.sampling import QUANTILES, normal_points
+from protractile.runs.sweep.points import Plan, plan, tables_of
+from protractile.runs.sweep.run import Outcome, run_point
+from protractile.runs.sweep.sampling import (
+    CHANGE,
+    QUANTILES,
+    SHOWN,
+    Change,
+    changes,
+    normal_points,
+    plan_changes,
+)
 from protractile.runs.sweep.search import rigid_wall_cautions
+from protractile.runs.sweep.variation import numbers
 from tests.docs.conftest import toml_blocks
 from tests.runs.cantilever import CANTILEVER, LOAD, MASS, static_tip
 from tests.runs.case_texts import CLAMPED, REST, STEEL, THIN, box, edited, elements, joint, table
@@ -122,6 +135,81 @@ def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -
     assert table.index[0] == "segment[1].length"
     assert table.loc["damping.modal", "decay_time"] == pytest.approx(-1.0, rel=2e-4)
     assert "Change of results in % by 1 % of each number: beam" in capsys.readouterr().out
+
+
+SHIPPED = sorted(path.stem for path in CASES.glob("*.toml"))
+
+
+def shortened(name: str) -> str:
+    """Return the text of a shipped case with a duration of 0.05 s, which sensitivities need not."""
+    text = (CASES / f"{name}.toml").read_text("utf-8").replace("gust.csv", str(CASES / "gust.csv"))
+    text, count = re.subn(r"(?m)^duration = .*", "duration = 0.05", text, count=1)
+    assert count == 1
+    return re.sub(r"(?m)^output_step = .*", "output_step = 1e-2", text)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", SHIPPED)
+def test_sensitivities_are_those_of_direct_sweeps(name: str) -> None:
+    """Reference: other code, a sweep over both values of a key, or over the valid and the case's.
+
+    Compared are all keys with a refused side, those behind them, and every twelfth.
+    """
+    Path("case.toml").write_text(shortened(name), encoding="utf-8")
+    planned, changed_numbers = plan_changes("case.toml", None, None)
+    (model,) = planned.coordinates["model"]
+    refused = [i for i, one in enumerate(changed_numbers) if len(one.points) < 2]
+    chosen = {i for at in refused for i in (at, at + 1)} | {*range(0, len(changed_numbers), 12)}
+    compared = [one for i, one in enumerate(changed_numbers) if i in chosen]
+    outcomes = [Outcome({}, {}) for _ in planned.points]
+    for index in [0, *(index for one in compared for index in one.points.values())]:
+        outcomes[index] = run_point(planned.points[index].case)
+    found = changes(planned, changed_numbers, outcomes)
+    base = outcomes[0].models[model]
+    values = {place.name: value for place, value in numbers(tables_of(load("case.toml")))}
+
+    def sweep_over(change: Change, *sides: int) -> Plan:
+        texts = [repr((1.0 + CHANGE * side) * values[change.key]) for side in sides]
+        return plan("case.toml", [f"{change.key}={','.join(texts)}"], [model], None)
+
+    for change in compared:
+        for side in {-1, 1} - {*change.points}:
+            with pytest.raises(BadInput):
+                sweep_over(change, 0, side)
+        if not change.points:
+            continue
+        low, high = (-1, 1) if len(change.points) == 2 else sorted([*change.points, 0])
+        try:
+            swept = sweep_over(change, low, high)
+        except BadInput as error:
+            if "no model of the sweep depends on it" not in error.what:
+                raise
+            continue
+        first, last = (run_point(point.case).models[model] for point in swept.points)
+        if values[change.key] < 0.0:
+            first, last = last, first
+        for result in {*SHOWN} & {*found.columns}:
+            expected = (last[result] - first[result]) / abs(base[result]) / (high - low)
+            got = found[result].get(change.key, 0.0)
+            assert got == pytest.approx(expected, rel=1e-6, abs=2e-7), (change.key, result)
+
+
+def test_a_refused_side_is_named(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: analytic, g cos 89.1° of weight with 1 % less; 1 % more is refused.
+
+    The load behind this key changes the tip by 1 %.
+    """
+    text = edited(CANTILEVER, ("[[segment]]", "[gravity]\nangle = 90.0\n[[segment]]"))
+    Path("case.toml").write_text(text, encoding="utf-8")
+    assert sweep("--sensitivity", "--out", "out") == 0
+    table = pd.read_csv("out/sensitivity.csv", index_col="key")
+    weight = MASS * STANDARD_GRAVITY * np.sin(np.deg2rad(0.9))
+    assert table.loc["gravity.angle", "tip_at_rest"] == pytest.approx(
+        100.0 * weight / LOAD, rel=1e-3
+    )
+    assert table.loc["segment[1].load", "tip_at_rest"] == pytest.approx(1.0, rel=1e-6)
+    note = "Refused with 1 % more, so that the change is that with 1 % less: gravity.angle."
+    assert note in " ".join(capsys.readouterr().out.split())
 
 
 SD = 5.0
