@@ -74,7 +74,7 @@ def deck(
         for row, factor in zip(shell.springs.rows.T, shell.springs.factors, strict=True)
     ]
     rows = [row for row in (*springs, *held_rows) if any(part.any() for part in row.parts.values())]
-    lines = ["*HEADING", title, "** SI units; x along the boom, z in its plane."]
+    lines = ["*HEADING", f"Boom: {title}", "** SI units; x along the boom, z in its plane."]
     for n, shell in enumerate(shells):
         lines += _segment(n + 1, shell, first[n], elements[n])
     lines += ["*NODE, NSET=READINGS"]

@@ -179,6 +179,10 @@ def write_workbook(results: Results, folder: Path, name: str, option: str) -> No
                 sheet["A1"] = title
                 for row, note in enumerate(notes, start=ABOVE + len(frame) + 3):
                     sheet.cell(row, 1, note)
+                for cell in (cell for row in sheet.iter_rows() for cell in row):
+                    # A text that begins with "=" is no formula.
+                    if isinstance(cell.value, str):
+                        cell.data_type = "s"
                 for i, (heading, cells) in enumerate(frame.items()):
                     lengths = [len(str(cell)) for cell in (heading, *cells)]
                     letter = sheet.cell(1, i + 1).column_letter
