@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import fcntl
 import inspect
+import os
 from collections.abc import Callable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
 from functools import wraps
 from pathlib import Path
 from typing import Any
@@ -54,7 +55,10 @@ def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., An
         if comm.rank != 0 or folder.name != "protractile":
             return compile_form(comm, *arguments, **options)
         folder.mkdir(parents=True, exist_ok=True)
-        with (folder / "lock").open("w") as lock:
+        with ExitStack() as stack:
+            # A lock file might be a pipe, which blocks.
+            lock = os.open(folder, os.O_RDONLY)
+            stack.callback(os.close, lock)
             # Some file systems of clusters have no locks.
             with suppress(OSError):
                 fcntl.flock(lock, fcntl.LOCK_EX)

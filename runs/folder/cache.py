@@ -15,6 +15,7 @@ from __future__ import annotations
 import fcntl
 import json
 import os
+import stat
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import dataclass, fields, is_dataclass, replace
@@ -130,7 +131,10 @@ class Cache:
         with ExitStack() as stack:
             with suppress(OSError):
                 self.folder.mkdir(parents=True, exist_ok=True)
-                lock = stack.enter_context((self.folder / ".lock").open("a", encoding="utf-8"))
+                # A pipe of this name would block without O_NONBLOCK.
+                flags = os.O_WRONLY | os.O_CREAT | os.O_NONBLOCK
+                lock = os.open(self.folder / ".lock", flags, 0o666)
+                stack.callback(os.close, lock)
                 # Each entry locks its own byte of a file, so that no lock files remain. The lock
                 # belongs to the open file, so that it holds between threads, too.
                 byte = _LOCK.pack(fcntl.F_WRLCK, os.SEEK_SET, int(key[:15], 16), 1, 0)
@@ -173,7 +177,8 @@ class Cache:
             # Another process may remove the same entry.
             with suppress(OSError):
                 status = entry.stat()
-                files.append((status.st_mtime, status.st_size, entry))
+                if stat.S_ISREG(status.st_mode):
+                    files.append((status.st_mtime, status.st_size, entry))
         total = sum(size for _, size, _ in files)
         for _, size, entry in sorted(files)[:-1]:
             if total <= room:

@@ -3,7 +3,8 @@
 
 Files are written to a hidden folder beside their final path. The process locks this folder, so that
 a later process can remove the folders of killed processes. A finished folder has a manifest of its
-files with checksums for ``sha256sum -c``.
+files with checksums for ``sha256sum -c``. Its last line, a comment for ``sha256sum``, is the
+checksum of the lines before.
 """
 
 from __future__ import annotations
@@ -86,7 +87,7 @@ def modified_folder(folder: Path) -> Iterator[Path]:
                     # The file system has no links.
                     shutil.copy2(source, target, follow_symlinks=False)
         yield part
-        checksums = _manifest_checksums(folder)
+        checksums = _manifest_checksums(folder) or {}
         names = [
             name
             for name in _files(part)
@@ -152,9 +153,12 @@ def scratch_folder(path: Path) -> Iterator[Path]:
 def find_damaged_file(folder: Path) -> str | None:
     """Return the name of a file whose checksum differs from the manifest; None if all agree.
 
-    Missing and additional files are no damage.
+    This may be the manifest itself. Missing and additional files are no damage.
     """
-    for name, digest in _manifest_checksums(folder).items():
+    checksums = _manifest_checksums(folder)
+    if checksums is None:
+        return MANIFEST
+    for name, digest in checksums.items():
         path = folder / name
         if path.is_file() and not path.is_symlink() and digest != _digest(path):
             return name
@@ -176,8 +180,9 @@ def _move_to_final_path(part: Path, folder: Path, file_names: Iterable[str]) -> 
     sorted_names = sorted(file_names)
     with ThreadPoolExecutor() as threads:
         digests = threads.map(_digest, [part / name for name in sorted_names])
-    lines = [f"{digest}  {name}\n" for digest, name in zip(digests, sorted_names, strict=True)]
-    (part / MANIFEST).write_text("".join(lines), "utf-8")
+    pairs = zip(digests, sorted_names, strict=True)
+    lines = "".join(f"{digest}  {name}\n" for digest, name in pairs)
+    (part / MANIFEST).write_text(lines + _last_line(lines), "utf-8")
     folder = resolve_path(folder)
     if folder.is_dir():
         shutil.copymode(folder, part)
@@ -201,15 +206,25 @@ def _files(folder: Path) -> list[str]:
     return [name for path in paths if (name := str(path.relative_to(folder))) != MANIFEST]
 
 
-def _manifest_checksums(folder: Path) -> dict[str, str]:
-    """Return the checksums in the manifest of a folder by relative path."""
+def _manifest_checksums(folder: Path) -> dict[str, str] | None:
+    """Return the checksums in the manifest of a folder by relative path; None if it is damaged."""
     manifest = folder / MANIFEST
+    if not os.path.lexists(manifest):
+        return {}
     try:
         # Reading a pipe of this name would block.
-        lines = manifest.read_text("utf-8").splitlines() if manifest.is_file() else []
+        text = manifest.read_text("utf-8") if manifest.is_file() else ""
     except (OSError, UnicodeDecodeError):
-        lines = []
-    return {name: digest for digest, _, name in (line.partition("  ") for line in lines)}
+        return None
+    lines, _, _ = text.rpartition("# ")
+    if text != lines + _last_line(lines):
+        return None
+    return {name: digest for digest, _, name in (x.partition("  ") for x in lines.splitlines())}
+
+
+def _last_line(lines: str) -> str:
+    """Return the last line of a manifest, the checksum of the other lines."""
+    return f"# {hashlib.sha256(lines.encode()).hexdigest()}\n"
 
 
 def _digest(path: Path) -> str:

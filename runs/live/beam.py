@@ -25,11 +25,13 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.calibration import OF_MOTION, CalibratedTable
 from protractile.runs.case.kinds.model import BuiltModel
 from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.folder.cache import Cache, key
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
+from protractile.runs.pipeline.estimates import motion_cost
 from protractile.runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
 from protractile.runs.pipeline.model_run import summarise_motion
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
@@ -59,6 +61,9 @@ if TYPE_CHECKING:
 
 # Heights in pixels: of a panel of a chart, and of the axis below the panels.
 _PANEL, _BELOW = 150, 60
+
+# Memory in bytes and time in s of the longest motion, which a designer waits for.
+MAX_MEMORY, MAX_TIME = 1.0e9, 120.0
 
 # Tables that change masses, loads and axial forces, and no stiffness of the unloaded shell.
 _LOADS = ("payload", "gravity", "loads", "axial", "base", "hoist", "slew", "luff")
@@ -100,6 +105,7 @@ def beam_results(
     computation.
 
     Raises:
+        BadInput: the motion exceeds :data:`MAX_MEMORY` or :data:`MAX_TIME`.
         NumericsError: the beam has no equilibrium, or its motion cannot be computed.
     """
     checked, built, stiffness = build_beam(checked, draft.case, draft.shells)
@@ -111,6 +117,15 @@ def beam_results(
     if not equilibria:
         raise NumericsError("the beam has no static equilibrium under the loads at t = 0")
     check_current()
+    plan = MotionPlan.of(built.system, case, model)
+    cost = motion_cost(checked, model, plan.motion, built.system.num_modes)
+    if cost.memory > MAX_MEMORY or cost.seconds > MAX_TIME:
+        raise BadInput(
+            draft.file,
+            "time.duration",
+            f"{number(case.time.duration)} s are too long for this page, since the motion may take "
+            f"{cost}; make it shorter or time.output_step longer, or use `protractile run`",
+        )
     extended = extended_positions(loaded.system, duration)
     design = results_at_rest(loaded, equilibria, extended)
     forces = [[station.force for station in rest.stations] for rest in design.static]
@@ -136,7 +151,6 @@ def beam_results(
         "forces": _plotly_figure(chart_along(rest_curves(farthest, "", theme.PALETTE[0]))),
     }
     check_current()
-    plan = MotionPlan.of(built.system, case, model)
     # A constant step gives a preview long before the motion with error control.
     for stage, integrator in (
         ("preview", FixedStep(case.time.output_step)),

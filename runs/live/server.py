@@ -7,11 +7,13 @@ A shell runs in its own process, while the live page computes the beam.
 from __future__ import annotations
 
 import json
+import os
+import select
 import subprocess
 import sys
 import webbrowser
 from collections.abc import Callable, Generator, Iterator
-from contextlib import closing, suppress
+from contextlib import ExitStack, closing, suppress
 from dataclasses import asdict, dataclass, field
 from functools import cached_property, partial
 from http import HTTPStatus
@@ -19,7 +21,7 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from secrets import token_urlsafe
 from tempfile import TemporaryDirectory
-from threading import Lock
+from threading import Lock, Semaphore
 from time import perf_counter
 from typing import Any
 
@@ -46,11 +48,29 @@ _HTML = "text/html; charset=utf-8"
 # Interval in s at which a waiting request checks whether a newer one has replaced it.
 _INTERVAL = 0.02
 
-# Maximum size of a request in bytes.
-_MAX_SIZE = 1_000_000
+# Maximum size of a request in bytes, and its number of digits.
+_MAX_SIZE, _DIGITS = 1_000_000, 7
+
+# Last part of the path of each kind of request.
+ANSWERS = ("beam", "control", "case", "shell")
+
+# Largest number of tabs whose beams are computed at the same time, and of tabs that are remembered.
+_MOST_COMPUTATIONS, _MOST_TABS = 4, 100
+
+# Time in s after which a connection without a byte ends.
+_SILENCE = 60.0
 
 # Time in s between two progress reports, and longest wait in s for the end of a cancelled run.
 _REPORT_INTERVAL, _WAIT = 0.5, 3.0
+
+# Program of a run, which ends with this process. Its first argument is the number of this process.
+_RUN = """
+import sys
+from protractile.runs.process.ending import end_with_parent
+end_with_parent(int(sys.argv.pop(1)))
+from protractile.__main__ import main
+main()
+"""
 
 # Name of the case file of a run in its folder.
 _CASE = "case.toml"
@@ -78,7 +98,7 @@ class ShellRuns:
             folder, begin = Path(self._folder.name), perf_counter()
             (folder / _CASE).write_text(toml.dumps(case), encoding="utf-8")
             messages = folder / "messages.txt"
-            command = [sys.executable, "-m", "protractile", "run", _CASE]
+            command = [sys.executable, "-c", _RUN, str(os.getpid()), "run", _CASE]
             with messages.open("wb") as stream:
                 self._process = subprocess.Popen(
                     [*command, "--out", "out", "--no-pictures", "--large"],
@@ -135,7 +155,15 @@ def _last_line(messages: Path) -> str:
 
 
 class Superseded(Exception):
-    """Error in a request that a newer request of the same tab has replaced."""
+    """Error in a request that nobody waits for: its tab is closed, or has sent a newer one."""
+
+
+@dataclass
+class _Tab:
+    """The latest request of a browser tab, and the lock of its computation."""
+
+    newest: int = 0
+    computing: Lock = field(default_factory=Lock)
 
 
 @dataclass
@@ -145,8 +173,8 @@ class LivePage:
     draft: Draft  #: case with editable values
     token: str = field(default_factory=token_urlsafe)  #: first part of the path of each address
     shells: ShellRuns = field(default_factory=ShellRuns)  #: runs of the shell models of the case
-    _newest: dict[str, int] = field(default_factory=dict)
-    _computing: Lock = field(default_factory=Lock)
+    _tabs: dict[str, _Tab] = field(default_factory=dict)
+    _cores: Semaphore = field(default_factory=partial(Semaphore, _MOST_COMPUTATIONS))
 
     @cached_property
     def files(self) -> dict[str, tuple[str, bytes]]:
@@ -166,26 +194,33 @@ class LivePage:
             "plotly.js": ("text/javascript; charset=utf-8", get_plotlyjs().encode()),
         }
 
-    def beam(self, request: dict[str, Any]) -> Generator[Any]:
+    def beam(
+        self, request: dict[str, Any], closed: Callable[[], bool] = lambda: False
+    ) -> Generator[Any]:
         """Yield the results of the beam for the numbers in a request.
 
-        A later request of the same tab ends the computation with :class:`Superseded`.
+        A later request of the same tab ends the computation with :class:`Superseded`, and so does
+        the end of the connection, about which ``closed`` is asked.
         """
-        tab, number = str(request["tab"]), int(request["number"])
-        self._newest[tab] = max(number, self._newest.get(tab, 0))
+        name, number = str(request["tab"]), int(request["number"])
+        tab = self._tabs.setdefault(name, _Tab())
+        tab.newest = max(number, tab.newest)
+        idle = [one for one, other in self._tabs.items() if not other.computing.locked()]
+        for one in idle[:-_MOST_TABS]:
+            del self._tabs[one]
 
         def check_current() -> None:
-            if self._newest[tab] != number:
+            if tab.newest != number or closed():
                 raise Superseded
 
-        while not self._computing.acquire(timeout=_INTERVAL):
-            check_current()
-        try:
+        with ExitStack() as locks:
+            for lock in (tab.computing, self._cores):
+                while not lock.acquire(timeout=_INTERVAL):
+                    check_current()
+                locks.callback(lock.release)
             check_current()
             checked = self.draft.beam(self.draft.changed(dict(request["values"])))
             yield from beam_results(checked, self.draft, check_current)
-        finally:
-            self._computing.release()
 
     def control(self, request: dict[str, Any]) -> Generator[Any]:
         """Yield the control for the key in a request."""
@@ -207,17 +242,23 @@ class LivePage:
         yield {"stage": "shell", "progress": f"may take {cost}"}
         yield from self.shells.run(case, self.draft.file)
 
-    @property
-    def answers(self) -> dict[str, Callable[[dict[str, Any]], Generator[Any]]]:
-        """The functions that answer requests, by the last part of the path."""
-        return {"beam": self.beam, "control": self.control, "case": self.case, "shell": self.shell}
+    def lines(
+        self, path: str, request: dict[str, Any], closed: Callable[[], bool] = lambda: False
+    ) -> Generator[bytes]:
+        """Yield the lines of an answer, each a JSON value; an error is the last line.
 
-    def lines(self, path: str, request: dict[str, Any]) -> Generator[bytes]:
-        """Yield the lines of an answer, each a JSON value; an error is the last line."""
+        ``path`` is one of :data:`ANSWERS`, and ``closed`` returns True if nobody reads the answer.
+        """
         from plotly.io.json import to_json_plotly
 
+        answers: dict[str, Callable[[dict[str, Any]], Generator[Any]]] = {
+            "beam": partial(self.beam, closed=closed),
+            "control": self.control,
+            "case": self.case,
+            "shell": self.shell,
+        }
         try:
-            with np.errstate(all="ignore"), closing(self.answers[path](request)) as answer:
+            with np.errstate(all="ignore"), closing(answers[path](request)) as answer:
                 for value in answer:
                     yield str(to_json_plotly(value)).encode() + b"\n"
         except Superseded:
@@ -228,7 +269,7 @@ class LivePage:
             yield _error_line("", failure_reason(error))
         except OSError as error:
             yield _error_line("", f"a file cannot be used ({error.strerror or error})")
-        except (KeyError, TypeError, ValueError) as error:
+        except (KeyError, TypeError, RecursionError) as error:
             yield _error_line("", f"the request is not understood ({error})")
 
 
@@ -239,9 +280,16 @@ def _error_line(key: str, what: str) -> bytes:
 class _Handler(BaseHTTPRequestHandler):
     """Handler of one connection."""
 
+    timeout = _SILENCE
+
     def __init__(self, live: LivePage, *connection: Any) -> None:
         self._live = live
         super().__init__(*connection)
+
+    def handle(self) -> None:
+        """Answer a request. A connection that its page ends, or leaves silent, is no error."""
+        with suppress(ConnectionError, TimeoutError):
+            super().handle()
 
     def do_GET(self) -> None:
         """Send a file of the page."""
@@ -259,37 +307,49 @@ class _Handler(BaseHTTPRequestHandler):
     def do_POST(self) -> None:
         """Answer a request line by line."""
         path, size = self._path(), self.headers.get("Content-Length", "")
-        if path not in self._live.answers:
+        if path not in ANSWERS:
             self.send_error(HTTPStatus.NOT_FOUND)
             return
-        if not (size.isdecimal() and int(size) <= _MAX_SIZE):
+        # A number of thousands of digits is no int.
+        if not (size.isdecimal() and len(size) <= _DIGITS and int(size) <= _MAX_SIZE):
             self.send_error(HTTPStatus.REQUEST_ENTITY_TOO_LARGE)
             return
         request = None
-        with suppress(ValueError):
+        with suppress(ValueError, RecursionError):
             request = json.loads(self.rfile.read(int(size)))
         if not isinstance(request, dict):
             self.send_error(HTTPStatus.BAD_REQUEST)
             return
         self._begin("application/x-ndjson")
-        # The connection ends if the page sends a newer request, or is closed.
-        with suppress(ConnectionError), closing(self._live.lines(str(path), request)) as lines:
+        with closing(self._live.lines(path, request, self._closed)) as lines:
             self.wfile.writelines(lines)
 
     def log_message(self, *_: Any) -> None:
         """Print nothing."""
 
     def _path(self) -> str | None:
-        """Return the part of the path after the token; None if the token is missing or wrong."""
+        """Return the part of the path after the token; None if the token is missing or wrong.
+
+        Another page in the browser, or another name of this machine, has no access either.
+        """
         token, _, path = self.path.removeprefix("/").partition("/")
-        return path if token == self._live.token else None
+        own = "{}:{}".format(*self.connection.getsockname())
+        asked = self.headers.get("Host"), self.headers.get("Origin", f"http://{own}")
+        known = (*asked, token) == (own, f"http://{own}", self._live.token)
+        return path if known else None
+
+    def _closed(self) -> bool:
+        """Return True if the page has closed the connection: it sent a newer request or is gone."""
+        poll = select.poll()
+        poll.register(self.connection, select.POLLRDHUP)
+        return bool(poll.poll(0))
 
     def _begin(self, kind: str) -> None:
         self.send_response(HTTPStatus.OK)
         self.send_header("Content-Type", kind)
         # With "no-store" Chromium reports complete answers as aborted.
         self.send_header("Cache-Control", "no-cache")
-        self.send_header("Referrer-Policy", "no-referrer")
+        self.send_header("Referrer-Policy", "same-origin")
         self.end_headers()
 
 

@@ -139,19 +139,28 @@ def refuse_large(cost: Cost, file: str) -> None:
 
 
 def _model_cost(preview: Preview, model: Model) -> Cost:
-    case, surrogate = preview.checked.case, model.surrogate(preview.checked.boom)
+    surrogate = model.surrogate(preview.checked.boom)
     before = Cost(surrogate.memory, _RESULTS + surrogate.seconds)
     try:
         motion = preview.motion(model)
     except NUMERICAL_ERRORS:
         # The run will fail with the same error and report it.
         return before
+    return before + motion_cost(preview.checked, model, motion, surrogate.coordinates)
+
+
+def motion_cost(checked: CheckedCase, model: Model, motion: Motion, coordinates: float) -> Cost:
+    """Return the cost of the motions of a model with a number of coordinates, and of their files.
+
+    ``motion`` is the motion of the model, or of the beam that replaces it.
+    """
+    case = checked.case
     system, time = motion.system, case.time
-    outputs, coordinates = time.duration / time.output_step, surrogate.coordinates
+    outputs = time.duration / time.output_step
     step = model.step or time.step
     steps = time.duration / step if step else _SUBSTEPS * outputs
     # Only contacts of a planar boom that starts in equilibrium stay closed.
-    if not step and system.laws and (preview.checked.boom.spatial or not case.start.at_rest):
+    if not step and system.laws and (checked.boom.spatial or not case.start.at_rest):
         steps = max(steps, _OF_MOST * MOST_STEPS * np.sqrt(_TOLERANCE / time.tolerance))
     members = case.ensemble.members if case.ensemble is not None and system.laws else 0
     doubled = bool(system.frictions) and case.regular
@@ -161,7 +170,7 @@ def _model_cost(preview: Preview, model: Model) -> Cost:
     each = _STEP + _OF_MODE * coordinates + _OF_ROW * rows
     numbers = _NUMBERS + _OF_COORDINATE * coordinates + _OF_STATION * len(system.stations)
     of_interval = _OF_STEP + 2 * len(system.excitations) + len(system.travels)
-    return before + Cost(
+    return Cost(
         8.0 * (outputs * (numbers + _OF_MEMBER * members) + steps / outputs * of_interval),
         outputs * (_WRITE_TIME + _OF_TRAVEL * len(system.travels)) + motions * steps * each,
     )

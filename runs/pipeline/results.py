@@ -100,8 +100,9 @@ class Results:
             what = "is a file" if folder.exists() else "does not exist"
             raise BadInput(str(folder), "folder", f"{what}; give the folder of a run")
         if name := find_damaged_file(folder):
-            what = f"is damaged, its SHA-256 differs from {MANIFEST}; remove it, or run the case"
-            raise BadInput(str(folder), name, f"{what} again")
+            found = "" if name == MANIFEST else f", its SHA-256 differs from {MANIFEST}"
+            what = f"is damaged{found}; remove it, or run the case again"
+            raise BadInput(str(folder), name, what)
         trajectories = _read(folder / TRAJECTORIES, read_netcdf)
         if "station" not in trajectories.dims:
             trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))

@@ -6,8 +6,8 @@ from __future__ import annotations
 import os
 import signal
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from contextlib import contextmanager
+from concurrent.futures import Executor, Future, InvalidStateError, ProcessPoolExecutor
+from contextlib import contextmanager, suppress
 from multiprocessing import active_children, get_context, parent_process
 from multiprocessing.util import Finalize
 from threading import Thread
@@ -26,13 +26,27 @@ _KILL_TIME = 1.0
 _RANK_PREFIXES = ("OMPI_", "PMIX_", "PMI_")
 
 
+class _Task(Future[Any]):
+    """Work of a pool. A process may end after a task is cancelled, and the task stays cancelled.
+
+    The error of a plain future would be printed by the thread of the pool.
+    """
+
+    def set_exception(self, exception: BaseException | None) -> None:
+        """Set the error of the work, unless it is cancelled."""
+        with suppress(InvalidStateError):
+            super().set_exception(exception)
+
+
 class _SignalProofPool(ProcessPoolExecutor):
     """Pool of processes that ignore signals to the process group, such as Ctrl-C."""
 
     def submit(self, work: Callable[..., Any], /, *positional: Any, **named: Any) -> Future[Any]:
         """Submit work; processes start with blocked signals and the environment of workers."""
         with _worker_environment():
-            return super().submit(work, *positional, **named)
+            task = super().submit(work, *positional, **named)
+        task.__class__ = _Task
+        return task
 
 
 @contextmanager

@@ -41,7 +41,7 @@ from protractile.runs.sweep.points import (
     tables_of,
 )
 from protractile.runs.sweep.run import Outcome
-from protractile.runs.sweep.variation import Place, Variation, numbers, with_size
+from protractile.runs.sweep.variation import MOST_POINTS, Place, Variation, numbers, with_size
 
 OPTION = "--samples"
 SAMPLES, CSV, CHART = "samples.csv", "sampling.csv", "sampling.png"
@@ -79,8 +79,8 @@ def plan_samples(
     """Return the plan of the samples, and a table of the sampled numbers in the case's units.
 
     Raises:
-        BadInput: the case is invalid or has no distribution, the count is no power of 2 above the
-            number of distributions, or a sample is invalid.
+        BadInput: the case is invalid or has no distribution, the count is no power of 2 between the
+            number of distributions and :data:`MOST_POINTS`, or a sample is invalid.
     """
     spreads, case = case_file.load_spreads(file), case_file.load(file)
     if not spreads:
@@ -89,8 +89,13 @@ def plan_samples(
             "{ mean = 0.003, sd = 0.0005 }"
         )
         raise BadInput(file, OPTION, what)
-    if count <= len(spreads) + 1 or count & (count - 1):
-        what = f"must be a power of 2 above {len(spreads) + 1}, such as 64, got {count}"
+    least = len(spreads) + 1
+    if not least < count <= MOST_POINTS or count & (count - 1):
+        example = max(64, 1 << least.bit_length())
+        what = (
+            f"must be a power of 2 above {least} and at most {MOST_POINTS}, such as {example}, "
+            f"got {count}"
+        )
         raise BadInput(file, OPTION, what)
     places = [Place(spread.steps) for spread in spreads]
     values = normal_points(len(spreads), count) * [one.sd for one in spreads]

@@ -134,6 +134,28 @@ def test_cache_ignores_pipes_and_folders(tmp_path: Path, make: Callable[[Path], 
     assert Cache(tmp_path).load("a", str) is None
 
 
+@pytest.mark.parametrize("make", [os.mkfifo, os.mkdir])
+def test_a_lock_may_be_a_pipe_or_a_folder(tmp_path: Path, make: Callable[[Path], object]) -> None:
+    """Reference: by construction. Opening a pipe to write would wait for a reader for ever."""
+    make(tmp_path / ".lock")
+    cache = Cache(tmp_path)
+    with cache.entry_lock("a" * 64):
+        cache.store("a", "first")
+    assert cache.load("a", str) == "first"
+
+
+def test_folders_among_the_entries_do_not_fill_the_cache(tmp_path: Path) -> None:
+    """Reference: by construction. A folder is no entry, and stays."""
+    foreign = tmp_path / "foreign.record"
+    foreign.mkdir()
+    os.utime(foreign, (1.0, 1.0))
+    cache = Cache(tmp_path)
+    cache.store("a", "first")
+    cache.store("b", "second")
+    cache.make_room(0)
+    assert sorted(path.suffix for path in tmp_path.iterdir()) == [".record", ".record"]
+
+
 def test_every_number_counts_to_its_last_bit(paper_boom: Boom) -> None:
     segment = paper_boom.segments[0]
     same = replace(paper_boom, segments=(replace(segment), paper_boom.segments[1]))

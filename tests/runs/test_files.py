@@ -115,13 +115,37 @@ def test_changed_folder_keeps_other_files(tmp_path: Path) -> None:
     assert (folder / "empty").is_dir()
     assert os.readlink(folder / "link") == "nowhere"
     assert (folder / "pipe").is_fifo()
-    listed = (folder / MANIFEST).read_text(encoding="utf-8").splitlines()
+    *listed, _ = (folder / MANIFEST).read_text(encoding="utf-8").splitlines()
     assert [line.split()[1] for line in listed] == ["data", "report"]
     assert find_damaged_file(folder) is None
     (folder / "mine").write_text("other", encoding="utf-8")
     assert find_damaged_file(folder) is None
     (folder / "data").write_text("other", encoding="utf-8")
     assert find_damaged_file(folder) == "data"
+
+
+@pytest.mark.parametrize("part", [0.0, 0.3, 0.5, 0.99, "flipped", "pipe", "folder"])
+def test_a_damaged_manifest_hides_no_damage(tmp_path: Path, part: float | str) -> None:
+    """Reference: by construction. The manifest is cut, changed, or no regular file."""
+    folder = tmp_path / "out"
+    with atomic_folder(folder) as new:
+        write(new, "data", "report")
+    manifest = folder / MANIFEST
+    content = bytearray(manifest.read_bytes())
+    (folder / "data").write_text("other", encoding="utf-8")
+    assert find_damaged_file(folder) == "data"
+    manifest.unlink()
+    assert find_damaged_file(folder) is None
+    if part == "pipe":
+        os.mkfifo(manifest)
+    elif part == "folder":
+        manifest.mkdir()
+    elif part == "flipped":
+        content[content.index(b"data")] ^= 1
+        manifest.write_bytes(content)
+    else:
+        manifest.write_bytes(content[: int(float(part) * len(content))])
+    assert find_damaged_file(folder) == MANIFEST
 
 
 @pytest.mark.parametrize("disk", ["Linux's own", "another"])

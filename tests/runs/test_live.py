@@ -3,10 +3,14 @@
 
 import json
 import re
+import socket
+import struct
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from contextlib import suppress
 from http.client import HTTPConnection
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -21,13 +25,14 @@ from protractile.runs.case.schema import Case
 from protractile.runs.folder.cache import Cache
 from protractile.runs.live import beam
 from protractile.runs.live.controls import Draft
-from protractile.runs.live.server import LivePage, make_server
+from protractile.runs.live.server import LivePage, Superseded, make_server
 from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.run import run_case
 from protractile.runs.report.formatting import fixed
 from tests.runs.sweeping import COARSE
 
+POST = "POST {path}beam HTTP/1.1\r\nHost: {host}\r\nContent-Length: "
 LIFT = str(CASES / "lift.toml")
 TIP = "Static tip deflection (t = 0), mm"
 
@@ -167,11 +172,17 @@ def address(draft: Draft) -> Iterator[str]:
     server.server_close()
 
 
-def sent(address: str, method: str, path: str, body: str | None = None) -> tuple[int, str]:
+def sent(
+    address: str,
+    method: str,
+    path: str,
+    body: str | None = None,
+    headers: Any = MappingProxyType({}),
+) -> tuple[int, str]:
     """Return status and text of an answer; a path that starts with / has no token."""
     where = urlsplit(address)
     connection = HTTPConnection(where.netloc, timeout=60)
-    connection.request(method, path if path[:1] == "/" else where.path + path, body)
+    connection.request(method, path if path[:1] == "/" else where.path + path, body, headers)
     answer = connection.getresponse()
     return answer.status, answer.read().decode()
 
@@ -183,6 +194,59 @@ def test_the_page_is_there_with_its_token_alone(address: str) -> None:
     assert sent(address, "GET", "/another/plotly.js")[0] == 404
     assert sent(address, "POST", "/another/beam", "{}")[0] == 404
     assert urlsplit(address).hostname == "127.0.0.1"
+
+
+@pytest.mark.parametrize("method", ["GET", "POST"])
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Host": "example.org"},
+        {"Host": "localhost"},
+        {"Origin": "http://example.org"},
+        {"Origin": "null"},
+    ],
+)
+def test_another_host_or_page_has_no_access(
+    address: str, method: str, headers: dict[str, str]
+) -> None:
+    """Reference: by construction. A name that someone else resolves to this machine is no access.
+
+    The browser gives the page that asks as the origin.
+    """
+    path, body = ("case", '{"values": {}}') if method == "POST" else ("", None)
+    origin = {"Origin": address[: address.index("/", 7)]}
+    assert sent(address, method, path, body, origin)[0] == 200
+    assert sent(address, method, path, body, headers)[0] == 404
+
+
+@pytest.mark.parametrize(
+    ("request_", "closed"),
+    [
+        ("GET {path}plotly.js HTTP/1.1\r\nHost: {host}\r\n\r\n", True),
+        (POST + "100000\r\n\r\n" + "[" * 100_000, False),
+        (POST + "1" * 5000 + "\r\n\r\n", False),
+        (POST + "9\r\n\r\n{{", True),
+    ],
+    ids=["closed", "deep", "long", "short"],
+)  # fmt: skip
+def test_nothing_is_printed_for_bad_connections(
+    draft: Draft, request_: str, closed: bool, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Reference: by construction. A page may be closed at any moment."""
+    server, address = make_server(LivePage(draft))
+    # The end of the server waits for all its connections.
+    server.daemon_threads = False
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    where = urlsplit(address)
+    with socket.create_connection((where.hostname, where.port), timeout=60) as connection:
+        connection.sendall(request_.format(path=where.path, host=where.netloc).encode())
+        if closed:
+            connection.setsockopt(socket.SOL_SOCKET, socket.SO_LINGER, struct.pack("ii", 1, 0))
+        else:
+            assert connection.recv(100).startswith((b"HTTP/1.0 400", b"HTTP/1.0 413"))
+    server.shutdown()
+    server.server_close()
+    assert capsys.readouterr() == ("", "")
 
 
 @pytest.mark.parametrize("body", ["", "{", "[]", "7"])
@@ -224,3 +288,51 @@ def test_an_older_request_of_a_tab_is_not_answered(draft: Draft) -> None:
     first = next(page.beam(newest))
     assert first["stage"] == "rest"
     assert list(page.lines("beam", newest | {"number": 1})) == []
+
+
+def test_tabs_do_not_wait_for_each_other(draft: Draft) -> None:
+    """Reference: by construction. One tab has results at rest, and computes its motion."""
+    page = LivePage(draft)
+    long = page.beam({"tab": "a", "number": 1, "values": {}})
+    assert next(long)["stage"] == "rest"
+    answer = list(page.lines("beam", {"tab": "b", "number": 1, "values": {}}))
+    assert [json.loads(line)["stage"] for line in answer] == ["rest", "preview", "motion"]
+
+
+def test_a_computation_ends_with_its_tab(
+    address: str, draft: Draft, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: by construction. The computation itself would never end."""
+    begun, ended = threading.Event(), threading.Event()
+
+    def endless(checked: Any, draft: Draft, check_current: Callable[[], None]) -> Iterator[Any]:
+        yield {"stage": "rest"}
+        begun.set()
+        with suppress(Superseded):
+            while True:
+                check_current()
+        ended.set()
+
+    monkeypatch.setattr("protractile.runs.live.server.beam_results", endless)
+    where = urlsplit(address)
+    connection = HTTPConnection(where.netloc, timeout=60)
+    request = json.dumps({"tab": "closed", "number": 1, "values": {}})
+    connection.request("POST", f"{where.path}beam", request)
+    assert begun.wait(60)
+    connection.close()
+    assert ended.wait(60)
+
+
+def test_a_long_motion_is_refused(tmp_path: Path) -> None:
+    """Reference: by construction. 10⁷ outputs need more than 1 GB."""
+    draft = Draft.load(str(COARSE))
+    (line,) = LivePage(draft).lines(
+        "beam", {"tab": "a", "number": 1, "values": {"time.duration": 1.0e4}}
+    )
+    found = json.loads(line)
+    assert (found["stage"], found["key"]) == ("refused", "time.duration")
+    assert re.fullmatch(
+        r"10000 s are too long for this page, since the motion may take [0-9]+ GB and [0-9]+ min; "
+        "make it shorter or time.output_step longer, or use `protractile run`",
+        found["what"],
+    )

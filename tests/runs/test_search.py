@@ -259,7 +259,13 @@ def test_a_run_takes_the_mean() -> None:
 @pytest.mark.parametrize(
     ("text", "samples", "line"),
     [
-        (SCATTERED, "48", "--samples: must be a power of 2 above 2, such as 64, got 48"),
+        (SCATTERED, "48",
+         "--samples: must be a power of 2 above 2 and at most 10000, such as 64, got 48"),
+        (SCATTERED, str(2**20),
+         "--samples: must be a power of 2 above 2 and at most 10000, such as 64, got 1048576"),
+        (SCATTERED, str(2**200),
+         "--samples: must be a power of 2 above 2 and at most 10000, such as 64, got "
+         "1606938044258990275541962092341162602522202993782792835301376"),
         (CANTILEVER, "64", "--samples: the case has no number with a mean and an sd; give one, for "
          "example { mean = 0.003, sd = 0.0005 }"),
         (SCATTERED.replace(f"sd = {SD}", "sd = 0"), "64",

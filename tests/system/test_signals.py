@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """End of commands by Ctrl-C and SIGTERM, with one line and without remaining files."""
 
+import json
 import os
 import signal
 import subprocess
 import sys
 import time
 from collections.abc import Callable
+from http.client import HTTPConnection
 from pathlib import Path
+from urllib.parse import urlsplit
 
 import pytest
 
@@ -41,7 +44,7 @@ def start(folder: Path, *arguments: str) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, *arguments],
         cwd=folder,
-        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        env=os.environ | {"PYTHONPATH": str(ROOT), "TMPDIR": str(folder)},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -107,7 +110,7 @@ def tells(stage: str) -> Callable[[subprocess.Popen[str]], bool]:
 
 
 def test_sigterm_ends_a_run_after_meshing(tmp_path: Path) -> None:
-    """Reference: by construction. gmsh resets the handler of SIGTERM."""
+    """Reference: by construction. gmsh resets the handler of SIGTERM. MPI leaves no folder."""
     shell = "run", COARSE, "--models", "shell", "--no-cache", "--no-pictures"
     process = start(tmp_path, "-c", TELLING, *shell, "--out", "out")
     wait_until(tells("shell (1 of 1): reduction"), process)
@@ -151,3 +154,68 @@ def test_processes_end_with_their_parent() -> None:
     process.terminate()
     assert process.communicate(timeout=30) == ("", "protractile: interrupted\n")
     assert process.returncode == 128 + signal.SIGTERM
+
+
+CANCELLED = """
+import sys, time
+from protractile.runs.process import ending
+from protractile.runs.process.workers import workers
+
+ending.listen()
+try:
+    with workers(1) as pool:
+        pool.submit(print, "works", flush=True).result()
+        tasks = [pool.submit(time.sleep, 60.0) for _ in range(5)]
+        assert tasks[-1].cancel()
+        if len(sys.argv) > 1:
+            raise ValueError
+        print("waits", flush=True)
+        time.sleep(60.0)
+except ValueError:
+    pass
+"""
+
+
+def test_a_cancelled_task_is_no_error() -> None:
+    """Reference: by construction. A signal or an error ends the processes of a pool."""
+    process = start(ROOT, "-c", CANCELLED)
+    assert process.stdout is not None
+    assert [process.stdout.readline() for _ in range(2)] == ["works\n", "waits\n"]
+    process.terminate()
+    assert process.communicate(timeout=30) == ("", "protractile: interrupted\n")
+    failing = start(ROOT, "-c", CANCELLED, "error")
+    assert failing.communicate(timeout=30) == ("works\n", "")
+
+
+def test_nothing_follows_the_line_of_a_signal() -> None:
+    """Reference: by construction. Another thread reports while the processes are ended."""
+    code = (
+        "import os, signal, sys; from protractile.runs.process import ending; ending.listen()\n"
+        "with ending.when_interrupted(lambda: print('late', file=sys.stderr, flush=True)):\n"
+        "    signal.raise_signal(signal.SIGINT)"
+    )
+    process = start(ROOT, "-c", code)
+    assert process.communicate(timeout=30) == ("", "protractile: interrupted\n")
+
+
+def test_a_killed_live_page_ends_its_run(tmp_path: Path) -> None:
+    """Reference: by construction. The run of a shell ends, and MPI leaves no folder."""
+    process = start(tmp_path, "-m", "protractile", "live", COARSE, "--no-browser")
+    assert process.stdout is not None
+    page = urlsplit(process.stdout.readline().strip())
+    connection = HTTPConnection(page.netloc, timeout=60)
+    request = json.dumps({"values": {}, "large": True})
+    connection.request("POST", f"{page.path}shell", request)
+    answer = connection.getresponse()
+    while not list(tmp_path.glob("protractile-live-*/.out.*")):
+        assert "progress" in json.loads(answer.readline())
+    threads = Path(f"/proc/{process.pid}/task").glob("*/children")
+    children = [Path("/proc") / pid for one in threads for pid in one.read_text().split()]
+    assert children
+    process.kill()
+    process.communicate()
+    deadline = time.monotonic() + 30.0
+    while any(child.exists() for child in children):
+        assert time.monotonic() < deadline
+        time.sleep(0.05)
+    assert [path.name for path in tmp_path.glob("ompi.*")] == []
