@@ -53,6 +53,18 @@ def reduce_modes(
     return np.concatenate([omega2[kept], stiffness]), shapes
 
 
+def restrict(system: GapSystem, basis: Array) -> GapSystem:
+    """Return the system in the coordinates of a basis that includes all rigid motions.
+
+    Args:
+        system: gap system whose ``omega2`` includes all axial forces.
+        basis: orthonormal coefficients (num_modes, num_coordinates).
+    """
+    omega2, turn = eigh(basis.T @ (system.omega2[:, None] * basis))
+    omega2[np.argsort(np.abs(omega2))[: np.count_nonzero(system.omega2 == 0.0)]] = 0.0
+    return system.transform(omega2, basis @ turn)
+
+
 def independent_columns(block: Array) -> Array:
     """Return an orthonormal basis (num_modes, rank) of the columns (num_modes, num_columns)."""
     sizes = np.linalg.norm(block, axis=0)

@@ -69,6 +69,9 @@ class ReducedShell:
     #: contributions (num_segments, num_modes) of the uniform loads of segments to ``system.load``,
     #: in N/√kg
     own_loads: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    #: orthonormal coefficients (num_modes, num_coarser) of a coarser basis within that of
+    #: ``system``; as many as modes if there is none
+    coarser: Array = field(default_factory=lambda: np.zeros((0, 0)))
 
 
 def reduce_boom(
@@ -147,6 +150,7 @@ def reduce_boom(
             for number, segment in enumerate(segments)
         ],
         own_loads=own_loads,
+        coarser=coordinates.coarser,
     )
 
 

@@ -252,6 +252,7 @@ class TelescopingShell:
             omega2=omega2,
             shapes=segment.shapes @ shapes,
             geometric=shapes.T @ segment.geometric @ shapes,
+            coarser=np.eye(omega2.size),
             output_error=max(segment.output_error, error),
         )
 

@@ -159,6 +159,14 @@ def quality_notes(
                 f"the local contact compliance within a relative error of {number(error, 1)}.",
             )
     for name, model in models.items():
+        if model.reduction_error is not None:
+            yield QualityNote(
+                "reduction",
+                f"{name}: the reduction changes the tip's motion by about "
+                f"{_percent(model.reduction_error)} of its range, by comparison with a coarser "
+                "basis.",
+            )
+    for name, model in models.items():
         if model.mesh_error is not None:
             yield QualityNote(
                 "mesh",
@@ -321,9 +329,24 @@ def _numerical(summary: Summary, case: Case) -> Iterator[str]:
                 "--modes auto"
             )
     for name, model in summary.models.items():
+        if (error := model.reduction_error or 0.0) > MAX_RELATIVE_ERROR:
+            yield (
+                f"caution: the reduction of {name} may change the tip's motion by "
+                f"{_percent(error)} of its range, since friction depends on vibrations of its "
+                f"plates; {_remedy(case, name)}"
+            )
+    for name, model in summary.models.items():
         if (error := model.mesh_error or 0.0) > MAX_RELATIVE_ERROR:
             yield (
                 f"caution: the mesh of {name} causes an error of {_percent(error)} of the "
                 "local contact compliance; give a smaller "
                 f"{'contact_tolerance' if name in refined else 'mesh_size'}"
             )
+
+
+def _remedy(case: Case, name: str) -> str:
+    """Return what makes the motion of a reduced shell more accurate."""
+    (shell,) = (model for model in select_kind(Shell, case.models) if model.name == name)
+    finer = "a smaller tolerance" if shell.modes == "auto" else "more modes"
+    damped = case.damping.modal or case.damping.mass or case.damping.stiffness
+    return f"give {finer}" if damped else f"give damping, which ends these vibrations, and {finer}"

@@ -35,7 +35,7 @@ from protractile.runs.folder.cache import Cache, key
 from protractile.runs.pipeline import members
 from protractile.runs.pipeline.low_pass import SlowPeaks
 from protractile.runs.pipeline.model_output import ShellOutput
-from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.pipeline.models import MotionPlan, build, reduction_error
 from protractile.runs.pipeline.summary import (
     BeamStiffness,
     CalibrationCard,
@@ -214,6 +214,11 @@ def _integrate(
     if summary.step_error is None and system.frictions and case.regular:
         with stages.stage("twice the step") as report_progress:
             summary.step_error = plan.step_error(trajectory, report_progress)
+    if system.frictions:
+        with stages.stage("coarser basis") as report_progress:
+            summary.reduction_error = reduction_error(
+                built, case, model, trajectory, report_progress
+            )
     ensemble = None
     if table is not None and system.laws:
         with stages.stage("ensemble") as report_progress:

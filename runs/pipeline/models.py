@@ -8,12 +8,14 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
+from scipy.linalg import block_diag
 
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.hanging_load import HangingLoad
 from protractile.dynamics.line import Line
 from protractile.dynamics.motion import Motion, build_motion
+from protractile.dynamics.reduction import restrict
 from protractile.dynamics.trajectory import Trajectory
 from protractile.dynamics.travel import ChangingAxialForce, RowTable, Travel
 from protractile.geometry.boom import Boom
@@ -151,7 +153,33 @@ class MotionPlan:
         from protractile.dynamics.integrator import FixedStep
 
         coarser = FixedStep(2.0 * trajectory.data.attrs["step"])
-        longer = coarser(self.motion, progress)
-        tips = [np.asarray(run.data["tip"].values) for run in (trajectory, longer)]
-        span = float(np.ptp(tips[0]))
-        return float(np.abs(tips[0] - tips[1]).max() / span) if span else 0.0
+        return _change_of_tip(trajectory, coarser(self.motion, progress))
+
+
+def reduction_error(
+    built: BuiltModel,
+    case: Case,
+    model: ModelTable,
+    trajectory: Trajectory,
+    progress: Callable[[float], None],
+) -> float | None:
+    """Return the largest change of a shell's tip on a coarser basis, as a fraction of its range.
+
+    The coarser basis is part of that of the reduction, and its motion has the same time steps. The
+    result is None if the shell has no coarser basis.
+    """
+    shell, system = built.shell, built.system
+    if shell is None or shell.coarser.shape[0] == shell.coarser.shape[1]:
+        return None
+    # A hoisted load has coordinates of its own.
+    basis = block_diag(shell.coarser, np.eye(system.num_modes - len(shell.coarser)))
+    plan = MotionPlan.of(restrict(system, basis), case, model)
+    motion = plan.integrator.like(trajectory)(plan.motion, progress)
+    return _change_of_tip(trajectory, motion)
+
+
+def _change_of_tip(trajectory: Trajectory, other: Trajectory) -> float:
+    """Return the largest difference of the tip, as a fraction of its range in ``trajectory``."""
+    tips = [np.asarray(run.data["tip"].values) for run in (trajectory, other)]
+    span = float(np.ptp(tips[0]))
+    return float(np.abs(tips[0] - tips[1]).max() / span) if span else 0.0

@@ -163,7 +163,8 @@ class ModelSummary(SummaryTable):
     axial forces times ``critical_factor`` cause buckling with closed joints. ``stick_slip`` has the
     results of elastic drives by the names of their forces in trajectories. Shells have
     ``reduction_errors`` by kind, ``local_compliance`` in m/N, ``mesh_error`` as a fraction of it,
-    and ``stress``.
+    and ``stress``. ``reduction_error`` is the error of the tip's motion by the reduction of a shell
+    with friction, as a fraction of its range.
     """
 
     kind: str
@@ -206,6 +207,10 @@ class ModelSummary(SummaryTable):
     static_tip: FiniteNumber = None
     critical_factor: FiniteNumber = None
     reduction_errors: dict[str, FiniteNumber] = {}
+    reduction_error: Annotated[
+        FiniteNumber,
+        Metric("reduction_error", "1", "reduction error of the tip", "%", charted=False),
+    ] = None
     local_compliance: list[FiniteNumber] = []
     mesh_error: FiniteNumber = None
     stress: StressSummary | None = None

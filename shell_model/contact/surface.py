@@ -17,6 +17,7 @@ import numpy as np
 from mpi4py import MPI
 
 from protractile.dynamics.contact import ContactLaw
+from protractile.dynamics.reduction import independent_columns
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint
 from protractile.geometry.contact_places import Pad
@@ -163,6 +164,7 @@ def without_stiff_modes(comm: MPI.Comm, reduced: ReducedSegment, rows: Array) ->
         omega2=reduced.omega2[:kept],
         shapes=reduced.shapes[:, :kept],
         geometric=reduced.geometric[:kept, :kept],
+        coarser=independent_columns(reduced.coarser[:kept]),
         compliance_error=max(reduced.compliance_error, float((lost / above[:, 0]).max())),
         lost_compliance=reduced.lost_compliance
         + np.pad(lost, (0, reduced.lost_compliance.size - lost.size)),

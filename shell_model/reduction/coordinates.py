@@ -32,6 +32,8 @@ class BoomCoordinates:
     Attributes:
         omega2: ω² (num_modes,) in rad²/s², exactly 0 for rigid motions, negative if an axial force
             makes a segment unstable.
+        coarser: orthonormal coefficients (num_modes, num_coarser) of a coarser basis, see
+            :class:`.krylov.Coordinates`.
         critical_factor: buckling factor of the axial forces, see
             :func:`.second_order.buckling_factor`; infinite without axial forces, None for a
             mechanism.
@@ -49,11 +51,11 @@ class BoomCoordinates:
         self.omega2 = np.concatenate([segment.omega2 for segment in reduced])
         springs = [line for line in lines if line.stiffness > 0.0]
         if ties or springs:
-            tied = np.array([self.row(tie) for tie in ties]).reshape(-1, self.omega2.size)
+            tied_rows = np.array([self.row(tie) for tie in ties]).reshape(-1, self.omega2.size)
             spring_rows = [np.sqrt(s.stiffness) * self.push(s.segment, s.push) for s in springs]
             pulls = np.array(spring_rows).reshape(-1, self.omega2.size)
             self.omega2, self._combination = comm.bcast(
-                _constrained_modes(self.omega2, tied, pulls)
+                _constrained_modes(self.omega2, tied_rows, pulls)
             )
         self.critical_factor: float | None = np.inf
         geometric = block_diag(*(segment.geometric for segment in reduced))
@@ -67,6 +69,10 @@ class BoomCoordinates:
             )
             self.omega2, turn = comm.bcast(soften_modes(self.omega2, softening))
             self._combination = tied @ turn
+        self.coarser = block_diag(*(segment.coarser for segment in reduced))
+        if ties:
+            self.coarser = self.coarser @ null_space(tied_rows @ self.coarser)
+        self.coarser = self.of_rows(self.coarser.T).T
 
     def row(self, operator: Operator) -> Array:
         """Return the row (num_modes,) of a displacement operator, the same on every rank."""

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 from petsc4py import PETSc
-from scipy.linalg import eigh
+from scipy.linalg import block_diag, eigh
 
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.arrays import Array, Mask
@@ -81,6 +81,8 @@ class Coordinates:
     #: inputs is at most the geometric mean of their errors (Galerkin).
     lost_compliance: Array
     geometric: Array  #: geometric stiffness K_G (num_modes, num_modes) in 1/s²
+    #: orthonormal coefficients (num_modes, num_coarser) of a coarser basis within this one
+    coarser: Array
     #: compliance (num_probes, num_probes) of the full model to probes, at ``PROBE_FREQUENCY``
     probe_compliance: Array
 
@@ -145,7 +147,7 @@ def reduce_class(
             "a coarser mesh, whose round-off is less"
         )
     lost = basis.compliance_error(full, forces.T @ inputs)
-    omega2, shapes = basis.modes()
+    omega2, shapes, coarser = basis.modes(len(options.shifts))
     solve.move(min(order))
     accurate = _find_accurate(shell, omega2, shapes, solve)
     solve.destroy()
@@ -153,7 +155,9 @@ def reduce_class(
     geometric = np.zeros((omega2.size, omega2.size))
     if shell.geometric is not None:
         geometric = shapes.T @ times(shell.geometric, shapes)
-    return ClassCoordinates(omega2, shapes, *errors, lost, geometric, probe_compliance, accurate)
+    return ClassCoordinates(
+        omega2, shapes, *errors, lost, geometric, coarser, probe_compliance, accurate
+    )
 
 
 class _FullResponse(NamedTuple):
@@ -194,6 +198,7 @@ class _KrylovBasis:
         self._stiffness = np.zeros((0, 0))
         self._append(rigid)
         self._rigid = self.size
+        self._ends = [self.size]  # numbers of vectors after each block
         self._pushes = forces
         self._pushed = forces.shape[1]
 
@@ -205,6 +210,7 @@ class _KrylovBasis:
         """Add the next block, and return whether it has new vectors."""
         block = self._append(solve(self._pushes))
         self._pushes = times(self._shell.mass, block)
+        self._ends.append(self.size)
         return bool(block.shape[1])
 
     def add_axial_responses(self, geometric: PETSc.Mat, solve: ShiftedSolver) -> None:
@@ -248,11 +254,15 @@ class _KrylovBasis:
             lost = np.maximum(lost, compliance - reduced)
         return lost
 
-    def modes(self) -> tuple[Array, Array]:
-        """Return ω² (num_modes,) and shapes (num_rows, num_modes), rigid motions first."""
+    def modes(self, dropped: int) -> tuple[Array, Array, Array]:
+        """Return ω² (num_modes,), shapes (num_rows, num_modes) and the coarser basis.
+
+        Rigid motions are first. The coarser basis (num_modes, num_coarser) lacks the last ``dropped``
+        blocks.
+        """
         if self._forces.shape[1] == 0:
             # Only probes excite this class.
-            return np.zeros(0), self._vectors[:, :0]
+            return np.zeros(0), self._vectors[:, :0], np.zeros((0, 0))
         rigid, elastic = self._vectors[:, : self._rigid], self._vectors[:, self._rigid :]
         omega2, combination = eigh(self._stiffness[self._rigid :, self._rigid :])
         # Rigid motions that no force excites, such as translation along x, are omitted. The basis
@@ -264,7 +274,11 @@ class _KrylovBasis:
         much = np.abs(gains) > 0.5 * np.abs(gains).max(axis=1, keepdims=True)
         first = gains[np.arange(len(gains)), much.argmax(axis=1)]
         signs = np.where(first < 0.0, -1.0, 1.0)
-        return np.concatenate([np.zeros(excited.sum()), omega2]), shapes * signs
+        # A coarser basis has at least the responses at the first shift.
+        first_dropped = self._ends[max(len(self._ends) - 1 - dropped, 1)] - self._rigid
+        kept = np.delete(combination.T, slice(first_dropped, self._ends[-1] - self._rigid), axis=1)
+        coarser = block_diag(np.eye(excited.sum()), kept) * signs[:, None]
+        return np.concatenate([np.zeros(excited.sum()), omega2]), shapes * signs, coarser
 
     def _append(self, block: Array) -> Array:
         """Append a block to the basis, and return the new vectors (num_rows, num_new)."""

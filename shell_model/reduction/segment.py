@@ -144,5 +144,6 @@ def _join(
         lost_compliance=np.sum([part.lost_compliance for part in parts], axis=0),
         frequency_limit=float(limit),
         geometric=block_diag(*(part.geometric for part in parts))[np.ix_(order, order)],
+        coarser=block_diag(*(part.coarser for part in parts))[order],
         probe_compliance=np.sum([part.probe_compliance for part in parts], axis=0),
     )
