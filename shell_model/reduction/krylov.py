@@ -257,8 +257,8 @@ class _KrylovBasis:
     def modes(self, dropped: int) -> tuple[Array, Array, Array]:
         """Return ω² (num_modes,), shapes (num_rows, num_modes) and the coarser basis.
 
-        Rigid motions are first. The coarser basis (num_modes, num_coarser) lacks the last ``dropped``
-        blocks.
+        Rigid motions are first. The coarser basis (num_modes, num_coarser) lacks the last
+        ``dropped`` blocks.
         """
         if self._forces.shape[1] == 0:
             # Only probes excite this class.
