@@ -74,7 +74,7 @@ class Elements:
     @cached_property
     def segments(self) -> list[SegmentModel]:
         """The segments with their supports."""
-        return finite_element_segments(self.boom, *self._kind, rotary_inertia=False)
+        return finite_element_segments(self.boom, *self._kind, rotary_inertia=True)
 
     @cached_property
     def unsupported(self) -> list[Component]:

@@ -134,6 +134,8 @@ def combination_tables(
     moving = [one.name for one in case.combinations if one.motion]
     if moving:
         notes.append(f"In `prove` and reports, {join_words(moving)}: extremes of the motion.")
+    if build_boom(case).telescopes:
+        notes.append("Extensions are those at t = 0, or those of the load case.")
     if shell:
         notes.append(f"By {shell}, with the axial forces of each combination.")
     else:

@@ -121,6 +121,7 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
             bool(boom.cylinders) and any(s.depth for one in segments for s in one.supports),
         ),
         ("axial", boom.compressed),
+        ("hoist", case.hoist is not None),
         ("segment.head_section", any(segment.head_section is not None for segment in segments)),
         ("joint.bonded", any(joint.bonded for joint in boom.joints)),
         ("joint.drive", any(joint.drive is not None for joint in boom.joints)),
