@@ -32,6 +32,8 @@ from protractile.geometry.stiffeners import Collar
 
 # Length of elements along x as a fraction of the smaller side of the section.
 _LENGTH = 0.5
+# Fraction of this length below which places share a node.
+_SAME_NODE = 1.0e-3
 # Fraction of the displacements of the folds below which a displacement is round-off.
 _ROUND_OFF = 1.0e-9
 
@@ -107,8 +109,9 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
     closed = [*(one.x for one in segment.diaphragms), *(one.x for one in rigid)]
     ends = np.clip([x for collar in segment.collars for x in collar.span], *segment.ends)
     cuts = np.unique([*segment.ends, *places, *closed, *ends])
-    cuts = cuts[np.diff(cuts, prepend=-np.inf) > section.near]
     size = _LENGTH * min(section.size("y"), section.size("z"))
+    near = _SAME_NODE * size
+    cuts = cuts[np.diff(cuts, prepend=-np.inf) > near]
     pieces = [
         np.linspace(*pair, 1 + int(np.ceil((pair[1] - pair[0]) / size))) for pair in pairwise(cuts)
     ]
@@ -137,10 +140,10 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
                 stiffness = stiffness + kron(along, own)
         free = np.ones((axis.nodes.size, 2, rows[0].size // axis.nodes.size // 2), dtype=bool)
         for x in closed:
-            free[np.abs(axis.nodes - x) < section.near, 0] = False
+            free[np.abs(axis.nodes - x) <= near, 0] = False
         for support in rigid:
             if support.kind == "clamped":
-                free[np.abs(axis.nodes - support.x) < section.near] = False
+                free[np.abs(axis.nodes - support.x) <= near] = False
         forces = np.array(rows)[:, free.ravel()]
         solve = splu(csc_matrix(stiffness)[free.ravel()][:, free.ravel()]).solve
         compliance = np.asarray(forces @ solve(forces.T))

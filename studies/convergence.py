@@ -134,6 +134,7 @@ STUDIES = (
     "wall_buckling",
     "telescoping_column",
     "sections",
+    "polygon_distortion",
     "taper",
     "design_results",
     "validation",

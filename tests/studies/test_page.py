@@ -46,6 +46,10 @@ def swung(*_: object) -> SimpleNamespace:
     return SimpleNamespace(measured=two)
 
 
+def squeezed(*_: object) -> SimpleNamespace:
+    return SimpleNamespace(stations=np.ones(2), tip=1.0)
+
+
 def two(*_: object) -> tuple[float, float]:
     return 1.0, 1.0
 
@@ -70,6 +74,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "telescoping_column": {},
     "design_results": {},
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
+    "polygon_distortion": {"of_beam": squeezed, "of_shell": squeezed},
     "taper": {"MODELS": taper.MODELS | {"shell": taper.MODELS[taper.ELEMENTS]}},
 }  # fmt: skip
 # Studies without a verification have no section; validation has its own page.
