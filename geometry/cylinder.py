@@ -144,7 +144,8 @@ class Cylinder:
             return self
         along, up = self.ground[0] - foot.x, self.ground[1] + foot.depth
         front, height = along * cos(angle) - up * sin(angle), along * sin(angle) + up * cos(angle)
-        return replace(self, ground=EarthPoint(front, -height))
+        point: Any = EarthPoint(front, -height)
+        return replace(self, ground=point)
 
     def in_boom_axes(self, angle: float, foot: Support) -> Cylinder:
         """Return the cylinder with its ground in the axes of a boom at a luffing angle in rad."""

@@ -131,6 +131,7 @@ STUDIES = (
     "interpretations",
     "numerics_1997",
     "second_order",
+    "large_deflections",
     "wall_buckling",
     "telescoping_column",
     "sections",

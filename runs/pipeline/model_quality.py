@@ -31,6 +31,7 @@ from protractile.runs.pipeline.pad_walls import deflection_advice
 from protractile.runs.pipeline.proportions import (
     CHECK_UNITS,
     buckling_cautions,
+    deflection_errors,
     period_cautions,
     proportion_cautions,
     tip_cautions,
@@ -50,8 +51,6 @@ _APART = 1.2
 # Relative error of a reduction or a mesh above which a caution is given.
 MAX_RELATIVE_ERROR = 0.01
 
-# Fraction of the length of the boom above which a displacement is not small.
-LARGE_DISPLACEMENT = 0.1
 
 # Regular motions are compared up to this time in s, and over the whole run.
 HALFWAY = 5.0
@@ -305,12 +304,11 @@ def _advice(case: Case, boom: Boom, name: str) -> str:
 def _large_displacements(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[str]:
     largest = np.abs(data["tip"].values).max(axis=1)
     for name, move in zip(data["model"].values, largest, strict=True):
-        if move > LARGE_DISPLACEMENT * boom.length:
-            yield (
-                f"caution: in {name} the tip moves by {float(move):.3g} m, more than a tenth of "
-                "the boom's length: small-displacement theory is not valid; "
-                f"{_advice(case, boom, str(name))}"
-            )
+        what, advise = (
+            f"in {name} the tip moves by {move:.3g} m",
+            partial(_advice, case, boom, name),
+        )
+        yield from deflection_errors(what, float(move), boom, advise)
 
 
 def _numerical(summary: Summary, case: Case) -> Iterator[str]:

@@ -27,8 +27,13 @@ LEVEL_ANGLE = 0.1
 # Fraction of the buckling load above which second-order effects are not small.
 NEAR_BUCKLING = 1.0 / 3.0
 
-# Fraction of the length of the boom above which a static deflection is not small.
-LARGE_DEFLECTION = 0.05
+# Fractions of the length of the boom: the error of small displacements is told above the first one,
+# and is a caution above the second one.
+TOLD_DEFLECTION, LARGE_DEFLECTION = 0.05, 0.15
+
+# Errors of tip deflection and moments by small displacements, over the square of the deflection as
+# a fraction of the length; measured on elasticas with play (studies/large_deflections.py).
+TIP_ERROR, MOMENT_ERROR = 1.1, 0.65
 
 # Advice on a large deflection without a known cause.
 CHECK_UNITS = "check units and loads"
@@ -454,14 +459,28 @@ def buckling_cautions(name: str, critical_factor: float | None) -> Iterator[str]
 def tip_cautions(
     where: str, tip: float | None, boom: Boom, advise: Callable[[], str] = lambda: CHECK_UNITS
 ) -> Iterator[str]:
-    """Yield a caution if a static deflection is too large.
+    """Yield the error of a static deflection by small displacements, a caution if it is large.
 
     ``where`` names the source of the deflection, for example ``in MODEL``. The deflection is in m,
     and NaN or None without an equilibrium. ``advise`` returns the advice.
     """
-    if tip is not None and abs(tip) > LARGE_DEFLECTION * boom.length:
-        yield (
-            f"caution: {where} the tip rests at {tip:.3g} m, {100.0 * abs(tip) / boom.length:.2g} "
-            "% of the boom's length and more than 5 %: small-displacement theory is not valid; "
-            f"{advise()}"
-        )
+    if tip is not None:
+        yield from deflection_errors(f"{where} the tip rests at {tip:.3g} m", tip, boom, advise)
+
+
+def deflection_errors(
+    what: str, tip: float, boom: Boom, advise: Callable[[], str]
+) -> Iterator[str]:
+    """Yield the error by small displacements of a deflection in m, which ``what`` tells."""
+    part = abs(tip) / boom.length
+    if not part > TOLD_DEFLECTION:
+        return
+    told = (
+        f"{what}, {100.0 * part:.2g} % of the boom's length: small displacements make it about "
+        f"{100.0 * TIP_ERROR * part**2:.2g} % too large, and moments about "
+        f"{100.0 * MOMENT_ERROR * part**2:.2g} %"
+    )
+    if part > LARGE_DEFLECTION:
+        yield f"caution: {told}; {advise()}"
+    else:
+        yield f"{told[0].upper()}{told[1:]}, on the safe side."

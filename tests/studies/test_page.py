@@ -54,6 +54,11 @@ def two(*_: object) -> tuple[float, float]:
     return 1.0, 1.0
 
 
+def compared(*_: object) -> SimpleNamespace:
+    exact = SimpleNamespace(tip=1.0, foot_moment=1.0)
+    return SimpleNamespace(tip=1.0, moment=1.0, exact=exact, errors=(0.0, 0.0))
+
+
 def one(*_: object) -> float:
     return 1.0
 
@@ -71,6 +76,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "stiffeners": {"measure": one, "table": one, "racking_stiffness": one, "ring_flexibility": one},
     "damping": {"PressedBoom.of": swung, "_system": one},
     "second_order": {},
+    "large_deflections": {"compare": compared},
     "telescoping_column": {},
     "design_results": {},
     "sections": {"ring_of_shell": one, "beam_peak": one, "shell_peak": one, "tip_of_shell": one},
