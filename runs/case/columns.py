@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Reader of two columns of a CSV file from an instrument, a program or a spreadsheet.
 
-Commas, semicolons, tabs or spaces separate cells. A comma within a number is a decimal comma. Text
+Commas, semicolons, tabs or spaces separate cells. A comma within a number is a decimal comma; one
+that may separate thousands is an error. Text
 after a # is a comment. A heading names the columns and may give their units: in brackets, after a
 slash or ``in``, or in a second line.
 """
@@ -27,6 +28,8 @@ from protractile.runs.process.terminal import shorten
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)
 # Spaces that separate two cells: not next to a comma, before a bracket or slash, or after a slash.
 _SPACES = re.compile(r"(?<![\s,/])\s+(?![\s,\[(/])")
+# Numbers whose commas or points may separate thousands.
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(,\d{3}|\.\d{3})+")
 _HEADING = re.compile(r"(.*?)\s*(?:\[(.+)\]|\((.+)\)|/(.+)|\bin (.+))")
 
 # Units of angles in degrees, which have no dimension.
@@ -101,16 +104,18 @@ def read_pairs(
         headings = [rows.pop(0) for _ in range(2) if rows and not rows[0].has_number]
         indices, scales, has_unit = _choose_columns(headings, names, columns)
         for row in rows:
-            row.check_columns(indices, names)
+            row.check_columns(indices, headings[0] if names and headings else None)
+        _check_thousands(rows, indices)
         pairs = np.array([[row.number(i) for i in indices] for row in rows])
         if len(rows) < 2:
             raise _FileError("has fewer than two lines of numbers")
         falls = np.flatnonzero(np.diff(pairs[:, 0]) <= 0.0)
         if falls.size:
             line = rows[falls[0] + 1].line
-            raise _FileError(
-                f"has a {columns[0].name} in line {line} that does not rise", "sort them"
-            )
+            what = f"has a {columns[0].name} in line {line} that "
+            if pairs[falls[0] + 1, 0] == pairs[falls[0], 0]:
+                raise _FileError(f"{what}repeats the one before", "give each once")
+            raise _FileError(f"{what}does not rise", "sort them")
     except OSError as error:
         what = f"'{shorten(str(place))}' cannot be read ({error.strerror}); {remedy}"
         raise BadInput(path, key, what) from None
@@ -138,17 +143,23 @@ class _FileLine:
     """Cells of a line of the file that is neither empty nor a comment."""
 
     line: int  #: line number, from 1
-    cells: list[str]
+    cells: list[str]  #: cells without empty ones at the end
+    width: int  #: number of cells with these
 
     @property
     def has_number(self) -> bool:
         return any(map(_is_number, self.cells))
 
-    def check_columns(self, indices: Sequence[int], names: Sequence[str] | None) -> None:
-        """Check that the line has the chosen columns; without ``names`` it must have no others."""
-        count = len(self.cells)
-        if count <= max(indices) or (names is None and count != len(indices)):
-            columns = "1 column" if count == 1 else f"{count} columns"
+    def check_columns(self, indices: Sequence[int], heading: _FileLine | None) -> None:
+        """Check that the line has the columns of a heading; without one, only the chosen ones."""
+        count, given = len(self.cells), self.width
+        columns = "1 column" if count == 1 else f"{count} columns"
+        if heading is None and count != len(indices):
+            raise _FileError(f"has {columns} in line {self.line}")
+        if heading is not None and not {count, given} & {len(heading.cells), heading.width}:
+            what = f"has {columns} in line {self.line} and {len(heading.cells)} in the heading"
+            raise _FileError(what, "give each line all columns, numbers without further commas")
+        if count <= max(indices):
             raise _FileError(f"has {columns} in line {self.line}")
 
     def number(self, column: int) -> float:
@@ -173,12 +184,40 @@ def _rows(text: str) -> list[_FileLine]:
         # The last line decides, since a heading may have spaces between words.
         last = _SPACES.split(lines[-1][1]) if lines else []
         if separator == "," and len(last) > 1 and all(map(_is_number, last)):
-            return [_FileLine(number, _SPACES.split(line)) for number, line in lines]
+            rows = [(number, _SPACES.split(line)) for number, line in lines]
+            return [_FileLine(number, cells, len(cells)) for number, cells in rows]
     return [
-        _FileLine(number, [cell.strip() for cell in next(csv.reader([cut], delimiter=separator))])
+        _FileLine(
+            number,
+            [cell.strip() for cell in next(csv.reader([cut], delimiter=separator))],
+            len(next(csv.reader([line], delimiter=separator))),
+        )
         for number, line in lines
         if (cut := line.rstrip(separator))
     ]
+
+
+def _check_thousands(rows: Sequence[_FileLine], indices: Sequence[int]) -> None:
+    """Check that no number has separators of thousands.
+
+    A comma in ``-1,500`` is a decimal comma if another number of the file has one; a point in
+    ``1.500`` is a decimal point if no number has a decimal comma.
+
+    Raises:
+        _FileError: a comma or a point may separate thousands.
+    """
+    cells = [(row.line, i, row.cells[i]) for row in rows for i in indices]
+    with_comma = [one for one in cells if "," in one[2]]
+    doubtful = [one for one in cells if with_comma and _THOUSANDS.fullmatch(one[2])]
+    if len([one for one in doubtful if "," in one[2]]) < len(with_comma):
+        doubtful = [one for one in doubtful if "." in one[2]]
+    if doubtful:
+        line, i, cell = doubtful[0]
+        mark = "comma" if "," in cell else "point"
+        raise _FileError(
+            f"has a {mark} in line {line}, column {i + 1} that may separate thousands",
+            "write numbers with a decimal mark only, such as 1500 or 1.5",
+        )
 
 
 def _number(cell: str) -> float:
@@ -220,7 +259,7 @@ def _choose_columns(
                 raise _FileError(what, "name columns that it has once")
             indices.append(column_names.index(name))
     for row in headings:
-        row.check_columns(indices, names)
+        row.check_columns(indices, heading if names is not None else None)
     of_units = headings[-1]
     units = [cells[i][1] if of_units is heading else of_units.cells[i] for i in indices]
     scales = []

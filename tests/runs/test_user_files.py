@@ -108,6 +108,8 @@ def case_of(*given: str) -> Case:
         ("t  [ms]   F [kN] # of a logger\n  0   0,0005\n250  -1,5\n", "x = 19.0"),
         ("t / s  F / kN\n0 5e-4\n0.25 -1.5\n", "x = 19.0"),
         ("t F v\ns kN m/s\n0 0.0005 30\n0.25 -1.5 31\n", 'x = 19.0\ncolumns = ["t", "F"]'),
+        # Thousandths with a decimal comma, and an empty last cell.
+        ("t;F;u\ns;kN;m\n0;0,0005;\n0,250;-1,500;7\n", 'x = 19.0\ncolumns = ["t", "F"]'),
         ("t [s],gust [%]\n0,50\n0.25,-150000\n", "magnitude = 1.0"),
         ("no,F (N),speed (km/h),t (s)\n1,0.5,30,0\n2,-1500,31,0.25\n",
          'x = 19.0\ncolumns = ["t", "F (N)"]'),
@@ -154,6 +156,10 @@ def test_a_contact_s_file_may_be_in_millimetres_and_kilonewtons() -> None:
 
 PAIRS = "give a CSV file of two columns, time in s and factor; a heading may say other units"
 OF_FORCE = "give N/m or another unit of the kind"
+THOUSANDS = (
+    "that may separate thousands; write numbers with a decimal mark only, such as 1500 or 1.5"
+)
+WHOLE_LINES = "give each line all columns, numbers without further commas"
 OF_THREE = "t;F;v\n0;1;2\n1;1;2\n"
 
 
@@ -167,6 +173,20 @@ OF_THREE = "t;F;v\n0;1;2\n1;1;2\n"
          "'gust.csv' has no heading; leave the names of columns out"),
         ("t (s);F\n0;1,5\n1;1.234,5\n", "",
          f"'gust.csv' has no finite number in line 3, column 2; {PAIRS}"),
+        ('t [s],F\n0,"0"\n0.1,"-1,500"\n0.2,"-999"\n', "",
+         f"'gust.csv' has a comma in line 3, column 2 {THOUSANDS}"),
+        ("t [s];F\n0;0\n1;-1,500\n2;-12,500\n", "",
+         f"'gust.csv' has a comma in line 3, column 2 {THOUSANDS}"),
+        ("t [s];F\n0;0\n0,1;-1.500\n", "",
+         f"'gust.csv' has a point in line 3, column 2 {THOUSANDS}"),
+        ("t,F,u\n1,0,-5,0,3,7\n2,0,-5,0,3,7\n", '["t", "F"]',
+         f"'gust.csv' has 6 columns in line 2 and 3 in the heading; {WHOLE_LINES}"),
+        ("n,t [s],F,u\n1,0,0,5\n2,0.1,-1,500,6\n", '["t", "F"]',
+         f"'gust.csv' has 5 columns in line 3 and 4 in the heading; {WHOLE_LINES}"),
+        ("t a F\n0 1 0\n0.1 2 5\n0.2 7\n0.3 2 5\n", '["t", "a"]',
+         f"'gust.csv' has 2 columns in line 4 and 3 in the heading; {WHOLE_LINES}"),
+        ("t;F\n0;0\n0,1;0\n0,1;-1000\n", "",
+         "'gust.csv' has a time in line 4 that repeats the one before; give each once"),
         ("t (s);F\n0;1,5\n1\n", "", f"'gust.csv' has 1 column in line 3; {PAIRS}"),
         ("t,F\n", "", f"'gust.csv' has fewer than two lines of numbers; {PAIRS}"),
         ("t (s);F (V)\n0;1\n1;1\n", "",
