@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -36,8 +37,8 @@ _FREE_TIMES = np.linspace(0.0, 0.25, 9)
 # Maximum product of the step and the highest circular frequency of a history.
 _HISTORY_PHASE = 0.5
 
-# Minimum range as a fraction of the largest deflection.
-_LEAST_RANGE = 1.0e-3
+# Minimum range of a deflection as a fraction of the largest deflection, which excludes round-off.
+_LEAST_RANGE = 1.0e-4
 
 # Fraction of the tolerance below which the next window has half as many steps.
 _COARSEN_BELOW = 0.125
@@ -45,6 +46,16 @@ _COARSEN_BELOW = 0.125
 # Fraction of the error that remains after two halvings of the step in chaotic motion. In regular
 # motion at most a quarter remains.
 _REMAINS = 0.5
+
+# Sum of the errors of all windows, as a multiple of the tolerance, with which the comparison of
+# whole motions begins. The sum is far above the error of motions with damping.
+_LOOSE = 10.0
+
+# Difference of two motions, as a fraction of the range, beyond which chaos is assumed.
+_INDEPENDENT = 0.02
+
+# Number of steps at which the refinement of a whole motion ends, as a multiple of ``MOST_STEPS``.
+_MOST_REFINED = 4
 
 Progress = Callable[[float], None]
 
@@ -72,13 +83,27 @@ class StepSchedule:
     window: int  #: number of output intervals of a window
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
+        return self.run(motion, progress).trajectory(self.substeps, self.window)
+
+    def run(self, motion: Motion, progress: Progress | None = None) -> Integration:
+        """Return the completed integration of a motion."""
         run = Integration.begin(motion)
         for number, (first, last) in enumerate(_windows(motion, self.window)):
             substeps = self.substeps[min(number, len(self.substeps) - 1)]
             run.advance(first, last, substeps, run.state, run.part(first, last))
             if progress is not None:
                 progress(last / motion.outputs)
-        return run.trajectory(self.substeps, self.window)
+        return run
+
+    def steps(self, motion: Motion) -> int:
+        """Return the number of steps of a motion."""
+        ends = enumerate(_windows(motion, self.window))
+        last = len(self.substeps) - 1
+        return sum(self.substeps[min(i, last)] * (b - a) for i, (a, b) in ends)
+
+    def coarser(self) -> StepSchedule:
+        """Return the integrator with twice the steps, at most an output interval."""
+        return replace(self, substeps=tuple(max(1, count // 2) for count in self.substeps))
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
         return self
@@ -116,21 +141,26 @@ class FixedStep:
 class AdaptiveStep:
     """Integrator with error control by step doubling (Hairer, Nørsett and Wanner 1993).
 
-    A window of the motion is about a period of the slowest mode. Each window is computed with a
-    step and with twice that step from the same state. The error of the window is the largest
-    difference of observed deflections, within the window and in free motion over the next quarter
-    period. The tolerance limits the sum of these errors, the attribute ``step_error`` of the
-    trajectory. In chaotic motion no step meets a tolerance. So a step that resolves the largest
-    impact is not halved further if two halvings leave more than half of the error. The step has a
-    lower limit.
+    The error is the largest difference of an observed deflection from its exact value, as a
+    fraction of the range of this deflection. Windows of about a period of the slowest mode are
+    computed first, each with a step and with twice that step from the same state, so that their
+    errors are about equal. Then whole motions are compared, one with half the steps of the other,
+    and all steps are halved until the error of the coarser motion, the attribute ``step_error``, is
+    at most the tolerance. This motion is the result, since its error is known. Motions have second
+    order, with dry friction first order.
+
+    In chaotic motion no step meets a tolerance. So a step that resolves the largest impact is not
+    halved further in a window if two halvings leave more than half of the error, and in the whole
+    motion if three do, or if the difference is above 2 % and ten times the tolerance. Then the
+    finer motion is the result. The number of steps is limited.
 
     >>> motion = AdaptiveStep()(Motion(ball, duration=1.0, position=[0.5]))
     >>> motion.data.attrs["step_error"] < 1e-3
     True
 
     Args:
-        tolerance: permitted error of the time step, as a fraction of the largest range of observed
-            deflections.
+        tolerance: permitted error of each observed deflection by the time step, as a fraction of
+            its range.
 
     Raises:
         ValueError: the tolerance is not between 0 and 1.
@@ -143,7 +173,33 @@ class AdaptiveStep:
             raise ValueError(f"tolerance must be between 0 and 1, got {self.tolerance}")
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
-        run, error = Integration.begin(motion), _WindowError(motion.system)
+        report = progress or (lambda part: None)
+        error = _Error(motion)
+        schedule = self._distribute(motion, error, lambda part: report(0.5 * part))
+        coarse, fine = schedule.run(motion), schedule.finer().run(motion)
+        differences = [error.between(coarse, schedule.coarser().run(motion))]
+        most = _MOST_REFINED * MOST_STEPS * TOLERANCE / self.tolerance
+        independent = max(_INDEPENDENT, 10.0 * self.tolerance)
+        while True:
+            differences.append(error.between(fine, coarse))
+            estimate = error.of_coarse(*differences[-2:])
+            if estimate <= self.tolerance:
+                fine = coarse
+                break
+            schedule = schedule.finer()
+            stalls = len(differences) > 3 and differences[-1] > _REMAINS * differences[-4]
+            chaotic = differences[-1] > independent or stalls
+            if 2 * schedule.steps(motion) > most or (chaotic and np.isinf(fine.resolving_step)):
+                break
+            done = 1.0 - 0.5 ** (len(differences) - 1)
+            rest = partial(_report_rest, report, done)
+            coarse, fine = fine, schedule.finer().run(motion, rest)
+        report(1.0)
+        return fine.trajectory(schedule.substeps, schedule.window, estimate)
+
+    def _distribute(self, motion: Motion, error: _Error, progress: Progress) -> StepSchedule:
+        """Return the steps with which the windows have equal errors, for a first comparison."""
+        run = Integration.begin(motion)
         outputs, output_step = motion.outputs, motion.output_step
         window = _power_of_two(error.period / output_step, 1, _LONGEST)
         histories = [x.history for x in run.motion.system.excitations]
@@ -152,20 +208,18 @@ class AdaptiveStep:
         fewest = _power_of_two(2.0 * output_step * fastest / _HISTORY_PHASE, _FEWEST, MOST_STEPS)
         affordable = MOST_STEPS * np.sqrt(TOLERANCE / self.tolerance) / outputs
         most = _power_of_two(affordable, fewest, MOST_STEPS)
-        # A pilot run with long steps gives the range.
-        pilot = Integration.begin(motion)
-        pilot.advance(0, outputs, fewest, pilot.state, pilot.part(0, outputs))
-        scale = error.scale(pilot.output.states)
-        substeps, steps_of_windows, total = min(max(_FIRST, fewest), most), list[int](), 0.0
+        # A pilot run with long steps gives the ranges.
+        error.set_ranges(StepSchedule((fewest,), _CALL).run(motion))
+        substeps, steps_of_windows = min(max(_FIRST, fewest), most), list[int]()
         for first, last in _windows(motion, window):
-            limit = self.tolerance * (last - first) / outputs * scale
+            limit = _LOOSE * self.tolerance * (last - first) / outputs
             part, errors = run.part(first, last), list[float]()
             previous = _copy(run.state)
             coarse = run.advance(first, last, substeps // 2, previous)
             while True:
                 state = _copy(run.state)
                 run.advance(first, last, substeps, state, part)
-                errors.append(error(part, coarse, state, previous))
+                errors.append(error.of_window(part, coarse, state, previous))
                 resolved = output_step <= substeps * state.resolving.min(initial=np.inf)
                 chaotic = resolved and len(errors) > 2 and errors[-1] > _REMAINS * errors[-3]
                 if errors[-1] <= limit or chaotic or substeps >= most:
@@ -174,18 +228,14 @@ class AdaptiveStep:
                 substeps *= 2
             for kept, reached in zip(run.state, state, strict=True):
                 kept[...] = reached
-            steps_of_windows.append(substeps)
-            total += errors[-1]
+            steps_of_windows.append(max(fewest, substeps // 2))
             if errors[-1] > limit:
                 # The next window may need fewer halvings than this one.
                 substeps = max(fewest, substeps // 8)
             elif errors[-1] < _COARSEN_BELOW * limit:
                 substeps = max(fewest, substeps // 2)
-            if progress is not None:
-                progress(last / outputs)
-        return run.trajectory(
-            tuple(steps_of_windows), window, total / scale if scale > 0.0 else 0.0
-        )
+            progress(last / outputs)
+        return StepSchedule(tuple(steps_of_windows), window)
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
         """Return the integrator with the steps of a trajectory."""
@@ -198,16 +248,19 @@ class AdaptiveStep:
         return AdaptiveStep(0.25 * self.tolerance)
 
 
-class _WindowError:
-    """Error of a window: difference of the deflections for a step and for twice that step.
+class _Error:
+    """Difference of two motions in a deflection, as a fraction of the range of this deflection.
 
     Attributes:
         period: period of the slowest elastic mode in s.
     """
 
-    def __init__(self, system: GapSystem) -> None:
+    def __init__(self, motion: Motion) -> None:
+        system = motion.system
         observed = [x.row for x in system.observers.values() if (x.unit, x.derivative) == ("m", 0)]
         self._rows = np.array(observed or system.rows).reshape(-1, system.num_modes)
+        self._ranges = np.ones(len(self._rows))
+        self._order = 1 if system.frictions else 2
         omega = system.omega
         self.period = 2.0 * np.pi / min(omega[omega > 0.0], default=_DEFAULT_OMEGA)
         # Free response (num_times, num_observed, num_modes) of the deflections to a unit initial
@@ -217,22 +270,46 @@ class _WindowError:
         self._places = self._rows * np.cos(omega * times)[:, None]
         self._speeds = self._rows * sines[:, None]
 
-    def __call__(self, fine: Output, coarse: Output, state: State, other: State) -> float:
-        """Return the largest difference in m, within the window and in free motion after it."""
-        within = np.abs(self._read(fine.states - coarse.states))
-        places = (self._places * (state.a - other.a)).sum(axis=2)
-        after = np.abs(places + (self._speeds * (state.v - other.v)).sum(axis=2))
-        return float(max(within.max(initial=0.0), after.max(initial=0.0)))
+    def set_ranges(self, run: Integration) -> None:
+        """Set the ranges of the deflections to those of a motion."""
+        read = self._read(run.output.states)
+        ranges = np.ptp(read, axis=0)
+        least = _LEAST_RANGE * max(ranges.max(initial=0.0), np.abs(read).max(initial=0.0))
+        self._ranges = np.maximum(ranges, least) if least > 0.0 else np.ones(len(ranges))
 
-    def scale(self, states: Array) -> float:
-        """Return the largest range of a deflection in m."""
-        read = self._read(states)
-        ranges = np.ptp(read, axis=0).max(initial=0.0)
-        return float(max(ranges, _LEAST_RANGE * np.abs(read).max(initial=0.0)))
+    def of_window(self, fine: Output, coarse: Output, state: State, other: State) -> float:
+        """Return the largest difference within a window and in free motion after it."""
+        places = (self._places * (state.a - other.a)).sum(axis=2)
+        after = np.abs(places + (self._speeds * (state.v - other.v)).sum(axis=2)) / self._ranges
+        return max(self._largest(fine.states - coarse.states), float(after.max(initial=0.0)))
+
+    def between(self, fine: Integration, coarse: Integration) -> float:
+        """Return the largest difference of two whole motions."""
+        self.set_ranges(fine)
+        return self._largest(fine.output.states - coarse.output.states)
+
+    def of_coarse(self, before: float, difference: float) -> float:
+        """Return the estimated error of a motion.
+
+        Args:
+            before: difference of the motion from that with half as many steps.
+            difference: difference of the motion from that with twice as many steps.
+        """
+        # Steps end at random phases of sticking and impacts, so that one difference may be small by
+        # chance.
+        return max(difference / (1.0 - 0.5**self._order), before * 0.5**self._order)
+
+    def _largest(self, states: Array) -> float:
+        return float((np.abs(self._read(states)) / self._ranges).max(initial=0.0))
 
     def _read(self, states: Array) -> Array:
         # BLAS is not used, since its last bits depend on addresses in memory.
         return np.asarray(np.einsum("ti,ri->tr", states, self._rows))
+
+
+def _report_rest(report: Progress, done: float, part: float) -> None:
+    """Report half of the rest of the progress while a part of a motion is done."""
+    report(done + 0.5 * (1.0 - done) * part)
 
 
 def _copy(state: State) -> State:

@@ -150,6 +150,11 @@ class Integration:
         """Return a view of the outputs from index ``first`` + 1 to ``last``."""
         return Output(*(array[1 + first : 1 + last] for array in self.output))
 
+    @property
+    def resolving_step(self) -> float:
+        """The largest step in s that resolves all impacts so far; infinite if the steps do."""
+        return float(self.state.resolving.min(initial=np.inf))
+
     def trajectory(
         self, substeps: tuple[int, ...], window: int, step_error: float = np.nan
     ) -> Trajectory:
@@ -162,7 +167,7 @@ class Integration:
         Args:
             substeps, window: as in :class:`.dynamics.integrator.StepSchedule`.
             step_error: error of the observed deflections due to the time step, as a fraction of
-                their range; NaN if unknown.
+                the range of each; NaN if unknown.
 
         Raises:
             NumericsError: the energy residual exceeds its bound.
@@ -185,7 +190,7 @@ class Integration:
                 "substeps": list(substeps),
                 "window": window,
                 "step_error": step_error,
-                "resolving_step": float(self.state.resolving.min(initial=np.inf)),
+                "resolving_step": self.resolving_step,
             },
             energy_floor,
         )

@@ -196,7 +196,7 @@ def evaluate_run(
             # A combination without an equilibrium has no proofs; the table of combinations states
             # this.
             design = replace(design, proofs=prove(case, states))
-    return replace(design, quality_notes=[*quality_notes(summary, design, case.time.duration)])
+    return replace(design, quality_notes=[*quality_notes(summary, design, case.time)])
 
 
 def _compare_modes(

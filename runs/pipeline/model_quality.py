@@ -22,7 +22,7 @@ from protractile.geometry.typography import TO_PERCENT, join_words
 from protractile.runs.case.actions import series_notes
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.schema import Case, Model
+from protractile.runs.case.schema import Case, Model, TimeTable
 from protractile.runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
 from protractile.runs.pipeline.drives import lag_cautions, stick_slip_cautions, stick_slip_estimates
@@ -132,24 +132,29 @@ def _others(data: xr.Dataset, reference: str) -> list[str]:
 
 
 def quality_notes(
-    summary: Summary, design: DesignResults, duration: float
+    summary: Summary, design: DesignResults, time: TimeTable
 ) -> Iterator[QualityNote]:
     """Yield notes on the accuracy of a run.
 
-    The summary has no design results yet; ``duration`` is that of the motion in s.
+    The summary has no design results yet; ``time`` is the table of times of the case.
     """
     models = summary.models
     for line in _agreement(design):
         yield QualityNote("agreement", line)
-    for line in _horizon(summary, duration):
+    for line in _horizon(summary, time.duration):
         yield QualityNote("horizon", line)
     if errors := [model.step_error for model in models.values() if model.step_error]:
-        most = _percent(max(errors))
-        yield QualityNote(
-            "step",
-            f"The estimated error by the time step is at most {most} of the range of the tip "
-            "deflection.",
+        line = (
+            f"The estimated error by the time step is at most {_percent(max(errors))} of the range "
+            "of a deflection."
         )
+        above = [name for name, one in models.items() if (one.step_error or 0.0) > time.tolerance]
+        if above and time.step is None:
+            line += (
+                f" It is above time.tolerance of {_percent(time.tolerance)} in "
+                f"{join_words(above)}: the motion is chaotic, or needs too many steps."
+            )
+        yield QualityNote("step", line)
     for name, model in models.items():
         if (error := model.reduction_errors.get("contact_compliance")) is not None:
             yield QualityNote(

@@ -223,7 +223,13 @@ def _pads(case: Case, boom: Boom) -> Iterator[str]:
             bending = 3.0 * inner.bending_stiffness / inner.length**3
             force = 0.5 * STANDARD_GRAVITY * inner.mass
             stiffness = joint.contact.slope_at(force)
-            if stiffness < bending:
+            if stiffness <= 0.0:
+                yield (
+                    f"the contacts of {inner.name!r} in {model.name!r} do not become stiffer at "
+                    f"{force:.3g} N, half the weight of this segment; continue their table of "
+                    "forces to larger forces"
+                )
+            elif stiffness < bending:
                 yield (
                     f"the compliance of the contacts of {inner.name!r} in {model.name!r} is "
                     f"{1.0 / stiffness:.3g} m/N, above {1.0 / bending:.3g} m/N of the segment as a "

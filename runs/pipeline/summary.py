@@ -198,7 +198,7 @@ class ModelSummary(SummaryTable):
     ] = None
     step_error: Annotated[
         FiniteNumber,
-        Metric("step_error", "1", "time-step error of the tip", "%", charted=False),
+        Metric("step_error", "1", "time-step error of deflections", "%", charted=False),
     ] = None
     resolving_step: FiniteNumber = None
     ensemble: EnsembleSummary | None = None

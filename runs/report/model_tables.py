@@ -129,10 +129,9 @@ def step_table(results: Results) -> Table:
         Column("contact changes", [model.contact_changes for model in models]),
     ]
     notes = [
-        "Step error: the run is cut into windows of about a period of the slowest mode. Each "
-        "window is computed with the step of the run and with twice this step. The step "
-        "error adds the largest differences between both deflections in all windows. In chaotic "
-        "motion no step size converges.",
+        "Step error: the estimated largest error of a deflection by the time step, from whole "
+        "motions with the steps of the run and with half of each, as a fraction of the range of "
+        "this deflection. In chaotic motion no step size converges.",
         "Contact changes: openings and closings.",
     ]
     tried = [model.steps_for_peaks for model in models]
@@ -147,7 +146,7 @@ def step_table(results: Results) -> Table:
         )
     errors = [model.step_error for model in models]
     if any(error is not None for error in errors):
-        columns.append(Column("step error", errors, ".2g", "% of the tip's range"))
+        columns.append(Column("step error", errors, ".2g", "% of the range"))
     return Table("Steps", columns, notes, "steps")
 
 

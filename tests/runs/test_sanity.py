@@ -155,6 +155,9 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
         (PLAY, "play = 0.003\nstiffness = 1e4\n",
          "the compliance of the contacts of 'fly' in 'beam' is 0.000103 m/N, above 8.43e-06 m/N "
          "of the segment as a cantilever; check their stiffness"),
+        (PLAY, "play = 0.003\nforce_table = [[0.001, 100.0], [0.002, 100.0]]\n",
+         "the contacts of 'fly' in 'beam' do not become stiffer at 2.36e+03 N, half the weight of "
+         "this segment; continue their table of forces to larger forces"),
         ("[[model]]", SHELL.replace("0.05", "0.5") + "[[model]]",
          "the mesh size of 'shell', 0.5 m, is larger than a wall of 0.18 m"),
         ("angle = 45.0", "angle = 45.0, acceleration = 19.62",

@@ -22,7 +22,7 @@ from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.load_tables import LoadTable
 from protractile.runs.case.reading import CheckedCase, select
-from protractile.runs.case.schema import Case, StopTable
+from protractile.runs.case.schema import Case, StopTable, TimeTable
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.design_results import DesignResults, PlayDifference
 from protractile.runs.pipeline.evaluation import bonded_system
@@ -360,6 +360,9 @@ def test_models_agree_within_the_stated_difference(answers: DesignResults) -> No
     assert line.startswith(start)
 
 
+TEN = TimeTable(duration=10.0)
+
+
 def test_chaos_note_names_chaotic_models_only() -> None:
     """Reference: ensembles, one with the horizon 3.2 s and one without divergence."""
 
@@ -372,7 +375,7 @@ def test_chaos_note_names_chaotic_models_only() -> None:
             "calm": model_summary(ensemble=ensemble(None), energy_residual=2e-4),
         }
     )
-    chaotic, regular, energy = quality_notes(summary, DesignResults({}), 10.0)
+    chaotic, regular, energy = quality_notes(summary, DesignResults({}), TEN)
     assert [one.what for one in (chaotic, regular, energy)] == ["horizon", "horizon", "energy"]
     assert "after these times: wild 3.20 s." in chaotic.line
     assert regular.line == "The motion of calm can be predicted over the whole 10 s."
@@ -381,7 +384,20 @@ def test_chaos_note_names_chaotic_models_only() -> None:
         "largest error."
     )
     none = summary_of({"plain": model_summary()})
-    assert [one.what for one in quality_notes(none, DesignResults({}), 10.0)] == ["energy"]
+    assert [one.what for one in quality_notes(none, DesignResults({}), TEN)] == ["energy"]
+
+
+def test_step_note_names_models_above_the_tolerance() -> None:
+    """Reference: by hand. A fixed step has no tolerance."""
+    models = {"wild": model_summary(step_error=0.34), "calm": model_summary(step_error=9e-4)}
+    error = "The estimated error by the time step is at most 34 % of the range of a deflection."
+    above = (
+        " It is above time.tolerance of 0.1 % in wild: the motion is chaotic, or needs too many "
+        "steps."
+    )
+    for time, line in ((TEN, error + above), (TimeTable(duration=10.0, step=1e-5), error)):
+        step, _ = quality_notes(summary_of(models), DesignResults({}), time)
+        assert (step.what, step.line) == ("step", line)
 
 
 LAW = PowerContact(1e6, 1.0).with_clearance(0.01)
