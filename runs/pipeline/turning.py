@@ -216,15 +216,31 @@ def hoisting(case: Case, boom: Boom, trajectory: Trajectory) -> Hoisting | None:
     load, data = hanging_load(case, boom), trajectory.data
     if case.hoist is None or load is None:
         return None
-    raised = np.flatnonzero(data["rope_force"].values >= load.weight)
     force = float(data["rope_force_peak"].values.max())
     swings = (
         float(np.abs(data[name].values).max()) if name in data else None
         for name in ("swing_out", "swing_aside")
     )
-    lift_off = float(trajectory.time[raised[0]]) if load.slack is not None and raised.size else None
+    lift_off = None
+    if load.slack is not None:
+        lift_off = _first_rise(trajectory.time, data["rope_force"].values, load.weight)
     by_class = case.hoist.factor_by_class
     return Hoisting(lift_off, force, force / load.weight, by_class, *swings)
+
+
+def _first_rise(time: Array, means: Array, level: float) -> float | None:
+    """Return the time in s at which a quantity first reaches a level; None if it does not.
+
+    Means over the intervals that end at ``time`` (num_times,) are values in the middle of their
+    interval up to second order; the first one is the initial value. Between them the quantity is
+    linear.
+    """
+    reached = np.flatnonzero(means >= level)
+    if not reached.size or reached[0] == 0:
+        return float(time[0]) if reached.size else None
+    middles = np.append(time[0], 0.5 * (time[1:] + time[:-1]))
+    pair = [reached[0] - 1, reached[0]]
+    return float(np.interp(level, means[pair], middles[pair]))
 
 
 def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:

@@ -45,6 +45,18 @@ def test_hanging_load_at_rest(case: Case) -> None:
     assert abs(static_tip(case, 0.0)) < 0.5 * abs(static_tip(case, 5.0))
 
 
+@pytest.mark.slow
+def test_lift_off_does_not_depend_on_the_output_step(case: Case) -> None:
+    """Reference: other code path, an output step of 1 ms. A mean over 50 ms is late by 25 ms."""
+    times = []
+    for step in (1e-3, 5e-2):
+        results = run_case(change(case, **{"time.duration": 3.5, "time.output_step": step}))
+        found = results.summary.design.models["series"].hoisting
+        assert found.lift_off is not None
+        times.append(found.lift_off)
+    assert times[1] == pytest.approx(times[0], abs=5e-3)
+
+
 def test_results_of_a_hoist(case: Case) -> None:
     """Reference: the height at which the load leaves the ground, and the energy balance."""
     case = change(case, **{"hoist.phi_2_min": 1.1, "hoist.beta_2": 0.34})
