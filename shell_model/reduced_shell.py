@@ -13,8 +13,10 @@ import numpy as np
 import xarray as xr
 from mpi4py import MPI
 
+from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.stability import closed_contact_factor
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.plating import PlatedMesh
@@ -39,6 +41,9 @@ from protractile.shell_model.reduction.symmetry import result_or_compute
 from protractile.shell_model.stages import Stages
 from protractile.shell_model.stress.fields import gather_fields
 from protractile.shell_model.telescoping import MOMENTS, TelescopingShell
+
+# Lateral force at the tip that presses contacts for buckling, as a fraction of the loads.
+_LATERAL_FORCE = 1.0e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,9 +74,33 @@ class ReducedShell:
     #: contributions (num_segments, num_modes) of the uniform loads of segments to ``system.load``,
     #: in N/√kg
     own_loads: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    #: K_G (num_modes, num_modes) of axial forces in 1/s², which ``system`` includes; without
+    #: springs of telescoping shells, which come last
+    geometric: Array = field(default_factory=lambda: np.zeros((0, 0)))
     #: orthonormal coefficients (num_modes, num_coarser) of a coarser basis within that of
     #: ``system``; as many as modes if there is none
     coarser: Array = field(default_factory=lambda: np.zeros((0, 0)))
+
+    def critical_factor_at(self, system: GapSystem, load: Array) -> float:
+        """Return the buckling factor of all axial forces with the contacts closed under a load.
+
+        A small lateral force closes the contacts of a boom in space that the load does not press.
+
+        Args:
+            system: completed system of this shell, at a fixed extension.
+            load: modal load (num_modes,) in N/√kg.
+
+        Raises:
+            NumericsError: there is no equilibrium under the load.
+        """
+        if (lateral := system.observers.get("tip_lateral")) is not None:
+            size = np.linalg.norm(load) / np.linalg.norm(lateral.row)
+            load = load + _LATERAL_FORCE * size * lateral.row
+        rest = equilibrium(system, load)
+        geometric = np.pad(self.geometric, (0, system.num_modes - len(self.geometric)))
+        if system.geometric_stiffness.size:
+            geometric = geometric + system.geometric_stiffness
+        return closed_contact_factor(system, geometric, rest)
 
 
 def reduce_boom(
@@ -150,6 +179,7 @@ def reduce_boom(
             for number, segment in enumerate(segments)
         ],
         own_loads=own_loads,
+        geometric=coordinates.geometric,
         coarser=coordinates.coarser,
     )
 
@@ -251,9 +281,18 @@ def critical_factor(boom: Boom, full: BoomShell, reduced: Sequence[ReducedSegmen
         return float("inf")
     bonds = ties(boom.bonded, full.shells)
     factor = BoomCoordinates(full, reduced, bonds, full.lines).critical_factor
+    refuse_buckling(factor)
+    return factor
+
+
+def refuse_buckling(factor: float | None) -> None:
+    """Refuse a shell that buckles under its axial forces.
+
+    Raises:
+        NumericsError: the buckling factor is 1 or less.
+    """
     if factor is not None and factor <= 1.0:
         raise NumericsError(
             f"the shell of the boom buckles under {factor:.3g} times its axial forces; make these "
             "smaller, or the sections larger"
         )
-    return factor

@@ -70,6 +70,8 @@ class CombinationState(NamedTuple):
     walls: Sequence[WallStress] = ()  #: largest wall stresses of each segment of a shell
     #: buckling of the segments of a shell; empty if it is not computed
     buckling: Sequence[WallBuckling] = ()
+    #: buckling factor of the axial forces by a shell; None if it is that of beams
+    critical_factor: float | None = None
 
     @property
     def result(self) -> CombinationResult:

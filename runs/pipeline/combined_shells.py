@@ -3,7 +3,8 @@
 
 Combinations with the same geometry share one reduced shell. The reduction includes the unit loads
 of all of these combinations and the largest axial forces. For a combination with other axial forces
-the geometric stiffness is corrected, from the deflections of the axes of the segments.
+the geometric stiffness is corrected, from the deflections of the axes of the segments. The part of
+walls is not, so that buckling factors of the boom are on the safe side.
 """
 
 from __future__ import annotations
@@ -135,10 +136,14 @@ def _state(
         for segments in (boom.segments, shared.segments)
     )
     system = replace(shell.system.gather_loads(), geometric_stiffness=forces - largest)
+    factor = None
     try:
         with np.errstate(all="ignore"):
             loaded = LoadedModel.of(boom, system, lines)
             beam = BeamStates.at_rest(loaded, combined.case.time.duration)
+            if boom.compressed:
+                loads = map(system.load_at, beam.time.tolist())
+                factor = min(shell.critical_factor_at(system, load) for load in loads)
     except NUMERICAL_ERRORS:
         return CombinationState(combined, None)
     assert shell.fields is not None
@@ -148,7 +153,8 @@ def _state(
     )
     names = [segment.name for segment in boom.segments]
     stresses = stress_near_places(ShellStress.from_fields(fields), force_places(boom), names)
-    return CombinationState(combined, beam, wall_stresses(boom, stresses))
+    walls = wall_stresses(boom, stresses)
+    return CombinationState(combined, beam, walls, critical_factor=factor)
 
 
 def _with_buckling(

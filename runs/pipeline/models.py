@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -56,7 +57,28 @@ def build_on(
     system = complete_system(built.system, case, boom, lines)
     if context is not None and boom.axial_changes:
         system = replace(system, travels=context.comm.bcast(system.travels))
+    if built.shell is not None and boom.compressed:
+        return replace(built, system=system, critical_factor=_factor_at_rest(built, system))
     return replace(built, system=system)
+
+
+def _factor_at_rest(built: BuiltModel, system: GapSystem) -> float | None:
+    """Return the buckling factor of a shell with the contacts that are closed at t = 0.
+
+    It is at most that of bonded joints, which is the result without an equilibrium.
+
+    Raises:
+        NumericsError: the factor is 1 or less: the boom buckles.
+    """
+    from protractile.shell_model.reduced_shell import refuse_buckling
+
+    assert built.shell is not None
+    at_start, factors = system.gather_loads().at_time(0.0), [built.critical_factor]
+    with suppress(NumericsError):
+        factors.append(built.shell.critical_factor_at(at_start, at_start.load_at(0.0)))
+    factor = None if built.critical_factor is None else min(f for f in factors if f is not None)
+    refuse_buckling(factor)
+    return factor
 
 
 def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[Line]) -> GapSystem:

@@ -220,10 +220,13 @@ def _proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
         raise NumericsError(
             f"{state.combined.name}: no static equilibrium; the boom is unrestrained or buckles"
         )
-    for rule in (_wall_proofs, _boom_proofs, _station_proofs, _foot_proofs):
+    for rule in (_wall_proofs, _deflection_proofs, _station_proofs, _foot_proofs):
         for one in rule(beam, table, case):
             if one.kind in table.proofs:
                 yield one._replace(combination=name)
+    if "column" in table.proofs:
+        for one in _column_proofs(beam, state.critical_factor, table):
+            yield one._replace(combination=name)
     for one in _shell_proofs(state, case):
         if _OF_SHELLS[one.kind] in table.proofs:
             yield one._replace(combination=name)
@@ -340,14 +343,20 @@ def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
 _OF_SHELLS = {"patch": "yield", "buckling": "plate"}
 
 
-def _boom_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
-    boom = beam.boom
-    if boom.compressed and "column" in table.proofs:
-        factor = estimate_critical_factor(boom)
-        normal = min(min(one.normal) for rest in beam.rests for one in rest.diagrams)
-        if factor is not None and np.isfinite(factor) and normal < 0.0:
-            resistance = -normal * factor / table.resistance.stability
-            yield Proof("column", "boom", "boom", None, -normal, resistance, "N")
+def _column_proofs(
+    beam: BeamStates, factor: float | None, table: CombinationTable
+) -> Iterator[Proof]:
+    """Yield the proof of column buckling, by the factor of a shell or else of beams."""
+    if not beam.boom.compressed:
+        return
+    factor = estimate_critical_factor(beam.boom) if factor is None else factor
+    normal = min(min(one.normal) for rest in beam.rests for one in rest.diagrams)
+    if factor is not None and np.isfinite(factor) and normal < 0.0:
+        resistance = -normal * factor / table.resistance.stability
+        yield Proof("column", "boom", "boom", None, -normal, resistance, "N")
+
+
+def _deflection_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
     permitted = case.limits.tip_at_rest if case.limits else None
     if permitted is not None:
         tip = max(abs(rest.tip) for rest in beam.rests)

@@ -34,6 +34,7 @@ class BoomCoordinates:
             makes a segment unstable.
         coarser: orthonormal coefficients (num_modes, num_coarser) of a coarser basis, see
             :class:`.krylov.Coordinates`.
+        geometric: K_G (num_modes, num_modes) in 1/s² of axial forces, which ``omega2`` includes.
         critical_factor: buckling factor of the axial forces, see
             :func:`.second_order.buckling_factor`; infinite without axial forces, None for a
             mechanism.
@@ -58,6 +59,7 @@ class BoomCoordinates:
                 _constrained_modes(self.omega2, tied_rows, pulls)
             )
         self.critical_factor: float | None = np.inf
+        self.geometric = np.zeros((self.omega2.size, self.omega2.size))
         geometric = block_diag(*(segment.geometric for segment in reduced))
         if geometric.any():
             # Transform to the modes under the axial forces of the segments.
@@ -69,6 +71,7 @@ class BoomCoordinates:
             )
             self.omega2, turn = comm.bcast(soften_modes(self.omega2, softening))
             self._combination = tied @ turn
+            self.geometric = turn.T @ softening @ turn
         self.coarser = block_diag(*(segment.coarser for segment in reduced))
         if ties:
             self.coarser = self.coarser @ null_space(tied_rows @ self.coarser)

@@ -72,6 +72,18 @@ def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationSta
             if one.name in expected:
                 # The axial forces of the shared shell would change the tip of C by 0.7 %.
                 assert one.largest == pytest.approx(expected[one.name], rel=2e-4)
+        assert built.shell is not None
+        system = built.system.gather_loads()
+        factors = [
+            built.shell.critical_factor_at(system, system.load_at(time))
+            for time in alone.time.tolist()
+        ]
+        if not boom.compressed:
+            assert state.critical_factor is None
+            continue
+        # Walls keep the largest axial forces of all combinations, which is on the safe side.
+        assert state.critical_factor is not None
+        assert 0.85 < state.critical_factor / min(factors) < 1.0
 
 
 def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path: Path) -> None:
@@ -84,6 +96,12 @@ def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path:
         next(wall.patch for wall in state.walls if wall.segment == "base") for state in states
     )
     assert patch.demand >= patches["base"]
+    column = proofs["column", "boom"]
+    state = next(state for state in states if state.combined.name == column.combination)
+    stability = state.combined.combination.resistance.stability
+    assert state.critical_factor is not None
+    expected = state.critical_factor * column.demand / stability
+    assert column.resistance == pytest.approx(expected, rel=1e-12)
     # Of both geometries, the state with the lowest estimate has factors.
     buckled = [state for state in states if state.buckling]
     assert [one.combined.name for one in buckled] == ["A, raised", "A, level"]
