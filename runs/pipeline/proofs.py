@@ -181,10 +181,10 @@ class Proofs(NamedTuple):
             return "The case has no numbers for a proof."
         governs = self.proofs[0]
         change = "" if governs.holds else f". Remedy: {governs.remedy}"
-        return f"{self.failures}. Governing: {governs.text(system)}{change}."
+        return f"{self.tally}. Governing: {governs.text(system)}{change}."
 
     @property
-    def failures(self) -> str:
+    def tally(self) -> str:
         """The number of proofs that fail, in words, without a full stop."""
         failed = sum(not one.holds for one in self.proofs)
         what = f"{len(self.proofs)} proofs{self.of}"

@@ -193,7 +193,7 @@ def print_proofs(
     proof_table(results, case).show(console)
     failed = [one for one in results.proofs if not one.holds]
     # The lines on stderr begin with the governing proof.
-    print_text(console, f"{results.failures}." if failed else results.governing(case.system))
+    print_text(console, f"{results.tally}." if failed else results.governing(case.system))
     for one in failed:
         say(message(f"{shorten(file)}: {one.text(case.system)}. Remedy: {one.remedy}"))
     return 1 if failed else 0

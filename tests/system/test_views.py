@@ -230,6 +230,17 @@ def of_export(case: pt.Case, boom: Boom, checked: Check, shown: dict[str, list[V
     ]
 
 
+def of_sweep(case: pt.Case, shown: dict[str, list[View]]) -> None:
+    assert case.gravity is not None
+    gravity = case.gravity.acceleration
+    data = pt.sweep(case, {"gravity.acceleration": [gravity, 1.01 * gravity]})
+    for name, quantity, factor in (
+        ("tip_at_rest", "largest tip", -1e3),
+        ("first_frequency", "first frequency", 1.0),
+    ):
+        shown[quantity].append(View("sweep", factor * float(data[name].values.ravel()[0]), NONE))
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [*SHIPPED, *OWN])
 def test_views_show_the_same_numbers(name: str) -> None:
@@ -244,6 +255,8 @@ def test_views_show_the_same_numbers(name: str) -> None:
     of_prove(case, boom, shown)
     of_run(case, boom, shown)
     of_live(case, boom, shown)
+    if name in OWN:
+        of_sweep(case, shown)
     of_export(case, boom, checked, shown)
     hertz = first_frequencies(case, case.models[0], None, None)[0, 0]
     shown["first frequency"].append(View("frequencies", hertz, NONE))
