@@ -62,6 +62,21 @@ class RopeForce:
 
 
 @dataclass(frozen=True, slots=True)
+class Release:
+    """History of a change by a dropped load: 0 up to t = 0, then 1.
+
+    A motion changes linearly within its first step.
+    """
+
+    kinks = (0.0,)
+    peak = 1.0
+    fastest = 0.0
+
+    def __call__(self, time: Array) -> Array:
+        return np.where(np.asarray(time) > 0.0, 1.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
 class Pendulum:
     """Horizontal motion of a hanging load."""
 

@@ -185,6 +185,16 @@ def vibrating_state(
     return system.at_time(after), equilibria[after]
 
 
+def vibrating_system(system: GapSystem, duration: float) -> tuple[GapSystem, Array] | None:
+    """Return the state of :func:`vibrating_state`; None without an equilibrium at t = 0.
+
+    The ``load`` of the system includes all constant loads. ``duration`` is that of the motion in s.
+    """
+    released = system.released_load.any()
+    equilibria = positions(system, instants(system, duration) if released else [0.0])
+    return vibrating_state(system, equilibria) if equilibria else None
+
+
 def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]:
     """Return the equilibria (num_modes,) at the largest and smallest extension, by time in s.
 

@@ -24,12 +24,7 @@ from protractile.geometry.cylinder import force_name
 from protractile.geometry.load import Load
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.models import complete_system
-from protractile.runs.pipeline.static_results import (
-    instants,
-    positions,
-    station_loads,
-    vibrating_state,
-)
+from protractile.runs.pipeline.static_results import station_loads, vibrating_system
 
 # Elements of the longest segment; a frequency has an error below 0.01 %.
 _ELEMENTS = 8
@@ -96,8 +91,8 @@ def state_at_rest(
 
 def first_frequency(case: Case, state: StaticState) -> float:
     """Return the first natural frequency in Hz about a static state at t = 0."""
-    rests = positions(state.system, instants(state.system, case.time.duration))
-    omega, _ = closed_contact_modes(*vibrating_state(state.system, rests))
+    vibrating = vibrating_system(state.system, case.time.duration)
+    omega, _ = closed_contact_modes(*(vibrating or (state.system, state.position)))
     return float(omega[0]) / (2.0 * np.pi)
 
 

@@ -26,7 +26,7 @@ from protractile.runs.folder.files import atomic_path, folder_lock, modified_fol
 from protractile.runs.pipeline.model_run import ignore_progress
 from protractile.runs.pipeline.models import build_on
 from protractile.runs.pipeline.results import CONVENTIONS
-from protractile.runs.pipeline.static_results import instants, positions, vibrating_state
+from protractile.runs.pipeline.static_results import vibrating_system
 from protractile.runs.process.terminal import Progress
 from protractile.runs.report.tables import Column, Table
 from protractile.runs.sweep.figures import draw_frequencies
@@ -57,8 +57,7 @@ def first_frequencies(
         try:
             with np.errstate(all="ignore"):
                 system = build_on(booms, case, model, context).system.gather_loads()
-                rests = positions(system, instants(system, case.time.duration))
-                state = vibrating_state(system, rests) if rests else (system,)
+                state = vibrating_system(system, case.time.duration) or (system,)
                 omega = closed_contact_modes(*state)[0][:MODES]
         except NUMERICAL_ERRORS:
             continue
