@@ -416,7 +416,8 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     if not case.spectra:
         yield "Fatigue strength is not proved: the case has no `[[spectrum]]`."
     if "deflection" not in requested_proofs:
-        yield "Static tip deflection is not proved: no combination lists `deflection`."
+        which = "no combination" if case.combinations else "the case has no combination that"
+        yield f"Static tip deflection is not proved: {which} lists `deflection`."
     elif case.limits is None or case.limits.tip_at_rest is None:
         yield "Static tip deflection is not proved: the case has no `limits.tip_at_rest`."
 

@@ -216,6 +216,11 @@ def test_dropped_load_presses_along_the_boom_until_it_falls() -> None:
         (model,) = results.summary.design.models.values()
         assert model.static[0].tip == pytest.approx(right, rel=1e-3)
         assert results.trajectories["tip"].values[0, 0] == pytest.approx(right, rel=1e-3)
+        frames = check_case(CheckedCase(hung)).frames
+        (clamp,) = frames["Reactions of supports and contacts at rest, t = 0"].values.tolist()
+        assert clamp[2:5] == pytest.approx(
+            [1e-3 * across, 1e-3 * along, 1e-3 * (20.0 * across - along * right)], rel=2e-3
+        )
     # Then the bar carries its own weight alone, and vibrates as a cantilever.
     hertz = 1.8751**2 / (2.0 * np.pi * 20.0**2) * np.sqrt(2.1e11 * 2e-4 / 0.1)
     assert model.static[-1].tip == pytest.approx(0.0, abs=1e-3)
