@@ -39,7 +39,18 @@ from protractile.runs.pipeline.static_results import (
 from studies.reference_models.statics import static_response
 from tests.docs.conftest import toml_blocks
 from tests.modal import modal_system
-from tests.runs.case_texts import CLAMPED, THIN, box, edited, read_case, shipped
+from tests.runs.case_texts import (
+    CLAMPED,
+    REST,
+    STEEL,
+    THIN,
+    box,
+    edited,
+    elements,
+    read_case,
+    shipped,
+    table,
+)
 from tests.runs.summaries import answers_of, model_summary, printed_check, summary_of
 
 
@@ -192,6 +203,43 @@ def test_walls_on_corners_have_no_share(tmp_path: Path) -> None:
     shown = check_case(CheckedCase(case))
     (notes,) = (one.notes for one in shown.tables if one.title.startswith("Extreme axial forces"))
     assert notes == ["Includes the cylinder forces at t = 0."]
+
+
+def test_sections_that_distort_have_their_share_and_remedies(tmp_path: Path) -> None:
+    """Reference: other code, a shell of edges of 50 mm at −444.7 mm; by hand without, −265 mm."""
+    pad = {"length": 0.25, "width": 0.07, "thickness": 0.02, "bears": "corner"}
+    sizes = ("shape", "height", "width", "flat", "top", "bottom", "web")
+    outer = dict(zip(sizes, ("hexagon", 0.82, 0.58, 0.39, 0.008, 0.011, 0.007), strict=True))
+    inner = dict(zip(sizes, ("hexagon", 0.74, 0.50, 0.32, 0.007, 0.009, 0.006), strict=True))
+    clamp = [{"x": 0.0, "kind": "clamped"}]
+    text = "".join(
+        (
+            'title = "Hexagons"\n'
+            + table("[time]", duration=5.0)
+            + STEEL
+            + table("[gravity]", angle=0.0)
+            + REST,
+            table("[payload]", mass=6000.0) + elements("beam"),
+            table("[[segment]]", name="outer", length=8.7, supports=clamp, section=outer),
+            table("[[segment]]", name="inner", length=8.7, section=inner),
+            table("[[joint]]", outer="outer", inner="inner", extension=7.1, play=0.004, pad=pad)
+            + 'stations = ["tail", "head"]',
+        )
+    )
+    lines = [
+        line.replace("−", "-") for line in check_case(CheckedCase(read_case(tmp_path, text))).lines
+    ]
+    tip = next(line for line in lines if line.startswith("Static tip deflection"))
+    assert ", with the compliance of sections under pads: -443.7 mm; with bonded" in tip
+    first = lines.index(
+        "Sections distort under pads, which moves the tip by -178.7 of -443.7 mm, 40 %, under the "
+        "loads at t = 0 s (estimate from a frame of plates)."
+    )
+    assert lines[first + 2] == (
+        "- -304.8 mm: collars around both segments at each pad, as thick as the walls and one "
+        "section height long (the boom can then not telescope)"
+    )
+    assert lines[first + 3] == "Sections under pads are rigid in 'beam'."
 
 
 def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) -> None:
