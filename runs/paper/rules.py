@@ -13,12 +13,13 @@ from dataclasses import asdict, dataclass
 from itertools import combinations, pairwise
 
 import numpy as np
-from scipy.special import stdtrit
+from scipy.special import ndtr, stdtrit
 
 from protractile.geometry.arrays import Array, Mask
 from protractile.runs.case.kinds.kantorovich import Kantorovich
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.schema import Model
+from protractile.runs.paper.decision import DECISIVE, Excess, decide
 from protractile.runs.paper.run_query import (
     MissingData,
     RunQuery,
@@ -38,25 +39,28 @@ DIVERGENCE = 0.20
 CONFORMITY = 6.0
 # S3. Share of the members above which the run in the paper is typical.
 MOST = 0.5
-# S2. Confidence level of the mean over an ensemble, whose members are samples of a chaotic motion.
-CONFIDENCE = 0.95
 # S2, S7, S8. The paper's shortest interval in s: its run with friction became unstable then, and
 # its curves without friction diverge visibly after six seconds.
 INTERVAL = 7.0
-# S4. A relative load change of 1e-4, or another step, moves a first tip peak by up to 0.5 %.
+# S4. A relative load change of 1e-4, or another step, moves a first tip peak by up to 0.5 %, which
+# counts as three standard errors.
 PEAK_SCATTER = 0.005
+PEAK_ERROR = PEAK_SCATTER / DECISIVE
 # S5. Above this ratio, play adds more than the whole deflection without play.
 FUNDAMENTAL = 2.0
 # S6. With equal relative differences, the absolute differences would have the ratio of the ranges,
 # about 10 for this boom. Absolute differences count as equal up to half of this ratio. Chaos
 # changes the largest differences up to the first peak by about a tenth.
 SAME_LEVEL = 5.0
-LEVEL_SCATTER = 0.1
+LEVEL_ERROR = 0.1 / DECISIVE
 # S9. Less than the differences between the models of S4, which the paper calls minor.
 CLEAR_INFLUENCE = 0.05
 # S10. The number in the statement.
 SERIES_STEPS = 2000
 ELEMENT_STEPS = 4000
+# S10. Trials double the step. Another sample of the motion changes the fewest steps by up to half a
+# doubling (study `verdicts`).
+DOUBLINGS_ERROR = 0.5
 # S11. The least number of segments above two.
 SEGMENTS = 3
 
@@ -70,6 +74,7 @@ class Finding:
     measured: float | None = None
     threshold: float | None = None
     unit: str = ""
+    distance: float | None = None
 
 
 def judge(results: Results) -> list[Verdict]:
@@ -100,8 +105,8 @@ def _s1(run: RunQuery) -> Finding:
     before = run.time <= first
     curve = run.curve(five)
     measured = float(np.abs(run.curve(four) - curve)[before].max() / _range(curve))
-    return Finding(
-        "reproduced" if measured <= COINCIDENCE else "contradicted",
+    return _finding(
+        [Excess(COINCIDENCE, measured)],
         f"Largest difference of the tips before the first contact at {first:.4f} s.",
         measured,
         COINCIDENCE,
@@ -112,21 +117,19 @@ def _s1(run: RunQuery) -> Finding:
 def _s2(run: RunQuery) -> Finding:
     """Compare the tips of the two series in the last second.
 
-    Measure: their largest difference over the larger range, in the mean of the members, which has a
-    confidence interval of 95 %. Threshold: 0.20, as in the statement. The run in the paper is one
-    sample of these chaotic motions. The run must be as long as the paper's interval.
+    Measure: their largest difference over the larger range, in the mean of the members. Threshold:
+    0.20, as in the statement. The run in the paper is one sample of these chaotic motions. The run
+    must be as long as the paper's interval.
     """
     run.check_friction(present=False)
     run.last_until(INTERVAL)
     four, five = run.members(run.four_terms(), run.five_terms())
     spans = final_differences(four, five, run.time >= run.time[-1] - 1.0)
-    # Half the width of the confidence interval of the mean.
-    quantile = stdtrit(spans.size - 1, 0.5 + 0.5 * CONFIDENCE)
-    mean, margin = float(spans.mean()), float(quantile * spans.std(ddof=1) / np.sqrt(spans.size))
-    return Finding(
-        _above(mean, DIVERGENCE, margin),
+    mean, error = _mean(spans)
+    return _finding(
+        [Excess(mean, DIVERGENCE, error)],
         f"Largest difference of the tips in the last second, in the mean of {spans.size} members, "
-        f"which is known to within {margin:.2f}; from {spans.min():.2f} to {spans.max():.2f} in "
+        f"with a standard error of {error:.3f}; from {spans.min():.2f} to {spans.max():.2f} in "
         f"single ones, above {DIVERGENCE:g} in {100.0 * (spans > DIVERGENCE).mean():.0f} %.",
         mean,
         DIVERGENCE,
@@ -164,16 +167,16 @@ def _s3(run: RunQuery) -> Finding:
         raise MissingData(f"No member has a peak within {CONFORMITY:g} s.")
     if not late:
         raise MissingData(f"No member has a peak after {CONFORMITY:g} s.")
-    conform, conform_margin = _share(np.array(early) <= DIVERGENCE)
-    stratify, stratify_margin = _share(np.array(late) > DIVERGENCE)
+    conform, stratify = np.array(early) <= DIVERGENCE, np.array(late) > DIVERGENCE
     divergence = [float(time[diffs > DIVERGENCE].min(initial=np.inf)) for time, diffs in distances]
     median = sorted(divergence)[len(divergence) // 2]
-    return Finding(
-        _all_of(_above(conform, MOST, conform_margin), _above(stratify, MOST, stratify_margin)),
+    return _finding(
+        [_majority(conform), _majority(stratify)],
         f"Members of {len(early)} whose slow peaks conform for {CONFORMITY:g} s, within "
-        f"{100.0 * DIVERGENCE:g} % in all models; {100.0 * stratify:.0f} % of {len(late)} have "
-        f"peaks further apart later. {_median_sentence(median)} {_horizon_sentence(run, models)}",
-        conform,
+        f"{100.0 * DIVERGENCE:g} % in all models; {100.0 * stratify.mean():.0f} % of {len(late)} "
+        "have peaks further apart later. "
+        f"{_median_sentence(median)} {_horizon_sentence(run, models)}",
+        float(conform.mean()),
         MOST,
         "of the members",
     )
@@ -193,8 +196,8 @@ def _s4(run: RunQuery) -> Finding:
     smallest = min(rises)
     least = int(np.argmin(rises))
     listed = ", ".join(f"{1e3 * peak:.1f}" for peak in peaks)
-    return Finding(
-        _above(smallest, 0.0, PEAK_SCATTER),
+    return _finding(
+        [Excess(smallest, 0.0, PEAK_ERROR)],
         f"First tip peaks {listed} mm. The smallest rise is from {models[least].name!r} to "
         f"{models[least + 1].name!r}; a small change of load or step moves a first peak by up to "
         f"{100.0 * PEAK_SCATTER:g} %.",
@@ -216,8 +219,8 @@ def _s5(run: RunQuery) -> Finding:
     if not models:
         raise MissingData("The case has no model with play.")
     ratio, name = min((run.peak_height(model) / bonded, model.name) for model in models)
-    return Finding(
-        _above(ratio, FUNDAMENTAL, FUNDAMENTAL * PEAK_SCATTER),
+    return _finding(
+        [Excess(ratio, FUNDAMENTAL, FUNDAMENTAL * PEAK_ERROR)],
         f"First tip peak with play over the {1e3 * bonded:.1f} mm without; the smallest is in "
         f"{name!r}.",
         ratio,
@@ -246,11 +249,11 @@ def _s6(run: RunQuery) -> Finding:
     if min(spans.values()) == 0.0:
         raise MissingData("The models do not differ up to the first peak.")
     ratio = spans["tip"] / spans["head"]
-    level = _above(SAME_LEVEL, max(ratio, 1.0 / ratio), LEVEL_SCATTER * SAME_LEVEL)
-    greater = _above(relative["head"], relative["tip"], LEVEL_SCATTER * relative["tip"])
+    level = Excess(SAME_LEVEL, max(ratio, 1.0 / ratio), LEVEL_ERROR * SAME_LEVEL)
+    greater = Excess(relative["head"], relative["tip"], LEVEL_ERROR * relative["tip"])
     shares = {place: f"{100.0 * part:.0f} %" for place, part in relative.items()}
-    return Finding(
-        _all_of(level, greater),
+    return _finding(
+        [level, greater],
         f"Largest difference up to the first peak at {end:.2f} s: {1e3 * spans['tip']:.1f} mm at "
         f"the tip, {1e3 * spans['head']:.1f} mm at the head, which is {shares['tip']} and "
         f"{shares['head']} of the ranges there.",
@@ -281,13 +284,13 @@ def _s7(run: RunQuery) -> Finding:
         float(_largest_differences(run, [model, without], "tip").max()) for model in models
     )
     head = float(differences["head"].max())
-    return Finding(
-        _all_of(
-            _above(DIVERGENCE, conform, 0.0),
-            _above(later, conform, 0.0),
-            _above(bonded, DIVERGENCE, 0.0),
-            _above(head, max(conform, later), 0.0),
-        ),
+    return _finding(
+        [
+            Excess(DIVERGENCE, conform),
+            Excess(later, conform),
+            Excess(bonded, DIVERGENCE),
+            Excess(head, max(conform, later)),
+        ],
         f"Largest difference of the tips of {len(models)} models with play up to {CONFORMITY:g} s; "
         f"{later:.2f} later, {bonded:.2f} at least between one of them and the play-free one, "
         f"and {head:.2f} of the range at the head.",
@@ -310,8 +313,8 @@ def _s8(run: RunQuery) -> Finding:
     run.last_until(INTERVAL)
     summary = run.summary_of(model)
     duration = float(run.time[-1])
-    return Finding(
-        _above(INTERVAL, duration, 1.0e-9 * INTERVAL),
+    return _finding(
+        [Excess(INTERVAL, duration)],
         f"{model.name!r} moves for {duration:g} s in {summary.steps} steps with an energy residual "
         f"of {summary.energy_residual:.1e}: what ended the paper's run after 4375 steps "
         "was its integration.",
@@ -337,8 +340,8 @@ def _s9(run: RunQuery) -> Finding:
     if not differences:
         raise MissingData("No two models of the case differ in the contact law alone.")
     measured, a, b = max(differences)
-    return Finding(
-        _above(CLEAR_INFLUENCE, measured, PEAK_SCATTER),
+    return _finding(
+        [Excess(CLEAR_INFLUENCE, measured, PEAK_ERROR)],
         f"Difference of the first tip peaks of {a!r} and {b!r}, whose exponents differ.",
         100.0 * measured,
         100.0 * CLEAR_INFLUENCE,
@@ -359,11 +362,11 @@ def _s10(run: RunQuery) -> Finding:
     *of_series, of_elements = needed.values()
     steps = max(of_series)
     listed = ", ".join(f"{name!r} {number:.0f}" for name, number in needed.items())
-    return Finding(
-        _all_of(
-            "reproduced" if steps <= SERIES_STEPS else "contradicted",
-            "reproduced" if of_elements > ELEMENT_STEPS else "contradicted",
-        ),
+    return _finding(
+        [
+            Excess(np.log2(SERIES_STEPS), np.log2(steps), DOUBLINGS_ERROR),
+            Excess(np.log2(of_elements), np.log2(ELEMENT_STEPS), DOUBLINGS_ERROR),
+        ],
         f"Fewest steps that keep the first three peaks of the slow motion: {listed}.",
         steps,
         SERIES_STEPS,
@@ -389,8 +392,8 @@ def _s11(run: RunQuery) -> Finding:
         raise MissingData("The case has no series.")
     elements = run.beam_elements()
     difference = abs(run.peak_height(series) / run.peak_height(elements) - 1.0)
-    return Finding(
-        _above(DIVERGENCE, difference, PEAK_SCATTER),
+    return _finding(
+        [Excess(DIVERGENCE, difference, PEAK_ERROR)],
         f"First tip peaks of {series.name!r} and {elements.name!r} on {count} segments, which take "
         f"{run.summary_of(series).modes} and {run.summary_of(elements).modes} equations.",
         100.0 * difference,
@@ -411,16 +414,29 @@ def _find(rule: Callable[[RunQuery], Finding], run: RunQuery) -> Finding:
         return Finding("undecided", str(missing))
 
 
-def _above(value: float, threshold: float, margin: float) -> Judgement:
-    """Return whether a value is above a threshold, as a verdict; undecided within the margin."""
-    if abs(value - threshold) <= margin:
-        return "undecided"
-    return "reproduced" if value > threshold else "contradicted"
+def _finding(
+    parts: Sequence[Excess], why: str, measured: float, threshold: float, unit: str
+) -> Finding:
+    """Return the finding on a statement of several parts."""
+    judgement, distance = decide(*parts)
+    return Finding(judgement, why, measured, threshold, unit, distance)
 
 
-def _share(mask: Mask) -> tuple[float, float]:
-    """Return the fraction of true entries, and twice the standard error at a fraction of ½."""
-    return float(mask.mean()), 1.0 / float(np.sqrt(mask.size))
+def _mean(samples: Array) -> tuple[float, float]:
+    """Return the mean of samples, and its standard error.
+
+    The error of few samples is larger, so that three errors have the probability of a normal
+    distribution (Student 1908).
+    """
+    error = samples.std(ddof=1) / np.sqrt(samples.size)
+    return float(samples.mean()), float(
+        error * stdtrit(samples.size - 1, ndtr(DECISIVE)) / DECISIVE
+    )
+
+
+def _majority(members: Mask) -> Excess:
+    """Return the excess of a share of members over one half, where it has its standard error."""
+    return Excess(float(members.mean()), MOST, 0.5 / float(np.sqrt(members.size)))
 
 
 def _largest_differences(run: RunQuery, models: Sequence[Model], place: str) -> Array:
@@ -446,13 +462,6 @@ def _horizon_sentence(run: RunQuery, models: list[Model]) -> str:
         f"Members of one model part by {100.0 * DIVERGENCE:g} % of the range from "
         f"{min(times):.1f} s on."
     )
-
-
-def _all_of(*parts: Judgement) -> Judgement:
-    """Return one verdict on all parts: contradicted if one part is, reproduced if all are."""
-    if "contradicted" in parts:
-        return "contradicted"
-    return "undecided" if "undecided" in parts else "reproduced"
 
 
 def _range(curve: Array) -> float:

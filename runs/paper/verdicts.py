@@ -38,12 +38,22 @@ class Verdict:
     unit: str  #: unit of both numbers; empty if dimensionless
     verdict: Judgement  #: result of the rule
     why: str  #: explanation of the number and of the verdict
+    #: distance of the deciding number from its threshold in standard errors, of which three decide
+    #: the verdict; None if no number of the rule depends on the sample of a chaotic motion
+    distance: float | None = None
     demanded: bool = False  #: True if the case demands the verdict ``reproduced``
 
     def with_unit(self, value: float | None) -> str:
         """Return a number as text with the unit of the verdict."""
         text = number(value)
         return f"{text} {self.unit}" if self.unit and text != NONE else text
+
+    @property
+    def certainty(self) -> str:
+        """The distance from the threshold as text; empty without standard errors."""
+        if self.distance is None:
+            return ""
+        return f"{number(self.distance, 2)} standard errors away"
 
 
 def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
@@ -133,7 +143,12 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
         )
         if verdict.measured is not None:
             measured, limit = verdict.with_unit(verdict.measured), number(verdict.threshold)
-            text.append(f": {measured} measured, threshold {limit}")
+            text.append(
+                ": "
+                + ", ".join(
+                    filter(None, (f"{measured} measured", f"threshold {limit}", verdict.certainty))
+                )
+            )
         text.append(f"\n{verdict.statement}")
         console.print(text)
 

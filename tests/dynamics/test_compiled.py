@@ -34,7 +34,7 @@ def test_a_read_only_home_and_installation(tmp_path: Path) -> None:
     answer = subprocess.run(
         [sys.executable, "-B", "-c", PROGRAM],
         cwd=tmp_path,
-        env=os.environ
+        env={name: value for name, value in os.environ.items() if name != "NUMBA_CACHE_DIR"}
         | {
             "HOME": str(tmp_path / "home"),
             "XDG_CACHE_HOME": str(tmp_path / "home"),

@@ -84,7 +84,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "taper": {"MODELS": taper.MODELS | {"shell": taper.MODELS[taper.ELEMENTS]}},
 }  # fmt: skip
 # Studies without a verification have no section; validation has its own page.
-TABLES_ALONE = ("surface_contact", "stick_slip", "interpretations", "numerics_1997")
+TABLES_ALONE = ("surface_contact", "stick_slip", "interpretations", "numerics_1997", "verdicts")
 PROVING = [name for name in STUDIES if name not in (*TABLES_ALONE, "validation")]
 
 

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
 
 from protractile.cases import run_case
 from protractile.runs import CASES
@@ -18,7 +19,9 @@ pytestmark = pytest.mark.slow
 
 
 PAPER = CASES / "paper.toml"
-DECIDED = {"S1": "reproduced", "S2": "reproduced", "S3": "contradicted", "S5": "reproduced"}
+# Verdicts that every sample decides, and those that it decides alike if at all.
+SURE = {"S1": "reproduced", "S5": "reproduced"}
+SAMPLED = {"S2": "reproduced", "S3": "contradicted"}
 
 
 def chaotic() -> Case:
@@ -42,8 +45,17 @@ def run(change: float) -> Results:
 def test_verdicts_are_the_same_for_any_round_off() -> None:
     """Reference: the case. Of E, 1e-12 gives another sample of the chaotic motion."""
     one, other = (run(change) for change in (0.0, 1.0e-12))
-    assert {v.id: v.verdict for v in judge(one) if v.id in DECIDED} == DECIDED
+    for results in (one, other):
+        found = {verdict.id: verdict.verdict for verdict in judge(results)}
+        assert {key: found[key] for key in SURE} == SURE
+        # Sixteen members may leave a verdict within three standard errors of its threshold.
+        decided = {key: found[key] for key in SAMPLED if found[key] != "undecided"}
+        assert decided == {key: SAMPLED[key] for key in decided}
     tip = one.trajectories["tip"].sel(model="kantorovich-5").values
-    assert [v.verdict for v in judge(other)] == [v.verdict for v in judge(one)]
     apart = other.trajectories["tip"].sel(model="kantorovich-5").values - tip
     assert np.abs(apart).max() > 0.1 * np.ptp(tip)
+    # The members of both samples together decide the mean; the share of S3 may take more.
+    joined = xr.concat([one.ensembles, other.ensembles], "member")
+    together = {verdict.id: verdict for verdict in judge(replace(one, ensembles=joined))}
+    assert together["S2"].verdict == SAMPLED["S2"]
+    assert together["S3"].verdict in ("undecided", SAMPLED["S3"])

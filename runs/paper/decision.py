@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Decisions on comparisons of numbers that have standard errors.
+
+The round-off of another processor gives another sample of a chaotic motion. A number that depends
+on the sample is compared with a threshold only if it is three standard errors away from it, so that
+every processor gives the same verdict.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from protractile.runs.paper.verdicts import Judgement
+
+# Least distance from a threshold, in standard errors, that decides a verdict.
+DECISIVE = 3.0
+
+
+class Excess(NamedTuple):
+    """Excess of a number over another, which reproduces a statement if it is positive."""
+
+    greater: float
+    less: float
+    error: float = 0.0  #: standard error of the excess; 0 if it does not depend on the sample
+
+    @property
+    def distance(self) -> float:
+        """The excess in standard errors; infinite without a standard error."""
+        excess = self.greater - self.less
+        if self.error == 0.0:
+            return float(np.copysign(np.inf, excess)) if excess else 0.0
+        return excess / self.error
+
+
+def decide(*parts: Excess) -> tuple[Judgement, float | None]:
+    """Return the verdict on a statement of several parts, and its distance from the thresholds.
+
+    The part with the lowest excess decides: the statement is contradicted if this excess is below
+    minus three standard errors, reproduced if above three, otherwise undecided. The distance is the
+    size of this excess in standard errors; None if it has no standard error.
+    """
+    lowest = min(part.distance for part in parts)
+    distance = abs(lowest) if np.isfinite(lowest) else None
+    if abs(lowest) < DECISIVE:
+        return "undecided", distance
+    return ("reproduced" if lowest > 0.0 else "contradicted"), distance
