@@ -16,6 +16,10 @@ VARY_hoist := hoist.speed=0.2,0.3,0.4,0.5,0.6
 VARY_slew := slew.speed=2,4,6,8,10
 SWEEPS := $(patsubst %,runs/out/%-sweep/sweep.csv,drawn-out hoist slew)
 
+# Instructions that `make imitate` hides from numpy.
+AVX512 := AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR
+NEWER := $(AVX512) AVX2 FMA3
+
 # One thread each: parallelism is MPI ranks, `make -j` and test workers. Open MPI 4 and 5 refuse root and
 # more ranks than cores else.
 export OMP_NUM_THREADS ?= 1
@@ -48,7 +52,7 @@ NEEDS_pip := .[shell,report,test]
 CONSTRAINTS_debian := .ci/constraints-$(RELEASE).txt
 CONSTRAINTS_pip := .ci/constraints-pip.txt
 
-.PHONY: help install verify snapshots gallery bench convergence validation validity other-codes test fuzz torture quick lint docs matrix clean distclean packages-debian packages-pip
+.PHONY: help install verify snapshots gallery bench convergence validation validity other-codes test imitate fuzz torture quick lint docs matrix clean distclean packages-debian packages-pip
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -86,6 +90,12 @@ other-codes: build/other-codes/ready ## OpenSees, sectionproperties and Exudyn, 
 
 test: $(READY) ## all tests
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -n 2 --dist loadfile --no-loadscope-reorder
+
+# Each rounds differently: compiled loops, numpy and BLAS choose other instructions.
+imitate: ## `make test` as on three other processors
+	NUMBA_CPU_NAME=generic OPENBLAS_CORETYPE=Prescott NPY_DISABLE_CPU_FEATURES="$(NEWER)" $(MAKE) test
+	NUMBA_CPU_NAME=haswell OPENBLAS_CORETYPE=Haswell NPY_DISABLE_CPU_FEATURES="$(AVX512)" $(MAKE) test
+	NUMBA_CPU_NAME=znver2 OPENBLAS_CORETYPE=Zen NPY_DISABLE_CPU_FEATURES="$(AVX512)" $(MAKE) test
 
 fuzz: $(READY) ## a thousand errors in cases, load files and command lines; each must give one line
 	$(BIN)/python -m tests.fuzz

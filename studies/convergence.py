@@ -130,6 +130,7 @@ STUDIES = (
     "stick_slip",
     "interpretations",
     "numerics_1997",
+    "verdicts",
     "second_order",
     "large_deflections",
     "wall_buckling",
