@@ -67,6 +67,9 @@ Picture = Annotated[
 ]
 Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
+# Commands that one rank executes; the other commands share their work among ranks.
+_OF_ONE_RANK = ("report", "snapshot", "check", "live", "schema")
+
 
 def _print_version(requested: bool) -> None:
     if requested:
@@ -78,6 +81,7 @@ def _print_version(requested: bool) -> None:
 
 @app.callback()
 def protractile(
+    context: typer.Context,
     version: Annotated[
         bool,
         typer.Option(
@@ -86,6 +90,8 @@ def protractile(
     ] = False,
 ) -> None:
     """Simulate vibrations of telescopic booms with play between their segments."""
+    if context.invoked_subcommand in _OF_ONE_RANK and ending.launched_rank():
+        raise typer.Exit
 
 
 @app.command()
@@ -386,7 +392,7 @@ def prove(
 
     checked = load(case)
     if shell is None:
-        return print_proofs(checked, case, Terminal())
+        return 0 if ending.launched_rank() else print_proofs(checked, case, Terminal())
     shells = {one.name: one for one in checked.models if isinstance(one, Shell)}
     if shell not in shells:
         what = f"{shell!r} is not a shell of the case; leave it out for beam elements"
@@ -445,6 +451,8 @@ def export(
     selected = reading.select(checked, case, [program.select_model(checked, case, model).name])
     path = Path(out or f"{Path(case).stem}.{suffixes[to]}")
     comm = ranks.enter_mpi(selected, case, "export another one with --model")
+    if comm is None and ending.launched_rank():
+        return 0
     program.write(selected, case, comm, path, Cache.of_user())
     print(printable(str(path)))
     return 0
@@ -465,6 +473,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command and exit. Print an error that the user can correct as one line on stderr."""
     terminal.prepare()
     terminal.show_notices()
+    if ending.launched_rank():
+        # Help, progress and results are those of the first rank.
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
     # Figures go into files, whatever backend the environment selects.
     os.environ["MPLBACKEND"] = "agg"
     command = typer.main.get_command(app)

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import partial
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -17,7 +17,7 @@ from scipy.linalg import block_diag
 from scipy.spatial import cKDTree
 
 from protractile.dynamics.gap_system import GapSystem
-from protractile.geometry.arrays import Array
+from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.cylinder import force_name
 from protractile.geometry.plating import PlatedMesh
@@ -37,11 +37,13 @@ def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     ``shapes`` (num_owned, num_modes) are this rank's rows of the shapes.
     """
     form, component = _stress_form(shell.space, shell.segment)
-    columns = []
+    columns, of_cells = [], None
     for unit in np.eye(len(COMPONENTS)):
         component.value[:] = unit
         matrix = compat.assemble_matrix(form, [], diagonal=0.0)
-        columns.append(times(matrix, shapes).astype(np.float32))
+        if of_cells is None:
+            of_cells = _CellShapes.gather(shell.space, matrix, shapes)
+        columns.append(of_cells.times(matrix).astype(np.float32))
         matrix.destroy()
     domain = shell.space.mesh
     places = np.asarray(domain.topology.original_cell_index)[: len(columns[0])]
@@ -57,6 +59,50 @@ def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     # The form gives bending stress per distance from the mid-surface.
     modes[:, :, 3:] *= 0.5 * mesh.thickness[:, None].astype(np.float32)
     return modes
+
+
+class _CellShapes(NamedTuple):
+    """Shapes at the degrees of freedom of each triangle, for sums in the order of the triangle.
+
+    A product of PETSc adds in the order of global numbers, which depends on the number of ranks.
+    """
+
+    shapes: Array  #: (num_places, num_modes) at the places that the triangles of this rank use
+    places: Indices  #: (num_triangles, num_local) of ``shapes``
+    order: Indices  #: (num_triangles, num_local) position in a row of a matrix
+
+    @classmethod
+    def gather(cls, space: Any, matrix: PETSc.Mat, shapes: Array) -> _CellShapes:
+        """Return the shapes for matrices (triangle, dof) like ``matrix``. Collective."""
+        begin, column, _ = matrix.getValuesCSR()
+        cells = np.array([space.dofmap.cell_dofs(cell) for cell in range(len(begin) - 1)])
+        needed, place = np.unique(column, return_inverse=True)
+        numbers = space.dofmap.index_map.local_to_global(cells.ravel().astype(np.int32))
+        local = np.asarray(numbers).reshape(cells.shape)
+        # Rows of a matrix are sorted by column.
+        order = np.argsort(np.argsort(local, axis=1), axis=1)
+        selection = PETSc.Mat().createAIJ(
+            ((needed.size, None), (matrix.getLocalSize()[1], None)),
+            csr=(
+                np.arange(needed.size + 1, dtype=PETSc.IntType),
+                needed.astype(PETSc.IntType),
+                np.ones(needed.size),
+            ),
+            comm=matrix.comm,
+        )
+        selected = times(selection, shapes)
+        selection.destroy()
+        places = np.take_along_axis(place.reshape(cells.shape), order, axis=1)
+        return cls(selected, places, order)
+
+    def times(self, matrix: PETSc.Mat) -> Array:
+        """Return the product (num_triangles, num_modes) of a matrix and the shapes."""
+        _, _, values = matrix.getValuesCSR()
+        weights = np.take_along_axis(values.reshape(self.order.shape), self.order, axis=1)
+        product = np.zeros((len(self.order), self.shapes.shape[1]))
+        for weight, place in zip(weights.T, self.places.T, strict=True):
+            product += weight[:, None] * self.shapes[place]
+        return product
 
 
 def wall_frame(domain: Any) -> tuple[Any, Any, Any]:

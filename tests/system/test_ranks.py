@@ -12,6 +12,7 @@ from protractile.runs.report import figures
 from tests import at_once
 from tests.system.run_folder import (
     COARSE,
+    ROOT,
     check_common_files,
     protractile,
     summary_of,
@@ -110,6 +111,25 @@ def test_a_mistake_ends_both_ranks_with_one_line(
 ) -> None:
     answer = two_ranks("from protractile.runs import cli; cli.main()", *arguments)
     assert (answer.returncode, complaints(answer)) == (status, [line])
+
+
+@pytest.mark.parametrize(
+    ("command", "once", "status"),
+    [
+        ("--version", "protractile 0.", 0),
+        ("schema", "Least Overlap", 0),
+        ("prove runs/cases/crane-proof.toml", "Proof of a truck crane boom", 1),
+        ("check runs/cases/coarse.toml", "The paper's boom, coarse and short", 0),
+        ("export runs/cases/coarse.toml --to opensees --model beam-fe --out x.py", "x.py", 0),
+    ],
+)
+def test_two_ranks_print_once(two_ranks: Ranks, command: str, once: str, status: int) -> None:
+    """Reference: one rank, which prints each line once."""
+    program = "import sys; from protractile.runs import cli; cli.main(sys.argv[1:])"
+    words = [str(ROOT / word) if word.startswith("runs/") else word for word in command.split()]
+    answer = two_ranks(program, *words)
+    assert (answer.returncode, answer.stdout.count(once)) == (status, 1)
+    assert len(complaints(answer)) == len({*complaints(answer)})
 
 
 def test_failing_numerics_on_one_rank_end_both(two_ranks: Ranks, tmp_path: Path) -> None:
