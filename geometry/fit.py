@@ -11,6 +11,7 @@ from protractile.geometry.fields import BoomError
 from protractile.geometry.joint import SIDES, Joint, PadSize, SlidePad
 from protractile.geometry.section import Direction, Side
 from protractile.geometry.segment import SAME_PLACE, Segment
+from protractile.geometry.typography import TO_MILLI
 from protractile.geometry.walls import free_room
 
 if TYPE_CHECKING:
@@ -22,6 +23,10 @@ _WHERE: Mapping[tuple[Direction, Side], str] = {
     ("y", 1): "right",
     ("y", -1): "left",
 }
+
+
+# A larger play in m is probably in mm.
+_LARGE_PLAY = 0.3
 
 
 def check_room(
@@ -48,11 +53,14 @@ def check_room(
                 f"there, and a play of {joint.play:.6g} m is asked for; make the travel or the "
                 "taper smaller",
             )
+        in_millimetres = ""
+        if joint.play > _LARGE_PLAY:
+            in_millimetres = f"; if it is in mm, give {joint.play / TO_MILLI:g} m"
         raise BoomError(
             f"{where}.play",
             f"{inner.name!r} does not fit in {outer.name!r}: {height:.6g} m of height and "
             f"{width:.6g} m of width are free, and a play of {joint.play:.6g} m is "
-            "asked for; make the inner section or the play smaller",
+            f"asked for; make the inner section or the play smaller{in_millimetres}",
         )
     if extension is None and width < (joint.lateral_play or 0.0) - near:
         raise BoomError(

@@ -48,6 +48,21 @@ def is_table(value: Any) -> bool:
     return hasattr(type(value), "__pydantic_fields__")
 
 
+def walk_tables(table: Any, key: str = "") -> Iterator[tuple[str, Any]]:
+    """Yield the key and the table of a table and of all tables within it."""
+    yield key, table
+    for step, name in names_of(type(table)).items():
+        value, inner = getattr(table, name), f"{key}.{step}" if key else step
+        parts = {inner: value}
+        if isinstance(value, dict):
+            parts = {f"{inner}.{one}": part for one, part in value.items()}
+        elif isinstance(value, tuple):
+            parts = {f"{inner}[{i}]": part for i, part in enumerate(value, start=1)}
+        for where, part in parts.items():
+            if is_table(part):
+                yield from walk_tables(part, where)
+
+
 def map_tables(table: Any, change: Callable[[str, Any], Mapping[str, Any]], key: str = "") -> Any:
     """Return a copy of a table with changed values, also in all tables within it.
 

@@ -256,7 +256,7 @@ class CombinationTable(CaseTable):
     motion: Flag = False
     """whether prove and runs take the extremes of the motion under these loads, by the first model
     of beam elements, in place of those at rest"""
-    proofs: tuple[ProofName, ...] = PROOFS
+    proofs: Annotated[tuple[ProofName, ...], Field(min_length=1)] = PROOFS
     """the proofs that the combination demands; a proof compares the design effect with the limit
     design value (EN 13001-3-1): yield (static strength), plate (plate buckling), column (column
     buckling), pad (pressure), cylinder (force) and pin (shear) unless given; deflection (static

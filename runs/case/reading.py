@@ -40,7 +40,7 @@ from protractile.runs.case.limits import (
 from protractile.runs.case.load_tables import HistoryTable
 from protractile.runs.case.messages import BadInput, refusing
 from protractile.runs.case.motion_tables import TravelTable
-from protractile.runs.case.sanity import check_ranges
+from protractile.runs.case.sanity import check_ranges, usual_ranges
 from protractile.runs.case.schema import Case, EnsembleTable, Model, TimeTable
 from protractile.runs.case.units import System, scale
 from protractile.runs.case.user_files import read_text
@@ -337,7 +337,14 @@ def _check_boom(checked: CheckedCase) -> None:
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"
         _check_step(f"{where}.step", model.step, case.time)
-        model.check(where, checked.model_boom(model))
+        try:
+            model.check(where, checked.model_boom(model))
+        except BoomError as error:
+            # A wrong unit is a likely reason, for example of a boom that buckles.
+            unusual = (one for one in usual_ranges(case, boom) if one.unusual)
+            hint = next((one for one in unusual if any(one.likely_units(case.system))), None)
+            what = "" if hint is None else f"; {hint.key}: {hint.text(case.system)}"
+            raise BoomError(error.where, f"{error.what}{what}") from None
     _check_step("time.step", case.time.step, case.time)
     check_ensemble_data(case, boom)
     check_combinations(case)

@@ -16,6 +16,7 @@ from protractile.runs.case.contact import JointTable
 from protractile.runs.case.motion_tables import max_speed
 from protractile.runs.case.schema import Case
 from protractile.runs.case.units import System, Unit
+from protractile.runs.case.usual_values import key_values
 
 # Units that a user may have meant, most likely first.
 _LIKELY_UNITS = {
@@ -24,6 +25,10 @@ _LIKELY_UNITS = {
     "m/s": ("mm/s", "m/s"),
     "m^4": ("cm^4", "mm^4", "m^4"),
     "kg/m^3": ("t/m^3", "t/mm^3", "kg/m^3"),
+    "m^2": ("mm^2", "cm^2", "m^2"),
+    "N": ("kN", "N"),
+    "N/m": ("N/mm", "kN/mm", "N/m"),
+    "kg": ("kg", "t"),
 }
 
 # Height of a box over its radius of gyration: 2.2 to 2.8 in practice.
@@ -61,11 +66,16 @@ class UsualRange(NamedTuple):
         label = "" if self.unit == "1" else f" {system.label(self.unit)}"
         displayed = system.of(self.value, self.unit)
         text = f"{self.what} is {displayed:.5g}{label}, usual is {' '.join(limits)}{label}"
-        for name in _LIKELY_UNITS.get(self.unit, ()):
-            value = displayed * Unit.of(name).factor
-            if self.least <= value <= self.most:
-                return f"{text}; if it is in {name}, give {system.of(value, self.unit):.5g}{label}"
+        for name, value in self.likely_units(system):
+            return f"{text}; if it is in {name}, give {system.of(value, self.unit):.5g}{label}"
         return f"{text}; check the number and its unit"
+
+    def likely_units(self, system: System) -> Iterator[tuple[str, float]]:
+        """Yield the units in which the number is usual, and its values in SI units in these."""
+        for name in _LIKELY_UNITS.get(self.unit, ()):
+            value = system.of(self.value, self.unit) * Unit.of(name).factor
+            if self.least <= value <= self.most:
+                yield name, value
 
 
 def check_ranges(case: Case, boom: Boom) -> None:
@@ -85,6 +95,8 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
     The limits are wide: laboratory booms of 1 m and cranes of 60 m are within them.
     """
     yield from _material_ranges(case)
+    for one in key_values(case, boom):
+        yield UsualRange(one.key, one.usual.what, one.value, one.unit, *one.usual[1:])
     for number, segment in enumerate(boom.segments):
         yield from _section_ranges(f"segment[{number + 1}]", segment)
     for number in range(len(boom.joints)):

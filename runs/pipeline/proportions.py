@@ -20,6 +20,7 @@ from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.sanity import materials, usual_ranges
 from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.omissions import omission_cautions
 
 # Angle in degrees up to which a boom is horizontal.
 LEVEL_ANGLE = 0.1
@@ -86,6 +87,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
         *_gaps(boom),
         *_pads(case, boom),
         *_meshes(case, boom),
+        *omission_cautions(case, boom),
     ]
     return [f"caution: {line}" for line in texts]
 

@@ -48,6 +48,10 @@ LIFT_MISTAKES = {
     "load twice, other form of x": with_load("x = 11.3\nmagnitude = -1595.0\nramp = 0.1"),
     "E a tenth": ("youngs_modulus = 2.1e11", "youngs_modulus = 2.1e10"),
     "walls a tenth": ("flange = 0.006, web = 0.005", "flange = 0.0006, web = 0.0005"),
+    "angle forgotten": ("angle = 45.0", "acceleration = 9.81"),
+    "flange and web swapped": ("flange = 0.006, web = 0.005", "flange = 0.005, web = 0.006"),
+    "play in mm": ("play = 0.003", "play = 3.0"),
+    "payload in t": ("mass = 150.0", "mass = 0.15"),
     "foot clamped": ('kind = "hinged"', 'kind = "clamped"'),
 }
 CRANE_MISTAKES = {

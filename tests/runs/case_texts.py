@@ -103,6 +103,13 @@ def read_case(folder: Path, content: str | bytes) -> Case:
     return reading.load(str(path))
 
 
+def load_checked_text(folder: Path, content: str) -> reading.CheckedCase:
+    """Return the checked case of a text, from a file in a folder."""
+    path = folder / "case.toml"
+    path.write_text(content, "utf-8")
+    return reading.load_checked(str(path))
+
+
 @contextmanager
 def refused(line: str) -> Iterator[None]:
     """Expect a refusal with this exact line."""
