@@ -164,6 +164,7 @@ def check_case(checked: CheckedCase) -> Check:
 
         lines += static_limit_lines(case.limits, extremes)
     lines.append(f"A run may take {run_cost(case, preview)}.")
+    lines = [case.system.convert(line) for line in lines]
     return Check(case.title, [table for table in tables if table.rows], lines)
 
 

@@ -124,6 +124,8 @@ def check(case: Case, path: str) -> CheckedCase:
         with refusing(path):
             _check_time(case.time)
             _check_boom(checked)
+    except BadInput as fault:
+        raise BadInput(fault.file, fault.key, case.system.convert(fault.what)) from None
     except ArithmeticError as error:
         raise BadInput(
             path, "segment", f"numbers out of proportion ({error.args[-1]}); give them in SI units"

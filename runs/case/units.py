@@ -70,6 +70,11 @@ class Unit:
 SystemName = Literal["SI", "mm-t-s", "N-mm"]
 # The units that replace SI units in the other systems, which are the same.
 _MILLIMETRES = {"m": "mm", "kg": "t", "Pa": "MPa"}
+# An amount in an SI unit that another system replaces.
+_AMOUNT = re.compile(
+    r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?) "
+    r"(m/s\^2|m/s|m|kg/m\^3|kg/m|kg|Pa|N/m|N m)(?![\w/^])"
+)
 _RAISED = str.maketrans("234", "²³⁴")
 
 
@@ -95,6 +100,19 @@ class System:
     def label(self, si: str) -> str:
         """Return the system's unit as text for headings, for example ``mm⁴``."""
         return self.unit(si).replace("^", "").translate(_RAISED)
+
+    def convert(self, message: str) -> str:
+        """Return a message whose amounts in SI units are in the system's units.
+
+        >>> from protractile.runs.case.units import System
+        >>> System("mm-t-s").convert("must be below 4.8 m, got 4.9 m of steel")
+        'must be below 4800 mm, got 4900 mm of steel'
+        """
+
+        def converted(match: re.Match[str]) -> str:
+            return f"{self.of(float(match[1]), match[2]):.6g} {self.unit(match[2])}"
+
+        return message if self.name == "SI" else _AMOUNT.sub(converted, message)
 
     def text(self, value: float, si: str, digits: int = 4) -> str:
         """Return a value, given in an SI unit, as text in the system's unit: ``12.5 mm``."""

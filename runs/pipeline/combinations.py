@@ -20,18 +20,17 @@ from protractile.geometry.typography import join_words
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import CombinedCase, combined_cases
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import System
 from protractile.runs.pipeline.largest_loads import (
     BeamStates,
     StaticExtreme,
     StaticKind,
     beam_note,
-    in_units,
     without_negligible,
 )
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.pipeline.strength import WallStress
 from protractile.runs.pipeline.wall_buckling import WallBuckling
+from protractile.runs.report.formatting import amount
 from protractile.runs.report.tables import Column, Table
 
 # Mark of governing values in a table.
@@ -108,11 +107,10 @@ def combination_results(case: Case) -> list[CombinationResult]:
 def combination_tables(
     results: Sequence[CombinationResult], case: Case, shell: str = ""
 ) -> Iterator[Table]:
-    """Yield the table of combinations and the table of their envelope, in the units of a case.
+    """Yield the table of combinations and the table of their envelope.
 
     ``shell`` is the name of the shell; empty for results of beam elements.
     """
-    system = case.system
     if not any(one.extremes for one in results):
         return
     shown = without_negligible([one.extremes for one in results])
@@ -124,12 +122,12 @@ def combination_tables(
         values = [one.largest(kind) for one in results]
         most = max((abs(one.largest) for one in values if one), default=0.0)
         if most:
-            cells = [_marked(one, most, system) if one else None for one in values]
+            cells = [_marked(one, most) if one else None for one in values]
             columns.append(Column(heading, cells))
     notes = [f"{_GOVERNS} is the largest of its column."]
     limited = [one.name for one in case.combinations if "deflection" in one.proofs]
     if limited and case.limits is not None and (limit := case.limits.tip_at_rest) is not None:
-        text = in_units(limit, "m", system)
+        text = amount(limit, "m")
         notes.append(
             f"The limit {text} of the static tip deflection applies to {join_words(limited)} only."
         )
@@ -145,15 +143,15 @@ def combination_tables(
     notes += [f"{one.name}: there is no static equilibrium." for one in results if not one.extremes]
     yield Table("Largest results of each combination", columns, notes, "combinations")
     if len(results) > 1:
-        yield _envelope(results, system)
+        yield _envelope(results)
 
 
-def _marked(one: StaticExtreme, most: float, system: System) -> str:
-    text = in_units(one.largest, one.unit, system)
+def _marked(one: StaticExtreme, most: float) -> str:
+    text = amount(one.largest, one.unit)
     return text + (_GOVERNS if abs(one.largest) == most else " " * len(_GOVERNS))
 
 
-def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
+def _envelope(results: Sequence[CombinationResult]) -> Table:
     """Return the table of minimum, maximum and governing combination of each result."""
     of_name: dict[str, list[tuple[StaticExtreme, str]]] = {}
     for result in results:
@@ -167,7 +165,7 @@ def _envelope(results: Sequence[CombinationResult], system: System) -> Table:
         # The positions of stations depend on the extension.
         at_station = one.kind in ("pad", "contact")
         moving |= at_station
-        ends = (in_units(end.largest, end.unit, system) for end, _ in (least, most))
+        ends = (amount(end.largest, end.unit) for end, _ in (least, most))
         rows.append((one.what if at_station else one.name, *ends, governing))
     note = "Pads and contacts move with the extension; x is given for the governing combination."
     headings, notes = ("result", "minimum", "maximum", "governing"), [note] if moving else []

@@ -36,7 +36,7 @@ from protractile.runs.pipeline.static_results import (
 )
 from protractile.runs.pipeline.statics import state_at_rest
 from protractile.runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
-from protractile.runs.report.formatting import amount, number, without_round_off
+from protractile.runs.report.formatting import amount, without_round_off
 from protractile.runs.report.tables import Column, Table
 
 # Elements of the longest segment. The error of stresses under a uniform load is below 0.1 %.
@@ -258,11 +258,11 @@ def static_table(case: Case, boom: Boom, extremes: Sequence[StaticExtreme]) -> T
     vary = any(one.time > 0.0 for one in extremes)
     columns = [
         Column("", [one.what for one in extremes]),
-        Column("t = 0", [in_units(one.initial, one.unit, case.system) for one in extremes]),
+        Column("t = 0", [amount(one.initial, one.unit) for one in extremes]),
     ]
     if vary:
         columns += [
-            Column("maximum", [in_units(one.largest, one.unit, case.system) for one in extremes]),
+            Column("maximum", [amount(one.largest, one.unit) for one in extremes]),
             Column("time of\nmaximum, s", [f"{one.time:.4g}" for one in extremes]),
         ]
     if any(used):
@@ -296,13 +296,6 @@ def beam_note(boom: Boom) -> str:
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
     walls = f", with elastic {boom.yielding}," if boom.yielding else ""
     return f"A separate {theory} beam{walls} gives these estimates."
-
-
-def in_units(value: float, unit: str, system: System) -> str:
-    """Return a value in an SI unit as text in the units of a case."""
-    if system.name == "SI":
-        return amount(value, unit)
-    return f"{number(system.of(value, unit), 3)} {system.label(unit)}"
 
 
 def overload_cautions(

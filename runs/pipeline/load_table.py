@@ -15,9 +15,11 @@ from protractile.runs.case.load_tables import HistoryTable, LoadTable, build_his
 from protractile.runs.case.motion_tables import resolving_times
 from protractile.runs.case.schema import Case
 from protractile.runs.case.units import System
-from protractile.runs.report.formatting import number
+from protractile.runs.report.formatting import SHOWN, number
 from protractile.runs.report.tables import Table
 
+# Forces and moments from this number on are in kN and kN m in all systems of units.
+_ENGINEERS, _MANY = {"N", "N m"}, 1.0e5
 _CONSTANT, _ALL = "constant", "all masses"
 # Direction of axial forces, which are positive in compression.
 _AXIAL = "to the base"
@@ -39,7 +41,11 @@ def load_table(case: Case, boom: Boom) -> Table:
     """Return the table of all loads of a case, in the units of the case."""
     system, rows = case.system, []
     for *names, largest, unit, time in _rows(case, boom):
-        maximum = f"{number(system.of(largest, unit), 4)} {system.label(unit)}"
+        shown, label = system.of(largest, unit), system.label(unit)
+        if unit in _ENGINEERS and abs(shown) >= _MANY:
+            label, factor = SHOWN[unit]
+            shown = factor * largest
+        maximum = f"{number(shown, 4)} {label}"
         rows.append((*names, maximum, "" if time is None else f"{time:.4g}"))
     headings = "load", "on", "direction", "history", "maximum", "maximum\nat s"
     return Table.of_rows("", "Loads", headings, rows)

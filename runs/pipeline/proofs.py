@@ -21,13 +21,14 @@ from protractile.runs.case.schema import Case
 from protractile.runs.case.units import System
 from protractile.runs.pipeline.combinations import CombinationState
 from protractile.runs.pipeline.fatigue import detail_damages
-from protractile.runs.pipeline.largest_loads import BeamStates, in_units
+from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.panels import (
     WallStresses,
     nominal_wall_stresses,
     panel_factor,
     stress_ratio,
 )
+from protractile.runs.report.formatting import amount
 from protractile.runs.report.tables import Column, Table
 from protractile.shell_model.stress.history import BAND
 
@@ -149,14 +150,14 @@ class Proof(NamedTuple):
         """True if the design effect does not exceed the limit design value."""
         return self.demand <= self.resistance
 
-    def numbers(self, system: System) -> list[str]:
-        """Return design effect and limit design value as text, in units of a system."""
-        both = (in_units(one, self.unit, system) for one in (self.demand, self.resistance))
+    def numbers(self) -> list[str]:
+        """Return design effect and limit design value as text."""
+        both = (amount(one, self.unit) for one in (self.demand, self.resistance))
         return [one.removesuffix(" 1") for one in both]
 
     def text(self, system: System) -> str:
         """Return a sentence with place, numbers and combination, in units of a system."""
-        demand, resistance = self.numbers(system)
+        demand, resistance = self.numbers()
         relation = "≤" if self.holds else "exceeds"
         name, cause = KINDS[self.kind].name, "spectrum" if self.kind == "fatigue" else "combination"
         place = "" if self.place in name.split() else f", {self.place}"
@@ -425,7 +426,7 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
 def proof_table(result: Proofs, case: Case) -> Table:
     """Return the table of proofs, the governing one first."""
     proofs, system = result.proofs, case.system
-    numbers = [one.numbers(system) for one in proofs]
+    numbers = [one.numbers() for one in proofs]
     # Narrow columns keep the table within 80 characters.
     at = ["" if one.x is None else f"\n{system.text(one.x, 'm')}" for one in proofs]
     used = [f"{100.0 * one.utilisation:.3g} % {'✓' if one.holds else '✗'}" for one in proofs]

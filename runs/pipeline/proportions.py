@@ -89,7 +89,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
         *_meshes(case, boom),
         *omission_cautions(case, boom),
     ]
-    return [f"caution: {line}" for line in texts]
+    return [f"caution: {case.system.convert(line)}" for line in texts]
 
 
 def _ineffective_inputs(case: Case) -> Iterator[str]:
