@@ -31,7 +31,7 @@ _FLAT = 1.0e-6
 _EXACT, _FARTHEST = 0.05, 1.0e9
 
 
-def equilibrium(system: GapSystem, load: Array) -> Array:
+def equilibrium(system: GapSystem, load: Array, near: Array | None = None) -> Array:
     """Return the modal coordinates a (num_modes,) in √kg·m at equilibrium.
 
     >>> depth = equilibrium(ball, ball.load)[0]
@@ -41,6 +41,8 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     Args:
         system: gap system; contacts may support it.
         load: constant modal load (num_modes,) in N/√kg.
+        near: equilibrium (num_modes,) under a similar load, from which the search starts if it is
+            nearer than the undeformed boom.
 
     Raises:
         NumericsError: neither supports nor contacts resist the load.
@@ -79,13 +81,16 @@ def equilibrium(system: GapSystem, load: Array) -> Array:
     stiffness = (unscaled.T * system.omega2) @ unscaled
     if system.geometric_stiffness.size:
         stiffness -= unscaled.T @ system.geometric_stiffness @ unscaled
-    minimum = _minimum(stiffness, scaled_load, rows, laws, unit)
+    start = np.zeros(scaled_load.size) if near is None else span.T @ (factor.T @ near) / unit
+    minimum = _minimum(stiffness, scaled_load, rows, laws, unit, start)
     if minimum is None:
         raise NumericsError("no static equilibrium is found: look for a segment that nothing holds")
     return np.asarray(unit * unscaled @ minimum)
 
 
-def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: float) -> Array | None:
+def _minimum(
+    stiffness: Array, load: Array, rows: Array, laws: Terms, unit: float, start: Array
+) -> Array | None:
     """Return the scaled unknowns (num_unknowns,) at the minimum of the energy; None if not found.
 
     The method is Newton's with a line search.
@@ -94,6 +99,7 @@ def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: floa
         stiffness, load, rows: stiffness, load and contact rows in scaled unknowns.
         laws: terms of the contact laws.
         unit: factor from scaled unknowns to displacements in m.
+        start: scaled unknowns of another equilibrium.
     """
     from scipy.optimize import brentq
 
@@ -118,7 +124,7 @@ def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: floa
         """Return the derivative of the energy at ``x`` + ``length`` · ``step`` along the step."""
         return float(unbalanced(x + length * step) @ step)
 
-    x = np.zeros(load.size)
+    x = min(np.zeros(load.size), start, key=lambda one: float(np.linalg.norm(unbalanced(one))))
     for _ in range(_MOST_STEPS):
         force = unbalanced(x)
         if np.linalg.norm(force) < _AIM:
@@ -136,10 +142,12 @@ def _minimum(stiffness: Array, load: Array, rows: Array, laws: Terms, unit: floa
     return x if np.linalg.norm(force) < BALANCE else None
 
 
-def equilibrium_at(system: GapSystem, time: float = 0.0) -> Array:
+def equilibrium_at(system: GapSystem, time: float = 0.0, near: Array | None = None) -> Array:
     """Return the equilibrium (num_modes,) in √kg·m under the extension and loads at a time in s.
+
+    ``near`` is an equilibrium at another time, near which the search starts.
 
     Raises:
         NumericsError: neither supports nor contacts resist the loads.
     """
-    return equilibrium(system.at_time(time), system.load_at(time))
+    return equilibrium(system.at_time(time), system.load_at(time), near)

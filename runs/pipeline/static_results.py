@@ -209,7 +209,8 @@ def _equilibria(system: GapSystem, times: Sequence[float]) -> dict[float, Array]
     equilibria: dict[float, Array] = {}
     for time in times:
         with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
-            equilibria[time] = equilibrium_at(system, time)
+            near = next(reversed(equilibria.values()), None)
+            equilibria[time] = equilibrium_at(system, time, near)
     return equilibria
 
 
