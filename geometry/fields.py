@@ -107,7 +107,7 @@ Length = Annotated[Positive, In("m")]
 # The number of a detail category by EN 1993-1-9: 71 for 71 N/mm².
 Category = Annotated[Positive, In("1")]
 # Names occur in file names and comma-separated lists.
-NAME = r"^[A-Za-z0-9][A-Za-z0-9 ._+-]*$"
+NAME = r"^[A-Za-zÀ-ÖØ-öø-ž0-9][A-Za-zÀ-ÖØ-öø-ž0-9 ._+-]*$"
 Name = Annotated[str, Field(pattern=NAME, max_length=60)]
 Flag = Annotated[bool, Field(strict=True)]
 # Maximum number of parts of a kind. More are an input error.

@@ -19,11 +19,12 @@ from protractile.runs.case.schema import Case
 from protractile.runs.client import judge
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import atomic_folder
-from protractile.runs.pipeline.model_run import RunContext, ignore_progress
+from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.results import Results, prepare
 from protractile.runs.pipeline.run import run_case as run_models
 from protractile.runs.process import workers
 from protractile.runs.process.ranks import single_rank
+from protractile.runs.process.terminal import ignore_progress
 from protractile.runs.sweep import points
 from protractile.runs.sweep.variation import InvalidVariation, find
 

@@ -61,6 +61,7 @@ from protractile.runs.pipeline.statics import (
     statics,
 )
 from protractile.runs.pipeline.turning import shaper_lines, turning_lines
+from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.runs.report.boom_tables import (
     joint_table,
     mass_table,
@@ -118,7 +119,7 @@ class Check:
         return f"<h3>{escape(self.title)}</h3>{tables}<ul>{lines}</ul>"
 
 
-def check_case(checked: CheckedCase) -> Check:
+def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Check:
     """Return the tables and sentences that ``check`` prints."""
     case, boom, preview = checked.case, checked.boom, Preview(checked)
     static = statics(case, boom)
@@ -141,7 +142,7 @@ def check_case(checked: CheckedCase) -> Check:
         *([_cylinders(static.with_play, case.system)] if static else []),
         static_table(case, boom_with_laws, extremes),
         panel_table(panels, case.system),
-        *combination_tables(combination_results(case), case),
+        *combination_tables(combination_results(case, progress), case),
     ]
     drives = list(stick_slip_estimates(case, boom))
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]

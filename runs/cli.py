@@ -368,7 +368,9 @@ def check(case: CaseFile, picture: Picture = None) -> int:
         import_module("protractile.runs.report.boom_drawing").save_drawing(
             checked.case, case, picture
         )
-    check_case(checked).show(Terminal())
+    with terminal.display() as report_progress:
+        result = check_case(checked, report_progress)
+    result.show(Terminal())
     return 0
 
 
@@ -392,7 +394,10 @@ def prove(
 
     checked = load(case)
     if shell is None:
-        return 0 if ending.launched_rank() else print_proofs(checked, case, Terminal())
+        if ending.launched_rank():
+            return 0
+        with terminal.display() as report_progress:
+            return print_proofs(checked, case, Terminal(), progress=report_progress)
     shells = {one.name: one for one in checked.models if isinstance(one, Shell)}
     if shell not in shells:
         what = f"{shell!r} is not a shell of the case; leave it out for beam elements"

@@ -30,6 +30,7 @@ from protractile.runs.pipeline.largest_loads import (
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.pipeline.strength import WallStress
 from protractile.runs.pipeline.wall_buckling import WallBuckling
+from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.runs.report.formatting import amount
 from protractile.runs.report.tables import Column, Table
 
@@ -80,13 +81,17 @@ class CombinationState(NamedTuple):
         return CombinationResult(self.combined.name, extremes)
 
 
-def combination_states(case: Case, moving: bool = True) -> list[CombinationState]:
+def combination_states(
+    case: Case, moving: bool = True, progress: Progress = ignore_progress
+) -> list[CombinationState]:
     """Return the states of all combinations, or of the case itself if it has none.
 
     If ``moving``, combinations with ``motion`` are computed in motion, else all of them at rest.
     """
-    states = []
-    for combined in combined_cases(case):
+    states: list[CombinationState] = []
+    cases = list(combined_cases(case))
+    for combined in cases:
+        progress("combinations", "static states", len(states) / len(cases))
         boom, beam = boom_with_play(combined.case, build_boom(combined.case)), None
         with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
             if moving and combined.combination.motion:
@@ -94,14 +99,17 @@ def combination_states(case: Case, moving: bool = True) -> list[CombinationState
             else:
                 beam = BeamStates.of(combined.case, boom)
         states.append(CombinationState(combined, beam))
+    progress("combinations", "static states", 1.0)
     return states
 
 
-def combination_results(case: Case) -> list[CombinationResult]:
+def combination_results(
+    case: Case, progress: Progress = ignore_progress
+) -> list[CombinationResult]:
     """Return the static results of all combinations; empty without load cases and combinations."""
     if not (case.load_cases or case.combinations):
         return []
-    return [one.result for one in combination_states(case, moving=False)]
+    return [one.result for one in combination_states(case, False, progress)]
 
 
 def combination_tables(

@@ -46,7 +46,7 @@ from protractile.runs.pipeline.summary import (
     StationSpring,
 )
 from protractile.runs.pipeline.wall_buckling import buckle_shell, farthest_state
-from protractile.runs.process.terminal import Progress
+from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.shell_model.stages import Stages
 
 if TYPE_CHECKING:
@@ -57,10 +57,6 @@ CHANGES = (1.0e-12, 1.0e-10, 1.0e-8, 1.0e-6)
 
 # Loaded wall of the outer segment, by direction and sign of the force of the inner segment.
 _WALLS = {("z", 1): "top", ("z", -1): "bottom", ("y", 1): "right", ("y", -1): "left"}
-
-
-def ignore_progress(model: str, stage: str, part: float) -> None:
-    """Ignore a progress report, in runs without a display of progress."""
 
 
 @dataclass(frozen=True, slots=True)

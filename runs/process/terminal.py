@@ -134,6 +134,10 @@ def _discard_output() -> None:
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
+def ignore_progress(model: str, stage: str, part: float) -> None:
+    """Ignore a progress report, in runs without a display of progress."""
+
+
 @contextmanager
 def display(models: Sequence[str] = ()) -> Iterator[Progress]:
     """Yield a function that displays the progress of each stage of these models on stderr."""

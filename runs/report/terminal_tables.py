@@ -17,7 +17,14 @@ from protractile.runs.pipeline.combined_shells import shell_states
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
 from protractile.runs.pipeline.proofs import proof_table, prove
 from protractile.runs.pipeline.results import Results
-from protractile.runs.process.terminal import Terminal, message, say, shorten
+from protractile.runs.process.terminal import (
+    Progress,
+    Terminal,
+    ignore_progress,
+    message,
+    say,
+    shorten,
+)
 from protractile.runs.report.figure_context import farthest
 from protractile.runs.report.formatting import number, percent
 from protractile.runs.report.model_tables import model_table
@@ -171,7 +178,11 @@ def lateral_table(results: Results) -> Table | None:
 
 
 def print_proofs(
-    case: Case, file: str, console: Console, shell: tuple[Shell, BuildContext] | None = None
+    case: Case,
+    file: str,
+    console: Console,
+    shell: tuple[Shell, BuildContext] | None = None,
+    progress: Progress = ignore_progress,
 ) -> int:
     """Print the proofs of a checked case; return 1 if a proof fails, otherwise 0.
 
@@ -181,7 +192,10 @@ def print_proofs(
     Raises:
         NumericsError: a combination has no equilibrium.
     """
-    states = combination_states(case) if shell is None else shell_states(case, *shell)
+    if shell is None:
+        states = combination_states(case, progress=progress)
+    else:
+        states = shell_states(case, *shell)
     if not states:
         # Only the first rank has the states of a shell.
         return 0

@@ -23,11 +23,10 @@ from protractile.runs.case.kinds.model import BuildContext, ModelBoom
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
-from protractile.runs.pipeline.model_run import ignore_progress
 from protractile.runs.pipeline.models import build_on
 from protractile.runs.pipeline.results import CONVENTIONS
 from protractile.runs.pipeline.static_results import vibrating_system
-from protractile.runs.process.terminal import Progress
+from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.runs.report.tables import Column, Table
 from protractile.runs.sweep.figures import draw_frequencies
 from protractile.runs.sweep.points import Plan

@@ -49,6 +49,17 @@ def test_shim_preload_displaces_an_unloaded_mass(weight: float, expected: float)
     assert row @ equilibrium(system, -weight * row) == pytest.approx(expected, abs=1e-8)
 
 
+@pytest.mark.parametrize("weight", [40.0, 60.0, -30.0])
+def test_the_start_of_the_search_does_not_matter(weight: float) -> None:
+    """Reference: analytic, a spring and a Hertzian stop below; the start is 50 N on the stop."""
+    system = mass_over_stop(1.5, 900.0)
+    near = equilibrium(system, 50.0 * system.rows[0])
+    found = equilibrium(system, weight * system.rows[0], near)
+    gap = float(system.rows[0] @ found)
+    force = 1800.0 * gap + 3.0e6 * max(gap - 4.0e-3, 0.0) ** 1.5
+    assert force == pytest.approx(weight, rel=1e-6)
+
+
 def test_unsupported_mass_has_no_equilibrium() -> None:
     """The mass has no stop below it."""
     system = mass_over_stop(1.0, 0.0)

@@ -156,6 +156,15 @@ def test_load_cases_in_millimetres_and_from_files(tmp_path: Path) -> None:
     assert level.payload == 1.0e3 * PEOPLE
 
 
+def test_the_states_of_combinations_have_a_progress(tmp_path: Path) -> None:
+    """Reference: by construction. Two load cases in one combination, and one in another."""
+    told: list[float] = []
+    case = read_case(tmp_path, LIFT + CASES + FACTORS)
+    found = combination_results(case, lambda model, stage, part: told.append(part))
+    assert len(found) == 3
+    assert told == [0.0, 1 / 3, 2 / 3, 1.0]
+
+
 def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     case = read_case(tmp_path, LIFT + CASES + FACTORS)
     found = combination_results(case)
