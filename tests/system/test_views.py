@@ -255,7 +255,8 @@ def test_views_show_the_same_numbers(name: str) -> None:
     of_prove(case, boom, shown)
     of_run(case, boom, shown)
     of_live(case, boom, shown)
-    if name in OWN:
+    if name == "hanging":
+        # A sweep starts processes, which takes longer than all other views.
         of_sweep(case, shown)
     of_export(case, boom, checked, shown)
     hertz = first_frequencies(case, case.models[0], None, None)[0, 0]
