@@ -13,10 +13,13 @@ from itertools import pairwise
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
-from scipy.linalg import eigh
+from scipy.linalg import eigh, null_space
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.section import Direction
+
+# Round-off, and the relative error by it above which the lowest ω² is computed from its compliance.
+_EPS, _ACCURATE = float(np.finfo(np.float64).eps), 1.0e-4
 
 # Motions: deflection along z or y in m, rotation about x in rad.
 Motion = Literal["z", "y", "twist"]
@@ -146,7 +149,31 @@ def natural_modes(stiffness: Array, mass: Array, rigid_modes: int) -> Modes:
     # the digits of the lowest modes.
     omega2, shapes = eigh(stiffness * scales, mass * scales, lower=False)
     omega2[:rigid_modes] = 0.0
-    return Modes(omega2, shapes * scale[:, None])
+    shapes *= scale[:, None]
+    elastic = omega2[rigid_modes:]
+    if elastic.size and not _EPS * elastic[-1] < _ACCURATE * elastic[0]:
+        omega2[rigid_modes:], shapes[:, rigid_modes:] = _elastic_modes(
+            stiffness, mass, shapes[:, :rigid_modes]
+        )
+    return Modes(omega2, shapes)
+
+
+def _elastic_modes(stiffness: Array, mass: Array, rigid: Array) -> tuple[Array, Array]:
+    """Return ω² and shapes of the elastic modes from their compliance, not their stiffness.
+
+    Round-off of the largest ω², which very short elements have, spoils the lowest modes of the
+    stiffness. Here it spoils the largest ω² alone; the sum of the compliances φ φᵀ/ω² is accurate.
+
+    Args:
+        rigid: shapes (num_dofs, num_rigid_modes), orthonormal with the mass.
+    """
+    scale = 1.0 / np.sqrt(np.diag(mass))
+    basis = null_space((scale[:, None] * mass @ rigid).T) if rigid.size else np.eye(len(mass))
+    basis = scale[:, None] * basis
+    own_stiffness, own_mass = basis.T @ stiffness @ basis, basis.T @ mass @ basis
+    compliances, shapes = eigh(own_mass, own_stiffness)
+    compliances = np.maximum(compliances, _EPS * compliances[-1])[::-1]
+    return 1.0 / compliances, basis @ shapes[:, ::-1] / np.sqrt(compliances)
 
 
 def products(values: Array, weights: Array) -> Array:

@@ -18,12 +18,14 @@ mass may exceed that of the boom, so that bending has a small part of the first 
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
 from scipy.linalg import eigh, null_space, pinv
 
 from protractile.dynamics.arrays import Array
+from protractile.dynamics.contact import ContactLaw
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
@@ -37,12 +39,17 @@ _BENT = 5.0e-3
 # Fraction of the largest value (dashpot rate or contact force) below which a value is round-off.
 _ROUND_OFF = 1.0e-9
 
+# Fraction of the largest contact force at rest below which a station without play is not loaded:
+# the bulging walls of a shell press on pads at right angles to the load.
+_UNLOADED = 0.01
+
 
 def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[Array, Array]:
     """Return ω (num_shapes,) in rad/s, ascending, and modes Φ (num_modes, num_shapes).
 
     Contacts that are closed at rest have the stiffness F′(y) at rest. A contact whose force is
-    round-off counts as open. A station between segments whose contacts are all open is bonded.
+    round-off counts as open. A station between segments whose contacts are all open is bonded. A
+    station without play is not open: if it has no load, the contacts of one side are closed.
 
     Args:
         rest: equilibrium (num_modes,) in √kg·m; equilibrium under constant loads unless given.
@@ -56,6 +63,8 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
         force = np.abs([float(law.force(y)) for law, y in gaps])
         slope = np.array([law.slope(y) for law, y in gaps])
         stiffness = np.where(force > _ROUND_OFF * force.max(initial=0.0), slope, 0.0)
+        for station in _unloaded_stations(system, force):
+            stiffness[station] = _touching(system, station, force)
     closed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
     bonded = system.rows[~closed & ~np.isin(system.station_of_row, system.grounded)]
     free = null_space(bonded) if bonded.size else np.eye(system.num_modes)
@@ -65,6 +74,36 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
     moving = omega2 > 1.0e-6 * least
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
+
+
+def _unloaded_stations(system: GapSystem, force: Array) -> Iterator[list[int]]:
+    """Yield the rows of each station between segments that has neither play nor load at rest.
+
+    Args:
+        force: size of the force (num_rows,) in N of each row at rest.
+    """
+    for station in range(len(system.stations)):
+        rows = np.flatnonzero(system.station_of_row == station).tolist()
+        play = sum(min(system.laws[row].onset(side) for row in rows) for side in (1.0, -1.0))
+        loaded = force[rows].max(initial=0.0) > _UNLOADED * force.max(initial=0.0)
+        if station not in system.grounded and play <= 0.0 and not loaded:
+            yield rows
+
+
+def _touching(system: GapSystem, rows: list[int], force: Array) -> Array:
+    """Return the stiffness (num_rows,) of rows that touch: of the more loaded side, 0 elsewhere."""
+    slopes = {
+        side: np.array([_first_slope(system.laws[row], side) for row in rows])
+        for side in (1.0, -1.0)
+    }
+    side = max(slopes, key=lambda one: float(force[rows] @ (slopes[one] > 0.0)))
+    return slopes[side]
+
+
+def _first_slope(law: ContactLaw, side: float) -> float:
+    """Return dF/dy in N/m where contact begins on a side; 0 for powers above 1."""
+    terms = [one for one in law.terms if one.side == side and one.onset == law.onset(side)]
+    return sum(one.stiffness for one in terms if one.exponent == 1.0)
 
 
 def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:

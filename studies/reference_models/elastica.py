@@ -141,7 +141,8 @@ class Telescope:
         turn = offset[0] * tail_force[1] - offset[1] * tail_force[0]
         over = under._replace(moment=under.moment + turn)
         head, force = self.outer.follow(over, force + tail_force, self.overlap)
-        tail = State(*(under.point + offset), slope, 0.0)
+        x, y = under.point + offset
+        tail = State(x, y, slope, 0.0)
         inside, force = self.inner.follow(tail, -tail_force, place)
         end, force = self.inner.follow(
             inside, force - press * inside.normal, self.inner.length - place
