@@ -14,7 +14,12 @@ from protractile.geometry.joint import PadSize
 from protractile.geometry.support import Pin
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.limits import units_of, walk_tables
-from protractile.runs.case.load_tables import FactorsTable, PayloadTable, ResistanceTable
+from protractile.runs.case.load_tables import (
+    FactorsTable,
+    LoadCaseTable,
+    PayloadTable,
+    ResistanceTable,
+)
 from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
 from protractile.runs.case.schema import Case, LifeTable
 
@@ -84,6 +89,7 @@ def _ranges(case: Case, boom: Boom) -> Mapping[type, Mapping[str, Usual]]:
             "capacity": Usual("the capacity of the cylinder", 0.1 * weight, 1e3 * weight, 1.0e3),
         },
         PayloadTable: {"mass": Usual("the mass of the payload", 0.0, 50.0 * bare, 1.0e4)},
+        LoadCaseTable: {"payload": Usual("the payload", 0.0, 50.0 * bare, 1.0e4)},
         HoistTable: {
             "mass": Usual("the mass of the load", 0.0, 50.0 * bare, 1.0e4),
             "stiffness": Usual("the stiffness of the rope", hoisted / 2.0, hoisted / 1e-5, 100.0),

@@ -108,6 +108,7 @@ def test_senseless_values_are_refused(tmp_path: Path, old: str, new: str, line: 
         ("stiffness = 30000000.0", "stiffness = 30000.0", "cylinder[1].stiffness: the stiffness "),
         ("allowable_pressure = 20000000.0", "allowable_pressure = 20.0",
          "joint[1].pad.allowable_pressure: the allowable pressure of the pad is 20 Pa, "),
+        ('name = "a"', 'name = "a"\npayload = 1e6', "load_case[1].payload: the payload is 1e+06 "),
         ("material = 1.1", "material = 0.9", "combination[1].resistance.material: the resistance "),
         ("dead = [1.2, 1.0], payload = 1.3, wind = 1.1", "dead = 0.0, payload = 0.0, wind = 0.0",
          "combination[1].factors: all are 0, so that no load acts"),
