@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from numbers import Real
 
 import numpy as np
 
@@ -14,6 +15,9 @@ from protractile.dynamics.gap_system import GapSystem
 
 # Maximum number of steps at the default tolerance. In chaotic motion, no step meets a tolerance.
 MOST_STEPS = 250_000
+
+# Maximum number of outputs.
+MOST_OUTPUTS = 10_000_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +48,14 @@ class Motion:
 
     def __post_init__(self) -> None:
         for name in ("duration", "output_step"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise ValueError(f"{name} must be finite and positive, got {getattr(self, name)} s")
+            time = getattr(self, name)
+            if not (isinstance(time, Real) and 0.0 < time < np.inf):
+                raise ValueError(f"{name} must be finite and positive, got {time!r} s")
+        if self.duration > MOST_OUTPUTS * self.output_step:
+            raise ValueError(
+                f"{self.duration / self.output_step:.3g} outputs are too many, at most "
+                f"{MOST_OUTPUTS} are stored; give a shorter duration or a longer output_step"
+            )
         if self.system.geometric_stiffness.size:
             raise ValueError(
                 "a system with geometric_stiffness must be transformed by in_own_modes"
@@ -91,7 +101,12 @@ def build_motion(
 
     Raises:
         NumericsError: there is no static equilibrium to start from.
+        ValueError: an argument is not of its range.
     """
+    if at_rest not in (True, False):
+        raise ValueError(f"at_rest must be True or False, got {at_rest!r}")
+    if not (isinstance(damping_ratio, Real) and 0.0 <= damping_ratio < 1.0):
+        raise ValueError(f"damping_ratio must be at least 0 and below 1, got {damping_ratio!r}")
     system, position, velocity = initial_state(system, at_rest)
     rest = constant_load_equilibrium(system, at_rest, position)
     # Rayleigh and modal damping are added to the damping of the segments.

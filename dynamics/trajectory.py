@@ -282,10 +282,12 @@ class Trajectory:
             until: end of the comparison in s, for example the horizon of both.
 
         Raises:
-            ValueError: the times differ.
+            ValueError: the times differ, or the comparison ends before they begin.
         """
         if not np.array_equal(self.time, other.time):
             raise ValueError("the motions must have the same times")
+        if not until > self.time[0]:
+            raise ValueError(f"until must be after the first time, got {until!r} s")
         one, two = (np.asarray(motion.data[name].values) for motion in (self, other))
         return PointwiseDifferences.from_curves(
             one, two, self.time, min(until, float(self.time[-1]))

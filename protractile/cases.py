@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import partial
 from pathlib import Path
@@ -91,6 +92,8 @@ def change(case: Case, **values: Any) -> Case:
     """
     tables = case.model_dump(mode="json", by_alias=True, exclude_none=True)
     for key, value in values.items():
+        if isinstance(value, float) and not math.isfinite(value):
+            raise BadInput(_CASE, key, f"must be a finite number, got {value}")
         try:
             for place in find(key, tables):
                 place.put(tables, value)

@@ -158,6 +158,8 @@ def select(
     subset = case.models
     if models is not None:
         model_names = [model.name for model in case.models]
+        if not models:
+            raise BadInput(path, "--models", f"names no model; give {choices(model_names)}")
         for name in models:
             if name not in model_names:
                 raise BadInput(

@@ -202,10 +202,14 @@ def test_initial_state_is_zero_by_default() -> None:
     [
         ({"duration": 0.0}, "duration must be finite and positive, got 0.0 s"),
         ({"output_step": -1.0}, "output_step must be finite and positive, got -1.0 s"),
+        ({"duration": "1"}, "duration must be finite and positive, got '1' s"),
+        ({"duration": 1.0e9},
+         "1e+12 outputs are too many, at most 10000000 are stored; give a shorter duration or a "
+         "longer output_step"),
         ({"position": np.ones(3)}, "position must have the shape (2,), got (3,)"),
         ({"velocity": np.array([0.0, np.nan])}, "velocity must be finite"),
     ],
-)
+)  # fmt: skip
 def test_bad_motions_are_refused(given: dict[str, Any], message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
         Motion(CHAOTIC, **{"duration": 1.0, **given})

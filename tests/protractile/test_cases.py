@@ -18,7 +18,9 @@ import xarray as xr
 import protractile as pt
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import simulate
+from protractile.dynamics.motion import build_motion
 from protractile.runs.report import output
+from tests.modal import modal_system, one_mass
 from tests.system.run_folder import COARSE, files, protractile, python, write_coarse
 
 BEAM = ["beam-fe-bonded"]
@@ -142,6 +144,38 @@ EXPLAINED = sorted(
     for path in (ROOT / "protractile" / room).rglob("*.py")
     if ">>>" in path.read_text("utf-8")
 )
+
+
+def test_senseless_arguments_are_named() -> None:
+    """Reference: by construction. Python has the messages of case files."""
+    case = pt.load_case(COARSE)
+    with pytest.raises(pt.BadInput, match="--models: names no model; give 'kantorovich-4', "):
+        pt.run_case(case, models=[])
+    for value in (float("nan"), float("inf")):
+        with pytest.raises(pt.BadInput, match=f"joint.play: must be a finite number, got {value}$"):
+            pt.change(case, **{"joint.play": value})
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"at_rest": "no"}, "at_rest must be True or False, got 'no'"),
+        ({"damping_ratio": 2.0}, "damping_ratio must be at least 0 and below 1, got 2.0"),
+        ({"damping_ratio": "x"}, "damping_ratio must be at least 0 and below 1, got 'x'"),
+    ],
+)
+def test_senseless_arguments_of_a_motion_are_named(given: dict[str, Any], message: str) -> None:
+    """Reference: by construction."""
+    with pytest.raises(ValueError, match=f"^{message}$"):
+        build_motion(modal_system([900.0], [0.0]), 1.0, 1.0e-3, **{"at_rest": False, **given})
+
+
+def test_a_comparison_ends_after_it_begins() -> None:
+    """Reference: by construction. Before, a negative end left an empty comparison."""
+    motion = simulate(one_mass(1.0, spring=900.0), 0.1, position=[0.01])
+    for until in (-1.0, 0.0, float("nan")):
+        with pytest.raises(ValueError, match=r"^until must be after the first time, got "):
+            motion.compare(motion, until=until)
 
 
 def test_nothing_heavy_comes_with_the_import() -> None:
