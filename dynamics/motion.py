@@ -49,7 +49,7 @@ class Motion:
     def __post_init__(self) -> None:
         for name in ("duration", "output_step"):
             time = getattr(self, name)
-            if not (isinstance(time, Real) and 0.0 < time < np.inf):
+            if not (isinstance(time, Real) and 0.0 < float(time) < np.inf):
                 raise ValueError(f"{name} must be finite and positive, got {time!r} s")
         if self.duration > MOST_OUTPUTS * self.output_step:
             raise ValueError(
