@@ -35,18 +35,21 @@ _TORSION, _POLAR = map(attrgetter, ("lateral.torsion_constant", "lateral.polar_i
 def finite_element_segments(
     boom: Boom, element_length: float, theory: Theory, rotary_inertia: bool
 ) -> list[SegmentModel]:
-    """Return the models of all segments of a boom, with nodes at all forces.
+    """Return the models of all segments of a boom, with nodes at all forces and requested outputs.
 
     Arguments as in :func:`finite_element_segment`.
 
     Raises:
         BoomError: the boom lacks data that the theory needs.
     """
+    # Between its nodes, an element lacks the deflection by the load on it.
+    places = [
+        (*load_places(boom, number), *boom.observed_places(number))
+        for number in range(len(boom.segments))
+    ]
     return [
-        finite_element_segment(
-            segment, element_length, load_places(boom, number), theory, rotary_inertia
-        )
-        for number, segment in enumerate(boom.segments)
+        finite_element_segment(segment, element_length, breaks, theory, rotary_inertia)
+        for segment, breaks in zip(boom.segments, places, strict=True)
     ]
 
 

@@ -227,6 +227,10 @@ class Boom:
         places |= {mass.x for mass in self.segments[segment].masses}
         return tuple(sorted(places))
 
+    def observed_places(self, segment: int) -> tuple[float, ...]:
+        """Return ascending x in m of the requested outputs of a segment."""
+        return tuple(sorted({one.x for one in self.observations if one.segment == segment}))
+
     def overlap(self, joint: Joint) -> tuple[float, float]:
         """Return both ends in m of the overlap of a joint's segments."""
         outer, inner = self.segments[joint.outer], self.segments[joint.inner]

@@ -191,8 +191,7 @@ def segment_mesh(boom: Boom, number: int, options: ShellOptions) -> PlatedMesh:
     supports = sorted(support.x for support in segment.supports)
     breaks |= {f"support-{k}": x for k, x in enumerate(supports, start=1)}
     breaks |= {f"station-{k}": x for k, x in enumerate(boom.stations_of(number), start=1)}
-    observed = (place.x for place in boom.observations if place.segment == number)
-    breaks |= {f"observed-{k}": x for k, x in enumerate(sorted(observed), start=1)}
+    breaks |= {f"observed-{k}": x for k, x in enumerate(boom.observed_places(number), start=1)}
     breaks |= {f"axial-{k}": x for k, x in enumerate(segment.compression.places, start=1)}
     breaks |= {f"extension-{k}": x for k, x in enumerate(boom.moving_intervals(number), start=1)}
     breaks |= collar_breaks(segment) | diaphragm_breaks(segment)

@@ -9,8 +9,15 @@ import pytest
 from scipy.linalg import eigh
 
 from protractile.beam_model.component import Component
-from protractile.beam_model.finite_element import Theory, finite_element_segment
-from protractile.geometry.boom import BoomError, PointMass, Segment
+from protractile.beam_model.finite_element import (
+    Theory,
+    finite_element_segment,
+    finite_element_segments,
+)
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.geometry.boom import Boom, BoomError, PointMass, Segment, Support
+from protractile.geometry.observation import Observation
 from tests.beam_model.exact import (
     FREE_FREE,
     PINNED_FREE,
@@ -108,6 +115,41 @@ def test_statics_are_exact_at_nodes_of_any_mesh(theory: Theory, length: float) -
         assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=1e-8, abs=0.0)
     for support in segment.supports:
         assert not model.at(support.x).any()
+
+
+@pytest.mark.parametrize("theory", THEORIES)
+@pytest.mark.parametrize("length", [4.5, 0.5])
+@pytest.mark.parametrize("clamped", [True, False])
+def test_requested_outputs_are_exact_under_a_uniform_load(
+    clamped: bool, length: float, theory: Theory
+) -> None:
+    """Reference: analytic, a cantilever and a beam on two supports with L/h = 7.5. The outputs are
+    where no other node is.
+    """
+    supports = [Support(3.0, "clamped")] if clamped else [Support(3.0), Support(7.5)]
+    segment = beam(end=7.5, supports=supports, load=-4000.0)
+    places = {f"at-{x:g}": x for x in (3.1, 5.25, 6.8)}
+    seen = [
+        Observation(name, 0, x, what)
+        for place, x in places.items()
+        for name, what in ((place, "deflection"), (f"{place}-turn", "rotation"))
+    ]
+    boom = Boom((segment,), (), observations=seen)
+    system = gap_system(boom, finite_element_segments(boom, length, theory, False)).gather_loads()
+    rest = equilibrium(system, system.load)
+    found = {name: seen.row @ rest for name, seen in system.observers.items()}
+    shear, span, load = shear_stiffness(segment, theory), 4.5, segment.load
+    for name, place in places.items():
+        x = place - 3.0
+        if clamped:
+            bent, sheared = x**2 * (6.0 * span**2 - 4.0 * span * x + x**2), span * x - 0.5 * x**2
+            turned = 12.0 * span**2 * x - 12.0 * span * x**2 + 4.0 * x**3
+        else:
+            bent, sheared = x * (span**3 - 2.0 * span * x**2 + x**3), 0.5 * x * (span - x)
+            turned = span**3 - 6.0 * span * x**2 + 4.0 * x**3
+        bending = load / (24.0 * segment.bending_stiffness)
+        assert found[name] == pytest.approx(bending * bent + load / shear * sheared, rel=1e-6)
+        assert found[f"{name}-turn"] == pytest.approx(bending * turned, rel=1e-6)
 
 
 @pytest.mark.parametrize("theory", THEORIES)

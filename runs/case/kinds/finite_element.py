@@ -123,7 +123,10 @@ class BeamElements(CalibratedTable, init=False):
 
     def _coordinates(self, boom: Boom) -> int:
         nodes = sum(
-            np.ceil(segment.length / self.element_length) + 1 + len(boom.stations_of(number))
+            np.ceil(segment.length / self.element_length)
+            + 1
+            + len(boom.stations_of(number))
+            + len(boom.observed_places(number))
             for number, segment in enumerate(boom.segments)
         )
         return int((5 if boom.spatial else 2) * nodes)
