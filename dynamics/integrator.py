@@ -51,8 +51,9 @@ _REMAINS = 0.5
 # whole motions begins. The sum is far above the error of motions with damping.
 _LOOSE = 10.0
 
-# Difference of two motions, as a fraction of the range, beyond which chaos is assumed.
-_INDEPENDENT = 0.02
+# Difference of two motions, as a fraction of the range, beyond which chaos is assumed. Motions of
+# shells with friction differ by 4 % at steps from which they converge.
+_INDEPENDENT = 0.1
 
 # Number of steps at which the refinement of a whole motion ends, as a multiple of ``MOST_STEPS``.
 _MOST_REFINED = 4
@@ -151,7 +152,7 @@ class AdaptiveStep:
 
     In chaotic motion no step meets a tolerance. So a step that resolves the largest impact is not
     halved further in a window if two halvings leave more than half of the error, and in the whole
-    motion if three do, or if the difference is above 2 % and ten times the tolerance. Then the
+    motion if three do, or if the difference is above 10 % and ten times the tolerance. Then the
     finer motion is the result. The number of steps is limited.
 
     >>> motion = AdaptiveStep()(Motion(ball, duration=1.0, position=[0.5]))
@@ -178,7 +179,7 @@ class AdaptiveStep:
         schedule = self._distribute(motion, error, lambda part: report(0.5 * part))
         coarse, fine = schedule.run(motion), schedule.finer().run(motion)
         differences = [error.between(coarse, schedule.coarser().run(motion))]
-        most = _MOST_REFINED * MOST_STEPS * TOLERANCE / self.tolerance
+        most = _MOST_REFINED * MOST_STEPS * max(1.0, TOLERANCE / self.tolerance)
         independent = max(_INDEPENDENT, 10.0 * self.tolerance)
         while True:
             differences.append(error.between(fine, coarse))
