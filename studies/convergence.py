@@ -126,6 +126,7 @@ STUDIES = (
     "stress",
     "surface_contact",
     "stiffeners",
+    "step_tolerance",
     "damping",
     "stick_slip",
     "interpretations",

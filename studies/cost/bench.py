@@ -141,8 +141,8 @@ def errors(sizes: Sizes) -> Table:
         columns,
         rows,
         (
-            f"Off the motion in steps of {sizes.converged:g} s. To a tolerance, windows of the "
-            "motion are made with two steps and, where these differ, again with half of them.",
+            f"Off the motion in steps of {sizes.converged:g} s. To a tolerance, whole motions are "
+            "compared until half the steps change each recorded deflection by less.",
         ),
     )
 

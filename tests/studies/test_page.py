@@ -14,7 +14,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
-from studies import direct, taper, working_load
+from studies import direct, step_tolerance, taper, working_load
 from studies.convergence import STUDIES, verification_table
 from studies.motions import friction_case
 from studies.study import Study
@@ -59,6 +59,10 @@ def compared(*_: object) -> SimpleNamespace:
     return SimpleNamespace(tip=1.0, moment=1.0, exact=exact, errors=(0.0, 0.0))
 
 
+def controlled(kind: step_tolerance.Kind) -> list[step_tolerance.Found]:
+    return [step_tolerance.Found(1.0, 1.0, 1) for _ in kind.tolerances]
+
+
 def one(*_: object) -> float:
     return 1.0
 
@@ -74,6 +78,7 @@ STAND_INS: Mapping[str, Mapping[str, object]] = {
     "direct": {"runs_of": run},
     "stress": {"InnerSegmentState.on_mesh": pressed, "InnerSegmentState.reduced": pressed},
     "stiffeners": {"measure": one, "table": one, "racking_stiffness": one, "ring_flexibility": one},
+    "step_tolerance": {"measure": controlled},
     "damping": {"PressedBoom.of": swung, "_system": one},
     "second_order": {},
     "large_deflections": {"compare": compared},
