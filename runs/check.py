@@ -37,6 +37,7 @@ from protractile.runs.pipeline.drives import (
     stick_slip_lines,
 )
 from protractile.runs.pipeline.estimates import Preview, run_cost
+from protractile.runs.pipeline.hoisting_error import hoisting_cautions
 from protractile.runs.pipeline.largest_loads import (
     BeamStates,
     beam_note,
@@ -155,6 +156,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
         *actions.series_notes(case),
         *proportion_cautions(case, boom),
         *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], boom_with_laws)),
+        *([] if beam is None else hoisting_cautions(case, beam)),
         *overload_cautions(extremes, boom, advise),
         *panel_cautions(panels, case.system),
         *stick_slip_cautions(drives, case.system),

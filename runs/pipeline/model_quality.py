@@ -26,6 +26,7 @@ from protractile.runs.case.schema import Case, Model, TimeTable
 from protractile.runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
 from protractile.runs.pipeline.drives import lag_cautions, stick_slip_cautions, stick_slip_estimates
+from protractile.runs.pipeline.hoisting_error import hoisting_cautions
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.pad_walls import deflection_advice
 from protractile.runs.pipeline.proportions import (
@@ -263,6 +264,7 @@ def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list
             for caution in bulge_cautions(f"in {name}", results.static[0], boom)
         ),
         *_large_displacements(case, boom, data),
+        *_straight_path(case, boom),
         *swing_cautions(case, data),
         *_numerical(summary, case),
         *series_notes(case),
@@ -314,6 +316,13 @@ def _large_displacements(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[s
             partial(_advice, case, boom, name),
         )
         yield from deflection_errors(what, float(move), boom, advise)
+
+
+def _straight_path(case: Case, boom: Boom) -> Iterator[str]:
+    """Yield a caution on the path of a tip with a hanging load, by the beam of ``check``."""
+    if case.hoist is not None:
+        with suppress(*NUMERICAL_ERRORS):
+            yield from hoisting_cautions(case, BeamStates.of(case, boom_with_play(case, boom)))
 
 
 def _numerical(summary: Summary, case: Case) -> Iterator[str]:

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Error of a boom's motion under a hanging load by the straight path of its tip.
+
+A boom at the luffing angle α whose tip deflects by w also becomes shorter, by about 0.6 w²/L for a
+cantilever under a force at its tip. So the height of the tip changes by dz = (cos α − κ w) dw with
+κ = 1.2 sin α/L, and the rope force T acts on w by −T (cos α − κ w). The models have dz = cos α dw
+and the force −T cos α + κ m g w. Their boom is at the same place at rest, but the load lifts off
+too early and oscillates too fast. The error is the difference between both motions of one mode.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import NamedTuple, Self
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.hanging_load import HangingLoad
+from protractile.geometry.typography import TO_PERCENT
+from protractile.runs.case.motions import hanging_load
+from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.largest_loads import BeamStates
+
+# Error over the range of the tip above which a caution is given.
+_LARGE = 0.05
+# Slope of the shortening of a cantilever under a force at its tip, over w/L: d(0.6 w²/L)/dw.
+_SHORTENING = 1.2
+# Output times per period, and the largest number of periods, after which errors hardly grow.
+_PER_PERIOD, _PERIODS = 50, 100
+# Range of the tip, over its deflection by the weight of the load, below which no error matters.
+_SMALL = 0.1
+# Largest stiffness of the rope over that of the boom. It only limits the computing time.
+_RIGID = 50.0
+
+
+class _Mode(NamedTuple):
+    """The mode of a boom with a load on its rope in which the tip is most compliant."""
+
+    omega: float  #: circular frequency in rad/s
+    shape: Array  #: modal coordinates (num_modes,) for a deflection of the tip by 1 m
+    mass: float  #: in kg, without the load
+    stiffness: float  #: in N/m, without the rope
+    damping: float  #: in N s/m
+
+    @classmethod
+    def of(cls, system: GapSystem, position: Array, load: HangingLoad) -> Self:
+        """Return the mode about an equilibrium."""
+        omegas, shapes = closed_contact_modes(system, position)
+        tips, heights = (system.observers[name].row @ shapes for name in ("tip", "load_height"))
+        at = int(np.argmax((tips / omegas) ** 2))
+        omega, tip, height = float(omegas[at]), tips[at], heights[at]
+        mass = (1.0 - load.mass * height**2) / tip**2
+        rope = load.stiffness * load.cosine * (load.cosine - height / tip)
+        damping = 2.0 * closed_contact_damping(system, position)[1][at] * omega / tip**2
+        return cls(omega, shapes[:, at] / tip, mass, omega**2 * mass - rope, damping)
+
+
+def hoisting_cautions(case: Case, beam: BeamStates) -> Iterator[str]:
+    """Yield a caution if the straight path of the tip causes a large error of the motion.
+
+    ``beam`` has the static states of the case at t = 0 and under extreme loads.
+    """
+    error = straight_path_error(case, beam)
+    if error > _LARGE:
+        yield (
+            "caution: hoist: under large deflections the load lifts off later and oscillates more "
+            f"slowly than in the models: the tip's motion is off by about {TO_PERCENT * error:.2g} "
+            "% of its range; static states are not affected"
+        )
+
+
+def straight_path_error(case: Case, beam: BeamStates) -> float:
+    """Return the largest error of the tip deflection by its straight path, over its range.
+
+    The luffing angle is that at t = 0. The error is 0 without a load that hangs on a rope at rest,
+    and if the tip hardly moves across the boom.
+    """
+    load, gravity = hanging_load(case, beam.boom), case.gravity
+    if load is None or gravity is None:
+        return 0.0
+    hanging = load.slack is None
+    step = 0 if hanging else int(np.argmax([abs(rest.tip) for rest in beam.rests]))
+    at, position, rest = float(beam.time[step]), beam.positions[step], beam.rests[step].tip
+    system = beam.model.system
+    mode = _Mode.of(system.at_time(at), position, load)
+    lifted = hanging or system.observers["load_height"].row @ position > 0.0
+    if not lifted or mode.stiffness <= 0.0:
+        return 0.0
+    rope = min(load.stiffness, _RIGID * mode.stiffness)
+    kappa = _SHORTENING * gravity.along / gravity.acceleration / beam.boom.length
+
+    periods = min(case.time.duration * mode.omega / (2.0 * np.pi), _PERIODS)
+    times = np.linspace(0.0, 2.0 * np.pi * periods / mode.omega, 2 + int(_PER_PERIOD * periods))
+    marks = np.append(times, at)
+    hoisted = (
+        np.zeros_like(marks) if load.hoist is None else load.hoist(marks) - (load.slack or 0.0)
+    )
+    weights = load.weight * np.ones_like(marks)
+    if not hanging:
+        weights *= np.clip(hoisted * load.stiffness / load.weight, 0.0, 1.0)
+    # The elastic stiffness, and the force without the rope's that leads to the state of rest.
+    stiffness = mode.stiffness + kappa * weights[-1]
+    forces = sum(
+        (one.load @ mode.shape * one.history(marks) for one in system.excitations),
+        np.zeros_like(marks),
+    )
+    forces += stiffness * rest + weights[-1] * (load.cosine - kappa * rest) - forces[-1]
+    curved = np.array([False, True])
+
+    def height(tip: Array) -> Array:
+        return load.cosine * tip - 0.5 * kappa * curved * tip**2
+
+    start = np.full(2, (rest if hanging else forces[0] / stiffness) if case.start.at_rest else 0.0)
+    taut = height(start) - (load.weight / rope if hanging and case.start.at_rest else 0.0)
+
+    def rate(time: float, state: Array) -> Array:
+        tip, speed, lifted, lifting = state.reshape(4, 2)
+        length, weight, force = (
+            np.interp(time, times, values[:-1]) for values in (hoisted, weights, forces)
+        )
+        pull = rope * np.maximum(height(tip) - taut - lifted + length, 0.0)
+        force += kappa * tip * np.where(curved, pull, weight) - load.cosine * pull
+        upwards = pull / load.mass - load.weight / load.mass
+        if not hanging:
+            upwards = np.where(lifted > 0.0, upwards, np.maximum(upwards, 0.0))
+        force -= stiffness * tip + mode.damping * speed
+        return np.concatenate([speed, force / mode.mass, lifting, upwards])
+
+    initial = np.concatenate([start, np.zeros(6)])
+    tips = solve_ivp(rate, times[[0, -1]], initial, "LSODA", times, rtol=1e-5, atol=1e-7).y[:2]
+    motion = np.ptp(tips[0])
+    if motion < _SMALL * load.weight * load.cosine / mode.stiffness:
+        return 0.0
+    return float(np.abs(tips[1] - tips[0]).max() / motion)
