@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag, null_space
@@ -29,7 +30,7 @@ from protractile.dynamics.second_order import buckling_factor, soften_modes
 from protractile.dynamics.travel import MovingAxialForce, RowTable, Travel
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import joint_thrust, largest_change, moving_force
-from protractile.geometry.boom import SAME_PLACE, Boom, Direction
+from protractile.geometry.boom import SAME_PLACE, Boom, Direction, Joint
 from protractile.geometry.cylinder import ground_lines
 from protractile.geometry.telescoping import (
     TelescopingStations,
@@ -117,26 +118,59 @@ class BoomModes:
         return BeamSegment(read)
 
 
+class ContactPlace(NamedTuple):
+    """Place of the contacts of a station: joint, direction, and index of the station.
+
+    ``shift`` is x in m of the resultant force, from the station.
+    """
+
+    joint: int
+    direction: Direction
+    station: int
+    shift: float = 0.0
+
+
+class StationCompliance(NamedTuple):
+    """Compliance (num_places, num_places) in m/N of closed contacts at places.
+
+    An entry is the displacement of the inner segment in the outer one at a place, by a unit force
+    at another.
+    """
+
+    places: tuple[ContactPlace, ...]
+    compliance: Array
+
+    @property
+    def couples_directions(self) -> bool:
+        """Whether a force along z causes a displacement along y."""
+        lateral = np.array([place.direction == "y" for place in self.places], dtype=bool)
+        coupled = np.abs(self.compliance[np.ix_(lateral, ~lateral)]).max(initial=0.0)
+        return bool(coupled > ROUND_OFF * np.abs(self.compliance).max(initial=0.0))
+
+
 def critical_factor(
     boom: Boom,
     models: Sequence[SegmentModel],
-    walls: Mapping[tuple[int, Direction, int], float] | None = None,
+    walls: StationCompliance | None = None,
 ) -> float | None:
-    """Return the buckling factor of the axial forces for bonded joints.
+    """Return the buckling factor of the axial forces for bonded or compliant joints.
 
     It is infinite without axial forces, and None for a mechanism. For a telescoping boom it is the
     minimum over several extensions, including the extreme ones. If axial forces change with time,
     the minimum includes the time of the largest compression of the foot.
 
     Args:
-        walls: compliances of walls in m/N by joint, direction and index of the station; a missing
-            one is 0.
+        walls: compliance of closed contacts; stations without one are rigid, and all are unless
+            given.
     """
-    walls = walls or {}
+    # Sections that distort couple the motions along z and y.
+    between: list[tuple[_Part, _Part]] = []
+    if walls is not None and walls.couples_directions:
+        between = [((i, "z"), (i, "y")) for i in range(len(boom.segments))]
     levels = largest_change(boom.axial_changes) if boom.axial_changes else np.zeros(0)
     drives = [number for number, joint in enumerate(boom.joints) if joint.drive is not None]
     smallest = np.inf
-    for group in _coupled_groups(boom.bonded, models):
+    for group in _coupled_groups(boom.bonded, models, between):
         initial = group.geometric_stiffness
         added = group.changes(levels) if levels.any() else []
         passing = {n: moving_axial_forces(boom, models, group.beams, n) for n in drives}
@@ -153,27 +187,29 @@ def critical_factor(
             )
             geometric = sum(moving, first)
             positions = {
-                n: station_positions(boom.joints[n], extension)
-                for n, extension in extensions.items()
+                n: station_positions(joint, extensions[n])
+                if n in extensions
+                else [(x, x) for x in joint.stations]
+                for n, joint in enumerate(boom.joints)
             }
-            stiffness, rigid = group.stiffness(), []
-            for (number, motion, k), tie in group.ties(positions).items():
-                compliance = 0.0 if motion == "twist" else walls.get((number, motion, k), 0.0)
-                if compliance:
-                    stiffness = stiffness + np.outer(tie, tie) / compliance
-                else:
-                    rigid.append(tie)
+            ties, stiffness = group.ties(positions), group.stiffness()
+            if walls is not None:
+                stiffness = stiffness + group.contact_stiffness(walls, positions)
+            closed = {place[:3] for place in walls.places} if walls is not None else set()
+            rigid = [tie for station, tie in ties.items() if station not in closed]
             free = _kernel(rigid, len(geometric))
             factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
             smallest = min(smallest, factor)
     return smallest
 
 
-def _coupled_groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_CoupledGroup]:
+def _coupled_groups(
+    boom: Boom, models: Sequence[SegmentModel], between: Sequence[tuple[_Part, _Part]] = ()
+) -> list[_CoupledGroup]:
     """Return the groups of components with common modes.
 
     Bonded joints couple segments in each motion. Two inclined cylinders side by side couple the
-    twist of a segment with its slope along y.
+    twist of a segment with its slope along y. ``between`` has further pairs of coupled parts.
     """
     motions: tuple[Motion, ...] = ("z", "y", "twist") if boom.spatial else ("z",)
     parts: list[_Part] = [(i, motion) for motion in motions for i in range(len(boom.segments))]
@@ -184,6 +220,7 @@ def _coupled_groups(boom: Boom, models: Sequence[SegmentModel]) -> list[_Coupled
         if joint.bonded
     ]
     connected += [((c.segment, "y"), (c.segment, "twist")) for c in boom.cylinders if c.spread]
+    connected += between
     group_of = {part: number for number, part in enumerate(parts)}
     for one, other in connected:
         kept, lost = group_of[one], group_of[other]
@@ -257,8 +294,7 @@ class _CoupledGroup:
         joint.
         """
         return {
-            (number, motion, k): self.beams[joint.inner].at(motion, on_inner)
-            - self.beams[joint.outer].at(motion, on_outer)
+            (number, motion, k): self.tie(joint, motion, on_outer, on_inner)
             for number, joint in enumerate(self._boom.joints)
             if joint.bonded
             for motion in dict.fromkeys(motion for _, motion in self.parts)
@@ -267,6 +303,25 @@ class _CoupledGroup:
                 positions.get(number, [(x, x) for x in joint.stations])
             )
         }
+
+    def tie(self, joint: Joint, motion: Motion, on_outer: float, on_inner: float) -> Array:
+        """Return the row (num_dofs,) of the motion of the inner segment in the outer one."""
+        return self.beams[joint.inner].at(motion, on_inner) - self.beams[joint.outer].at(
+            motion, on_outer
+        )
+
+    def contact_stiffness(
+        self, walls: StationCompliance, positions: Mapping[int, Sequence[tuple[float, float]]]
+    ) -> Array:
+        """Return the stiffness (num_dofs, num_dofs) of closed contacts; ``positions`` as above."""
+        directions = {motion for _, motion in self.parts}
+        own = [i for i, place in enumerate(walls.places) if place.direction in directions]
+        rows = np.zeros((len(own), len(self.geometric_stiffness)))
+        for row, i in zip(rows, own, strict=True):
+            place = walls.places[i]
+            ends = (x + place.shift for x in positions[place.joint][place.station])
+            row[:] = self.tie(self._boom.joints[place.joint], place.direction, *ends)
+        return np.asarray(rows.T @ np.linalg.solve(walls.compliance[np.ix_(own, own)], rows))
 
     def stiffness(self) -> Array:
         """Return the stiffness (num_dofs, num_dofs) with the springs of cylinders."""

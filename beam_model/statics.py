@@ -22,15 +22,18 @@ from protractile.beam_model.finite_element import finite_element_segment, finite
 from protractile.beam_model.lines import lines
 from protractile.beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
 from protractile.beam_model.wall_compliance import station_compliance, with_wall_springs
-from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.damping import closed_stiffness
+from protractile.dynamics.equilibrium import equilibrium, equilibrium_at
 from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.line import Line
+from protractile.dynamics.stability import closing_load
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import contact_centres, pad_places
 from protractile.geometry.load import Load
+from protractile.geometry.segment import NO_COMPRESSION
 
 # Minimum number of elements of the longest segment in a boom with axial forces or tapers.
 ELEMENTS_WITH_AXIAL_FORCE = 20
@@ -150,15 +153,29 @@ def static_state(
 def estimate_critical_factor(boom: Boom) -> float | None:
     """Return the buckling factor of the boom by beam elements, with walls that bend under pads.
 
-    It is infinite without axial forces, and None for a mechanism or if numbers overflow.
+    Contacts that are closed at t = 0 have their stiffness at rest, in an equilibrium without axial
+    forces, which exists for booms that buckle, too. The factor is infinite without axial forces,
+    and None for a mechanism or if numbers overflow.
     """
     if not boom.compressed:
         return float("inf")
     try:
         with np.errstate(all="ignore"):
-            return critical_factor(boom, Elements(boom).segments, station_compliance(boom))
+            walls = station_compliance(boom, _closed_stiffness(boom))
+            return critical_factor(boom, Elements(boom).segments, walls)
     except NUMERICAL_ERRORS:
         return None
+
+
+def _closed_stiffness(boom: Boom) -> Array:
+    """Return the stiffness (num_rows,) in N/m of contacts at rest, 0 where they are open."""
+    segments = [replace(segment, compression=NO_COMPRESSION) for segment in boom.segments]
+    unloaded = replace(boom, segments=segments, axial_changes=())
+    modes = BoomModes(unloaded, Elements(unloaded).segments)
+    system = with_wall_springs(system_without_drives(unloaded, modes, EACH_SIDE), unloaded)
+    system = system.gather_loads().at_time(0.0)
+    rest = equilibrium(system, closing_load(system, system.load_at(0.0)))
+    return closed_stiffness(system, rest)
 
 
 def telescoping_system(boom: Boom) -> GapSystem:

@@ -20,6 +20,7 @@ from scipy.linalg import block_diag
 from scipy.sparse import csc_matrix, kron
 from scipy.sparse.linalg import splu
 
+from protractile.beam_model.boom_modes import ContactPlace, StationCompliance
 from protractile.beam_model.calibration import with_springs
 from protractile.beam_model.distortion import Press, distortion_compliance
 from protractile.beam_model.hermite import HermiteAxis
@@ -35,9 +36,6 @@ from protractile.geometry.segment import NO_COMPRESSION, Segment
 _REACH = 1.5
 # Element length as a fraction of the smaller side of the section, and its growth away from a pad.
 _LENGTH, _GROWTH = 0.2, 1.6
-# Fractions of the compliance of a station's contacts that is added, so that a singular matrix has
-# an inverse, and below which the station is rigid.
-_SINGULAR, _RIGID = 1.0e-9, 1.0e-6
 
 
 class PressedArea(NamedTuple):
@@ -113,31 +111,29 @@ def contact_compliance(boom: Boom) -> Array:
     return compliance
 
 
-def station_compliance(boom: Boom) -> dict[tuple[int, Direction, int], float]:
-    """Return the compliance of walls in m/N by joint, direction and index of the station.
+def station_compliance(boom: Boom, stiffness: Array) -> StationCompliance:
+    """Return the compliance of closed contacts, and of the walls and sections under them.
 
-    It is the compliance of the softer side with all its pads in contact, 0 if a side has a contact
-    on a rigid corner.
+    Forces of one station distort the section at others, too.
+
+    Args:
+        boom: boom of beams with a contact row for each side.
+        stiffness: stiffness (num_rows,) in N/m of the contact rows, 0 where a contact is open.
     """
-    walls = contact_compliance(boom)
-    sides: dict[tuple[int, Direction, int, Side], list[int]] = {}
-    for row, (pad, side) in enumerate(_contact_rows(boom)):
-        place = pad.number, pad.direction, pad.joint.stations.index(pad.x), side
-        sides.setdefault(place, []).append(row)
-    compliances: dict[tuple[int, Direction, int], float] = {}
-    for (number, direction, k, _), rows in sides.items():
-        compliance_matrix = walls[np.ix_(rows, rows)]
-        compliance = 0.0
-        if scale := float(np.trace(compliance_matrix)):
-            # Corners of a box only move against each other: their compliance is singular.
-            regular = compliance_matrix + _SINGULAR * scale * np.eye(len(rows))
-            compliance = 1.0 / float(np.linalg.solve(regular, np.ones(len(rows))).sum())
-        if compliance < _RIGID * scale:
-            compliance = 0.0
-        compliances[number, direction, k] = max(
-            compliance, compliances.get((number, direction, k), 0.0)
+    of_rows = [
+        ContactPlace(
+            pad.number, pad.direction, pad.joint.stations.index(pad.x), pad.midpoint - pad.x
         )
-    return compliances
+        for pad, _ in _contact_rows(boom)
+    ]
+    closed = np.flatnonzero(stiffness[: len(of_rows)])
+    places = tuple(dict.fromkeys(of_rows[row] for row in closed))
+    at = np.array([[float(of_rows[row] == place) for place in places] for row in closed])
+    at = at.reshape(closed.size, len(places))
+    walls = contact_compliance(boom)[np.ix_(closed, closed)]
+    of_contacts = walls + np.diag(1.0 / stiffness[closed])
+    together = at.T @ np.linalg.solve(of_contacts, at)
+    return StationCompliance(places, np.linalg.inv(together))
 
 
 def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:

@@ -59,12 +59,7 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     except NumericsError:
         stiffness = np.zeros(len(system.laws))
     else:
-        gaps = list(zip(system.laws, system.rows @ rest, strict=True))
-        force = np.abs([float(law.force(y)) for law, y in gaps])
-        slope = np.array([law.slope(y) for law, y in gaps])
-        stiffness = np.where(force > _ROUND_OFF * force.max(initial=0.0), slope, 0.0)
-        for station in _unloaded_stations(system, force):
-            stiffness[station] = _touching(system, station, force)
+        stiffness = closed_stiffness(system, rest)
     closed = np.isin(system.station_of_row, system.station_of_row[stiffness > 0.0])
     bonded = system.rows[~closed & ~np.isin(system.station_of_row, system.grounded)]
     free = null_space(bonded) if bonded.size else np.eye(system.num_modes)
@@ -74,6 +69,21 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
     moving = omega2 > 1.0e-6 * least
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
+
+
+def closed_stiffness(system: GapSystem, rest: Array) -> Array:
+    """Return the stiffness (num_rows,) in N/m of closed contacts, 0 for open ones.
+
+    Args:
+        rest: equilibrium (num_modes,) in √kg·m.
+    """
+    gaps = list(zip(system.laws, system.rows @ rest, strict=True))
+    force = np.abs([float(law.force(y)) for law, y in gaps])
+    slope = np.array([law.slope(y) for law, y in gaps])
+    stiffness = np.where(force > _ROUND_OFF * force.max(initial=0.0), slope, 0.0)
+    for station in _unloaded_stations(system, force):
+        stiffness[station] = _touching(system, station, force)
+    return stiffness
 
 
 def _unloaded_stations(system: GapSystem, force: Array) -> Iterator[list[int]]:

@@ -16,6 +16,20 @@ from protractile.dynamics.second_order import buckling_factor
 # Fraction of the largest ω² below which an ω² is round-off.
 _ROUND_OFF = 1.0e-13
 
+# Force across the tip that closes contacts, as a fraction of all loads.
+_CLOSING = 1.0e-3
+
+
+def closing_load(system: GapSystem, load: Array) -> Array:
+    """Return a load (num_modes,) in N/√kg with small forces across the tip.
+
+    They close the contacts that the load does not press, such as those of a column.
+    """
+    size = float(np.linalg.norm(load)) or 1.0
+    names = [name for name in ("tip", "tip_lateral") if name in system.observers]
+    rows = [system.observers[name].row for name in names]
+    return load + sum(_CLOSING * size / np.linalg.norm(row) * row for row in rows)
+
 
 def closed_contact_factor(system: GapSystem, geometric: Array, rest: Array) -> float:
     """Return the buckling factor of the axial forces with the contacts that are closed at rest.

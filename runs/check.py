@@ -252,10 +252,8 @@ def _buckling(checked: CheckedCase) -> Table:
         Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
     ]
     walls = (
-        f"The factor of a shell is estimated by a beam with elastic {checked.boom.yielding}. In a "
-        "run the webs of both segments are tied to each other at each station, so that walls do "
-        "not bend: "
-        "the factor of the run may be higher."
+        "The factor of a shell is estimated by a beam with the contacts that are closed at t = 0, "
+        f"and with elastic {checked.boom.yielding}."
     )
     notes = [walls] if checked.boom.yielding and any(m.needs_shell for m in models) else []
     return Table("Buckling under the axial forces, joints in contact", columns, notes)

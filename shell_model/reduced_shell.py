@@ -16,7 +16,7 @@ from mpi4py import MPI
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.stability import closed_contact_factor
+from protractile.dynamics.stability import closed_contact_factor, closing_load
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.plating import PlatedMesh
@@ -41,9 +41,6 @@ from protractile.shell_model.reduction.symmetry import result_or_compute
 from protractile.shell_model.stages import Stages
 from protractile.shell_model.stress.fields import gather_fields
 from protractile.shell_model.telescoping import MOMENTS, TelescopingShell
-
-# Lateral force at the tip that presses contacts for buckling, as a fraction of the loads.
-_LATERAL_FORCE = 1.0e-3
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,7 +81,7 @@ class ReducedShell:
     def critical_factor_at(self, system: GapSystem, load: Array) -> float:
         """Return the buckling factor of all axial forces with the contacts closed under a load.
 
-        A small lateral force closes the contacts of a boom in space that the load does not press.
+        Small forces across the tip close the contacts that the load does not press.
 
         Args:
             system: completed system of this shell, at a fixed extension.
@@ -93,10 +90,7 @@ class ReducedShell:
         Raises:
             NumericsError: there is no equilibrium under the load.
         """
-        if (lateral := system.observers.get("tip_lateral")) is not None:
-            size = np.linalg.norm(load) / np.linalg.norm(lateral.row)
-            load = load + _LATERAL_FORCE * size * lateral.row
-        rest = equilibrium(system, load)
+        rest = equilibrium(system, closing_load(system, load))
         geometric = np.pad(self.geometric, (0, system.num_modes - len(self.geometric)))
         if system.geometric_stiffness.size:
             geometric = geometric + system.geometric_stiffness

@@ -221,12 +221,10 @@ def buckling_table(results: Results) -> Table | None:
         "Buckling factor: multiple of the axial forces at which the boom with closed joints "
         "buckles. The static tip deflection includes second-order effects.",
     ]
-    boom, kinds = results.boom, {one.kind for one in models.values()}
-    if boom.yielding and not boom.telescopes and "shell" in kinds:
+    if "shell" in {one.kind for one in models.values()}:
         notes.append(
-            "For a shell, the webs of both segments are tied to each other at each station, so "
-            f"that {boom.yielding} are rigid. `protractile check` estimates the factor with "
-            "elastic ones, which may be lower."
+            "Joints of beams count as bonded. Closed contacts of a shell have their stiffness at "
+            "t = 0."
         )
     return Table("Axial forces", columns, notes, "axial")
 

@@ -6,16 +6,28 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pytest
 
-from protractile.beam_model.boom_modes import critical_factor
+from protractile.beam_model.boom_modes import ContactPlace, StationCompliance, critical_factor
 from protractile.beam_model.component import Motion, SegmentModel
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.kantorovich import kantorovich_segments, rigid_segment
 from protractile.beam_model.segment_model import gap_system
+from protractile.beam_model.statics import estimate_critical_factor, static_state
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
 from protractile.dynamics.second_order import buckling_factor
 from protractile.geometry.axial import Thrust, with_compression
-from protractile.geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
+from protractile.geometry.boom import (
+    Boom,
+    Joint,
+    Material,
+    PadSize,
+    PointMass,
+    Segment,
+    Support,
+)
+from protractile.geometry.load import Load
+from protractile.geometry.profiles import octagon
 from protractile.geometry.section import BoxSection
 from tests.touching import touching
 
@@ -24,6 +36,10 @@ Build = Callable[[Boom], Sequence[SegmentModel]]
 STEEL = Material(2.1e11, 0.3, 7850.0)
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 INNER = BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
+MAST = (
+    octagon(0.56, 0.56, 0.15, 0.007, 0.007, 0.007),
+    octagon(0.50, 0.50, 0.135, 0.006, 0.006, 0.006),
+)
 CLAMP = (Support(0.0, "clamped"),)
 BUILDS: dict[str, Build] = {
     "elements": lambda boom: finite_element_segments(boom, 0.5, "euler-bernoulli", False),
@@ -74,10 +90,37 @@ def test_soft_walls_at_pads_lower_the_buckling_load(build: Build) -> None:
     thrust, compliance = 5.0e3, 1.0e-4
     boom = telescope(thrust)
     models = build(boom)
-    soft = critical_factor(boom, models, {(0, "z", 0): compliance, (0, "z", 1): compliance})
+    places = ContactPlace(0, "z", 0), ContactPlace(0, "z", 1)
+    soft = critical_factor(boom, models, StationCompliance(places, compliance * np.eye(2)))
     assert soft == pytest.approx(2.0**2 / (2.0 * compliance * 8.0) / thrust, rel=5e-3)
-    hard = critical_factor(boom, models, {(0, "z", 0): 1.0e-14, (0, "z", 1): 1.0e-14})
+    hard = critical_factor(boom, models, StationCompliance(places, 1.0e-14 * np.eye(2)))
     assert hard == pytest.approx(critical_factor(boom, models), rel=1e-5)
+
+
+def test_the_estimate_is_the_growth_of_the_tip_on_distorting_sections() -> None:
+    """Reference: the tip of the same beam under growing axial forces, by Southwell's plot (1932).
+
+    The forces of both stations distort the sections together, and pads have their centres half
+    their length within the overlap. Without both, the estimate is 1.6 times as large.
+    """
+
+    def mast(thrust: float) -> Boom:
+        segments = (
+            Segment.of_section("outer", 0.0, 7.5, STEEL, MAST[0], supports=CLAMP),
+            Segment.of_section("inner", 6.2, 13.7, STEEL, MAST[1]),
+        )
+        pad = PadSize(0.2, 0.06, bears="corner")
+        joint = Joint(0, 1, (6.2, 7.5), 0.003, contact=PowerContact(1e9, 1.0), pad=pad)
+        compressed = with_compression(segments, (joint,), [Thrust(1, 13.7, thrust)])
+        return Boom(compressed, (joint,), (Load(1, "z", -2000.0, 13.7, Step()),))
+
+    estimate = estimate_critical_factor(mast(1.0e5))
+    assert estimate is not None
+    parts = 1.0e5 * np.array([0.0, 0.9, 0.97]) * estimate
+    tips = np.array([static_state(mast(thrust)).tip for thrust in parts])
+    growth = tips[1:] - tips[0]
+    critical = np.diff(growth)[0] / np.diff(growth / parts[1:])[0]
+    assert 1.0e5 * estimate == pytest.approx(critical, rel=0.02)
 
 
 def test_a_rigid_segment_tips_over_too() -> None:
