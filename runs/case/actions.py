@@ -128,8 +128,14 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> Iterator[Thrust]:
         yield thrust
 
 
-def axial_force(where: str, table: AxialTable, case: Case) -> float:
+def axial_force(where: str, table: AxialTable, case: Case, carried: float | None = None) -> float:
     """Return the compressive force in N of a table ``axial`` of a case, at the key ``where``.
+
+    Args:
+        where: key of the table.
+        table: table of the force.
+        case: case with the payload and the hoist.
+        carried: mass in kg on a hoist rope, in place of the mass of payload and hoist.
 
     Raises:
         BoomError: a rope has no payload, or a force is given twice or not at all.
@@ -144,7 +150,7 @@ def axial_force(where: str, table: AxialTable, case: Case) -> float:
             f"{where}.force",
             "missing; it is the force in N towards the base, or give the falls of a hoist rope",
         )
-    mass = table.mass
+    mass = carried if table.mass is None else table.mass
     if mass is None:
         if case.payload is None and case.hoist is None:
             raise BoomError(

@@ -96,11 +96,13 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
     dead = factors["dead"]
     segments = [_times(one, dead, "load", "lateral_load") for one in combined.segments]
     loads = [_times(one, factors[one.group], one.amount) for one in combined.loads]
+    # An empty hook carries nothing.
+    carried = 0.0 if case.hoist is not None and payload is None else None
     axial = [
         AxialTable(
             segment=one.segment,
             x=one.x,
-            force=factors[one.group] * axial_force(f"axial[{number}]", one, combined),
+            force=factors[one.group] * axial_force(f"axial[{number}]", one, combined, carried),
         )
         for number, one in enumerate(combined.axial, start=1)
     ]

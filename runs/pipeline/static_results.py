@@ -32,6 +32,8 @@ from protractile.runs.pipeline.section_forces import LoadedModel, round_values
 
 # Extensions that differ by less than this fraction count as equal.
 _SAME_EXTENSION = 1.0e-12
+# Fraction of a contact row below which its part of the boom is round-off.
+_ROUND_OFF = 1.0e-9
 # Fraction of a lateral play above which a caution on bulging walls that close the play is given.
 BULGED = 0.1
 
@@ -114,8 +116,11 @@ def instants(system: GapSystem, duration: float) -> list[float]:
     includes all constant loads. ``duration`` is that of the motion in s.
     """
     # Hoisting changes no static state of a load that hangs, without contact with the ground.
-    of_load = system.rows - system.rows @ system.hung.T @ system.hung
-    grounded = bool(system.hung.size) and not np.abs(of_load).max(axis=1, initial=0.0).all()
+    of_boom = system.rows - system.rows @ system.hung.T @ system.hung
+    moved_by_boom = np.linalg.norm(of_boom, axis=1) > _ROUND_OFF * np.linalg.norm(
+        system.rows, axis=1
+    )
+    grounded = bool(system.hung.size) and not moved_by_boom.all()
     changes = [
         travel
         for travel in system.travels
