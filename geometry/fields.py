@@ -150,15 +150,19 @@ def is_number(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool)
 
 
-def rising(what: str, falling: str = "") -> AfterValidator:
+def rising(what: str, falling: str = "", least: int = 1) -> AfterValidator:
     """Return the check that the first numbers of pairs rise, and that others do not.
 
     Args:
         what: the first numbers in messages, for example ``times``.
         falling: the second numbers, if they must not rise.
+        least: number of pairs that a table must have, unless it is empty.
     """
 
     def check(pairs: tuple[tuple[float, float], ...]) -> tuple[tuple[float, float], ...]:
+        if 0 < len(pairs) < least:
+            wrong = f"must have {least} pairs at least, got {len(pairs)}"
+            raise PydanticCustomError("unsuitable", "{what}", {"what": wrong})
         for number, (before, after) in enumerate(pairwise(pairs), start=1):
             wrong = ""
             if after[0] == before[0]:

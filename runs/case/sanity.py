@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import hypot
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -104,6 +105,11 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
     for number, cylinder in enumerate(boom.cylinders, start=1):
         where, what = f"cylinder[{number}].ground", f"the length of cylinder {number}"
         yield UsualRange(where, what, cylinder.length, "m", 0.02 * boom.length, boom.length, 10.0)
+        if (foot := boom.segments[cylinder.segment].foot) is not None:
+            x, z = cylinder.ground
+            away = hypot(x - foot.x, z + foot.depth)
+            what = f"the distance from the foot pin to the ground of cylinder {number}"
+            yield UsualRange(where, what, away, "m", 0.02 * boom.length, boom.length, 10.0)
     weight = STANDARD_GRAVITY * boom.mass
     for number, axial in enumerate(case.axial, start=1):
         if axial.force is not None:

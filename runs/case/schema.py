@@ -203,7 +203,7 @@ class BucklingTable(CaseTable):
     curve: Annotated[
         tuple[tuple[NotNegative, Annotated[float, Field(strict=True, gt=0.0, le=1.0)]], ...],
         In("1", "1"),
-        rising("slendernesses", falling="reduction factors"),
+        rising("slendernesses", falling="reduction factors", least=2),
     ] = ()
     """pairs of a slenderness and the reduction of the strength there, for proofs; unless given,
     Winter's curve, and for shear the curve of EN 1993-1-5"""

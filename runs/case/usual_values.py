@@ -15,6 +15,7 @@ from protractile.geometry.support import Pin
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.limits import units_of, walk_tables
 from protractile.runs.case.load_tables import (
+    AxialTable,
     FactorsTable,
     LoadCaseTable,
     PayloadTable,
@@ -86,8 +87,9 @@ def _ranges(case: Case, boom: Boom) -> Mapping[type, Mapping[str, Usual]]:
                 "the stiffness of the cylinder", 1e2 * weight / boom.length,
                 1e7 * weight / boom.length, 1.0e4,
             ),
-            "capacity": Usual("the capacity of the cylinder", 0.1 * weight, 1e3 * weight, 1.0e3),
+            "capacity": Usual("the capacity of the cylinder", 0.5 * weight, 1e3 * weight, 1.0e3),
         },
+        AxialTable: {"mass": Usual("the mass on the rope", 0.0, 50.0 * bare, 1.0e4)},
         PayloadTable: {"mass": Usual("the mass of the payload", 0.0, 50.0 * bare, 1.0e4)},
         LoadCaseTable: {"payload": Usual("the payload", 0.0, 50.0 * bare, 1.0e4)},
         HoistTable: {

@@ -45,6 +45,15 @@ def omission_cautions(case: Case, boom: Boom) -> Iterator[str]:
             yield f"combination[{number}].factors: all are 0, so that no load acts"
 
 
+def tip_weights(case: Case) -> dict[str, float]:
+    """Return the masses in kg at the tip that weigh, by their names in messages."""
+    payload, hoist = case.payload, case.hoist
+    masses = {} if hoist is None else {"load of [hoist]": hoist.mass}
+    if payload is not None and (case.gravity is not None or payload.gravity != 0.0):
+        masses["payload"] = payload.mass
+    return masses
+
+
 def _hoists(case: Case) -> Iterator[str]:
     if case.hoist is None:
         return

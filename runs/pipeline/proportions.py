@@ -20,7 +20,7 @@ from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.sanity import materials, usual_ranges
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.omissions import omission_cautions
+from protractile.runs.pipeline.omissions import omission_cautions, tip_weights
 
 # Angle in degrees up to which a boom is horizontal.
 LEVEL_ANGLE = 0.1
@@ -374,12 +374,11 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
             )
         if load.x is None or load.x < end:
             continue
-        mass, weightless = 0.0, False
-        if payload is not None:
-            mass, weightless = payload.mass, case.gravity is None and payload.gravity == 0.0
-        if mass and weighs(force, mass) and not weightless:
+        mass = 0.0 if payload is None else payload.mass
+        same = [name for name, one in tip_weights(case).items() if one and weighs(force, one)]
+        if same:
             yield (
-                f"{where}: if {force:g} N at the tip is the weight of the payload, it acts "
+                f"{where}: if {force:g} N at the tip is the weight of the {same[0]}, it acts "
                 "already; leave it out"
             )
         elif mass and isclose(-force, mass, rel_tol=SAME_WEIGHT):
@@ -396,19 +395,23 @@ def _repeated_loads(case: Case, boom: Boom) -> Iterator[str]:
 
 def _axial_forces(case: Case, boom: Boom) -> Iterator[str]:
     """Yield cautions on axial forces with an unusual sign or size, and on repeated weights."""
-    payload = 0.0 if case.payload is None else case.payload.mass
     along = 0.0 if case.gravity is None else case.gravity.along
     for number, table in enumerate(case.axial, start=1):
         if not table.force:
             continue
+        same = [
+            name
+            for name, mass in tip_weights(case).items()
+            if isclose(table.force, mass * along, rel_tol=SAME_LOAD)
+        ]
         where = f"axial[{number}].force: {table.force:g} N"
         if table.force < 0.0:
             yield f"{where} pulls the boom towards its tip; forces towards the base are positive"
         elif table.force < MIN_LOAD * STANDARD_GRAVITY * boom.mass:
             yield f"{where} is less than a thousandth of the boom's weight; check the units"
-        elif isclose(table.force, payload * along, rel_tol=SAME_LOAD):
+        elif same:
             yield (
-                f"{where} is the weight of the payload along the boom, which the table gravity "
+                f"{where} is the weight of the {same[0]} along the boom, which the table gravity "
                 "adds already; leave it out"
             )
 

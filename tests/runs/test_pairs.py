@@ -62,6 +62,9 @@ DRIVE = "\n[slew]\ntable = "
          "buckling.curve: slendernesses must rise; entry 2 is below entry 1: sort them"),
         (f"{CANTILEVER}[buckling]\ncurve = [[0.0, 0.8], [1.0, 0.8], [2.0, 0.9]]",
          "buckling.curve: reduction factors must not rise; entry 3 is above entry 2"),
+        # Its factor would hold for every slenderness.
+        (f"{CANTILEVER}[buckling]\ncurve = [[0.0, 1.0]]",
+         "buckling.curve: must have 2 pairs at least, got 1"),
         (edited(CANTILEVER, (DENSITY, f"{DENSITY}, {STRENGTHS}")),
          "material.yield_by_thickness: strengths must not rise; entry 2 is above entry 1"),
         (f"{CANTILEVER}{DRIVE}[[0.0, 0.0], [2.0, 9.0], [1.0, 5.0]]",
