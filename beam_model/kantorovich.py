@@ -22,7 +22,7 @@ from scipy.linalg import null_space, rq
 from protractile.beam_model.component import Component, Motion, SegmentModel, products
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, BoomError, Segment
-from protractile.geometry.segment import Compression
+from protractile.geometry.compression import Compression
 
 # Number of additional quadrature points for tapered segments.
 _TAPERING = 6

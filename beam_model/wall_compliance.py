@@ -28,9 +28,10 @@ from protractile.beam_model.segment_model import EACH_SIDE
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
+from protractile.geometry.compression import NO_COMPRESSION
 from protractile.geometry.contact_places import Pad, pads
 from protractile.geometry.section import Direction, Side
-from protractile.geometry.segment import NO_COMPRESSION, Segment
+from protractile.geometry.segment import Segment
 
 # Length of wall beyond a pad that is modelled, as a fraction of the larger side of the section.
 _REACH = 1.5

@@ -10,6 +10,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
+from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -152,6 +153,10 @@ class ContactLaw(ABC):
         return np.asarray(sum(of_term(term, gaps) for term in contact_terms([self])))
 
 
+def _is_finite(value: Any) -> bool:
+    return isinstance(value, Real) and bool(np.isfinite(float(value)))
+
+
 @dataclass(frozen=True, slots=True)
 class Gap(ContactLaw):
     """Contact law with clearances and a factor, on one side or on both.
@@ -243,13 +248,13 @@ class PowerContact(ContactLaw):
 
     def __post_init__(self) -> None:
         for name, k in (("stiffness", self.stiffness), ("stiffness_below", self.below)):
-            if not (np.isfinite(k) and k >= 0.0):
+            if not (_is_finite(k) and k >= 0.0):
                 raise ValueError(f"{name} must be a number of N/m^n, not negative, got {k}")
         if self.stiffness == 0.0 and self.below == 0.0:
             raise ValueError("stiffness must be positive on one side at least, got 0.0 on both")
-        if not 1.0 <= self.exponent < np.inf:
+        if not (_is_finite(self.exponent) and self.exponent >= 1.0):
             raise ValueError(f"exponent must be at least 1, got {self.exponent}")
-        if not 0.0 <= self.damping < np.inf:
+        if not (_is_finite(self.damping) and self.damping >= 0.0):
             raise ValueError(f"damping must be finite and not negative, got {self.damping} s/m")
 
     @property

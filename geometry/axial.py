@@ -12,15 +12,17 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
 
 from protractile.geometry.arrays import Array
+from protractile.geometry.compression import NO_COMPRESSION, Compression
+from protractile.geometry.fields import In, Number, Place, SegmentRef, part, resolve_segments
 from protractile.geometry.joint import Joint, sample_times
 from protractile.geometry.load import LoadedSegment
 from protractile.geometry.section import Direction
-from protractile.geometry.segment import NO_COMPRESSION, SAME_PLACE, Compression, PointMass, Segment
+from protractile.geometry.segment import SAME_PLACE, PointMass, Segment
 from protractile.geometry.taper import mean_area
 
 if TYPE_CHECKING:
@@ -35,19 +37,22 @@ _STEPS = 8
 _LUMPS, _GAUSS = 20, np.polynomial.legendre.leggauss(3)
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class Thrust:
-    """Axial force in N on a segment at x in m towards the base, for example of a hoist rope.
+    """Axial force on a segment towards the base, for example of a hoist rope.
 
-    >>> rope = pt.Thrust(segment=1, x=14.0, force=12e3)
+    >>> rope = pt.Thrust(segment="fly", x="head", force=12e3)
     >>> arm, fly = with_compression(boom.segments, boom.joints, [rope])
     >>> fly.compression.ends, arm.compression.ends
     (((12000.0, 12000.0),), ((12000.0, 12000.0), (0.0, 0.0)))
     """
 
-    segment: int
-    x: float
-    force: float
+    segment: SegmentRef
+    """the name of the segment"""
+    x: Place
+    """the x in m"""
+    force: Annotated[Number, In("N")]
+    """the force in N"""
 
 
 def with_compression(
@@ -72,7 +77,11 @@ def with_compression(
         thrusts: axial forces on the segments.
         gravity: acceleration towards the base in m/s²; it acts on all masses, including
             collars and diaphragms.
+
+    Raises:
+        BoomError: a segment name is unknown.
     """
+    thrusts = [resolve_segments(t, f"thrusts[{i}]", segments) for i, t in enumerate(thrusts)]
     transferred: list[list[tuple[float, float]]] = [[] for _ in segments]
     loaded = list(segments)
     for number in reversed(range(len(segments))):

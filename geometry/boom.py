@@ -6,15 +6,14 @@ x runs along the boom, z is in the plane of bending, y is lateral. All units are
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, TypeVar
 
 from protractile.geometry.axial import AxialChange, moving_force_places
 from protractile.geometry.boom_checks import check_boom
 from protractile.geometry.cylinder import Cylinder
-from protractile.geometry.fields import BoomError, resolve_distances
+from protractile.geometry.fields import BoomError, format_value, resolve_segments
 from protractile.geometry.joint import Joint, PadSize, SlidePad, Stop
 from protractile.geometry.load import Load
 from protractile.geometry.material import Material
@@ -24,12 +23,6 @@ from protractile.geometry.segment import SAME_PLACE, Lateral, PointMass, Segment
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Support
 from protractile.geometry.telescoping import drives_of, reach, station_positions
-from protractile.geometry.typography import choices
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-_Part = TypeVar("_Part", bound="DataclassInstance")
 
 __all__ = [
     "SAME_PLACE",
@@ -51,6 +44,18 @@ __all__ = [
     "Stop",
     "Support",
 ]
+
+
+# Class of the parts of each attribute of a boom.
+_KINDS: Mapping[str, type] = {
+    "segments": Segment,
+    "joints": Joint,
+    "loads": Load,
+    "stops": Stop,
+    "observations": Observation,
+    "cylinders": Cylinder,
+    "axial_changes": AxialChange,
+}
 
 
 @dataclass(frozen=True)
@@ -96,7 +101,12 @@ class Boom:
         if not self.segments:
             raise BoomError("segments", "a boom needs at least one segment")
         object.__setattr__(self, "segments", tuple(self.segments))
-        for group in [field.name for field in fields(self)][1:]:
+        for group, kind in _KINDS.items():
+            for number, part in enumerate(getattr(self, group)):
+                if not isinstance(part, kind):
+                    what = f"must be a {kind.__name__}, got {format_value(part)}"
+                    raise BoomError(f"{group}[{number}]", what)
+        for group in [*_KINDS][1:]:
             parts = tuple(
                 resolve_segments(part, f"{group}[{number}]", self.segments)
                 for number, part in enumerate(getattr(self, group))
@@ -268,24 +278,3 @@ class Boom:
             for name, (segment, x) in self.observed.items()
             for what in quantities
         ]
-
-
-def resolve_segments(part: _Part, where: str, segments: Sequence[Segment]) -> _Part:
-    """Return a part with indices of segments instead of names, and x in m instead of distances.
-
-    Args:
-        part: joint, load, stop, observation or cylinder.
-        where: attribute of the boom with this part, for messages.
-
-    Raises:
-        BoomError: a segment name is unknown.
-    """
-    names = [segment.name for segment in segments]
-    for key in ("outer", "inner", "segment"):
-        name = getattr(part, key, None)
-        if isinstance(name, str):
-            if name not in names:
-                raise BoomError(f"{where}.{key}", f"{name!r} is no segment; give {choices(names)}")
-            part = replace(part, **{key: names.index(name)})
-    outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
-    return resolve_distances(part, segments[inner].start, segments[outer].end)

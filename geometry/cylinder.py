@@ -10,12 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
 from pydantic import BeforeValidator, GetCoreSchemaHandler
-from pydantic.dataclasses import dataclass
 from pydantic_core import CoreSchema, PydanticCustomError
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.fields import (
-    PART,
     BoomError,
     In,
     NotNegative,
@@ -24,6 +22,7 @@ from protractile.geometry.fields import (
     Positive,
     SegmentRef,
     is_number,
+    part,
 )
 from protractile.geometry.load import LoadedSegment
 from protractile.geometry.support import Pin, Support
@@ -32,7 +31,7 @@ if TYPE_CHECKING:
     from protractile.geometry.boom import Boom
 
 
-@dataclass(frozen=True, slots=True, config=PART)
+@part
 class EarthPoint:
     """A point in earth axes, from the pin of the foot about which the boom luffs."""
 
@@ -72,7 +71,7 @@ class _AnyGround:
 Ground = Annotated[tuple[float, float], _AnyGround(), In("m")]
 
 
-@dataclass(frozen=True, slots=True, config=PART)
+@part
 class Cylinder:
     """A luffing cylinder: a spring between a lug of a segment and a point of the ground.
 

@@ -8,10 +8,22 @@ files. The attribute docstring of a field is its description in the JSON Schema 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import fields, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import field as dataclass_field
+from dataclasses import fields, is_dataclass, replace
 from itertools import pairwise
-from typing import TYPE_CHECKING, Annotated, Any, Literal, TypeVar, get_args
+from numbers import Real
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    Literal,
+    LiteralString,
+    Protocol,
+    TypeVar,
+    dataclass_transform,
+    get_args,
+)
 
 from pydantic import (
     AfterValidator,
@@ -20,12 +32,15 @@ from pydantic import (
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
+    ValidationError,
     WithJsonSchema,
 )
 from pydantic.dataclasses import dataclass
 from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError
+from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
+
+from protractile.geometry.typography import choices
 
 
 class BoomError(ValueError):
@@ -114,8 +129,124 @@ Flag = Annotated[bool, Field(strict=True)]
 Few = Field(max_length=100)
 MOST_STATIONS = 50
 
+VALID_NAME = "made of letters, digits, blanks and . _ + -, starting with one of the first"
+# Descriptions of valid input by error type, for messages that quote the given value. Limits of the
+# schema replace the braces.
+VALID_INPUT = {
+    "float_type": "a number",
+    "int_type": "a whole number",
+    "bool_type": "true or false",
+    "string_type": "a text",
+    "finite_number": "a finite number",
+    "greater_than": "a number greater than {gt:g}",
+    "greater_than_equal": "a number not less than {ge:g}",
+    "less_than": "a number less than {lt:g}",
+    "less_than_equal": "a number not greater than {le:g}",
+    "literal_error": "{expected}",
+    "tuple_type": "a list",
+    "place": "a number of m, 'tail', 'head' or a distance in m from one of them such as "
+    "{{ tail = 0.2 }}",
+    "ground": "a list of two numbers, or a table of two such as {{ front = 0.7, below = 1.1 }}",
+    "modes": "a whole number above 0, or 'auto'",
+    "contact_tolerance": "a number from {least} to below 1, or 'any'",
+}
+# Descriptions of valid input in Python where they differ from those in case files.
+_VALID_IN_PYTHON = {
+    "bool_type": "True or False",
+    "tuple_type": "a sequence",
+    "place": "a number of m, 'tail', 'head' or a distance in m from one of them such as "
+    "Distance(tail=0.2)",
+    "ground": "two numbers, x and z in m",
+    "dataclass_type": "a {class_name}",
+    "string_pattern_mismatch": VALID_NAME,
+    "contact_law": "a contact law such as PowerContact(1e9, exponent=1.0)",
+    "history": "a history such as Step()",
+    "section": "a section such as BoxSection(height=0.4, width=0.3, flange=0.01, web=0.01)",
+}
+# Messages by error type that do not quote the given value.
+MESSAGES = {
+    "unsuitable": "{what}",
+    "too_short": "too short; give {min_length} at least",
+    "too_long": "too many; give {max_length} at most",
+    "string_too_long": "too long; give {max_length} characters at most",
+}
 
-@dataclass(frozen=True, slots=True, config=PART)
+
+def format_value(value: Any) -> str:
+    """Return a given value for a message."""
+    text = repr(value) if not isinstance(value, bool) else str(value).lower()
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+_Table = TypeVar("_Table")
+
+
+@dataclass_transform(frozen_default=True, field_specifiers=(dataclass_field, Field))
+def part(table: type[_Table]) -> type[_Table]:
+    """Return the pydantic dataclass of a part of a boom.
+
+    Its constructor raises errors as :class:`BoomError`, which names class and field in one line.
+    Validation of a case file does not call the constructor.
+    """
+    checked: Any = dataclass(frozen=True, slots=True, config=PART)(table)
+    validate = checked.__init__
+
+    def __init__(self: Any, *values: Any, **keys: Any) -> None:
+        try:
+            validate(self, *values, **keys)
+        except ValidationError as error:
+            raise error_in_python(checked, error) from None
+
+    __init__.__qualname__ = validate.__qualname__
+    checked.__init__ = __init__
+    made: type[_Table] = checked
+    return made
+
+
+# Error types in the order in which they explain several errors best: a misspelled or forgotten name
+# shifts values that are given by position.
+UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
+_FIRST = (*UNKNOWN, "missing", "unexpected_positional_argument")
+
+
+def error_in_python(table: Any, error: ValidationError) -> BoomError:
+    """Return the most informative error of a part that is made in Python."""
+    faults = error.errors(include_url=False)
+    fault = min(faults, key=lambda one: (*_FIRST, one["type"]).index(one["type"]))
+    kind, steps, limits = fault["type"], list(fault["loc"]), fault.get("ctx", {})
+    by_position = [
+        one.name for one in getattr(table, "__dataclass_fields__", {}).values() if not one.kw_only
+    ]
+    if kind == "unexpected_positional_argument":
+        what = f"takes {len(by_position)} values by position, {', '.join(by_position)}"
+        return BoomError(table.__name__, f"{what}; give others by name")
+    if steps and isinstance(steps[0], int):
+        steps[0] = by_position[steps[0]]
+    where = table.__name__ + "".join(f"[{i}]" if isinstance(i, int) else f".{i}" for i in steps)
+    known = fields_of(table) if len(steps) == 1 else {}
+    if kind in UNKNOWN:
+        return BoomError(where, f"unknown; known are {', '.join(known)}" if known else "unknown")
+    if kind == "missing" and not known:
+        return BoomError(where, "missing")
+    if kind == "missing":
+        name = str(steps[0])
+        how = "" if name in by_position else f"; give {name}=… by name"
+        return BoomError(where, f"missing{how}; it is {describe(known[name])}")
+    if kind in MESSAGES:
+        return BoomError(where, MESSAGES[kind].format(**limits))
+    valid = {**VALID_INPUT, **_VALID_IN_PYTHON}.get(kind)
+    if valid is None:
+        return BoomError(where, fault["msg"])
+    must = valid.format(**limits)
+    return BoomError(where, f"must be {must}, got {format_value(fault['input'])}")
+
+
+def is_positive(value: Any) -> bool:
+    """Return whether a value is a finite number above 0."""
+    return isinstance(value, Real) and 0.0 < float(value) < math.inf
+
+
+@part
 class Distance:
     """Distance from an end of a segment or of an overlap."""
 
@@ -194,6 +325,44 @@ Place = Annotated[float, _AnyPlace(), In("m")]
 # Type of the segment of a part: its name, or its index if the part is in a boom.
 SegmentRef = Annotated[Any, WithJsonSchema({"type": "string"})]
 
+
+class Having:
+    """Validation of an object by an attribute, without its class.
+
+    Args:
+        fault: error type.
+        attribute: name of the attribute.
+        optional: whether None is valid as well.
+    """
+
+    def __init__(self, fault: LiteralString, attribute: str, optional: bool = True) -> None:
+        self.fault = fault
+        self.attribute = attribute
+        self.optional = optional
+
+    def __get_pydantic_core_schema__(
+        self, source: Any, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self._check)
+
+    def _check(self, value: Any) -> Any:
+        if hasattr(value, self.attribute) or (self.optional and value is None):
+            return value
+        raise PydanticCustomError(self.fault, "another object")
+
+
+def _is_history(value: Any) -> Any:
+    """Validate a history, or a marker in place of a history."""
+    if is_dataclass(value) or callable(value):
+        return value
+    raise PydanticCustomError("history", "a history")
+
+
+# Types of a contact law, :class:`.dynamics.contact.ContactLaw`, and of the history of a load.
+LawRef = Annotated[Any, Having("contact_law", "with_clearance", optional=False)]
+LawOrNone = Annotated[Any, Having("contact_law", "with_clearance")]
+HistoryRef = Annotated[Any, AfterValidator(_is_history)]
+
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
@@ -220,3 +389,35 @@ def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
         elif isinstance(value, tuple) and any(isinstance(one, Distance) for one in value):
             resolved[field.name] = tuple(at(one, tail, head) for one in value)
     return replace(part, **resolved) if resolved else part
+
+
+class _Spanned(Protocol):
+    """Name of a segment, and x of its ends in m."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def start(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+
+
+def resolve_segments(part: _Part, where: str, segments: Sequence[_Spanned]) -> _Part:
+    """Return a part with indices of segments instead of names, and x in m instead of distances.
+
+    Args:
+        part: joint, load, stop, observation or cylinder.
+        where: attribute of the boom with this part, for messages.
+
+    Raises:
+        BoomError: a segment name is unknown.
+    """
+    names = [segment.name for segment in segments]
+    for key in ("outer", "inner", "segment"):
+        name = getattr(part, key, None)
+        if isinstance(name, str):
+            if name not in names:
+                raise BoomError(f"{where}.{key}", f"{name!r} is no segment; give {choices(names)}")
+            part = replace(part, **{key: names.index(name)})
+    outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
+    return resolve_distances(part, segments[inner].start, segments[outer].end)

@@ -10,22 +10,23 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, SkipValidation
-from pydantic.dataclasses import dataclass as part
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.fields import (
     MOST_STATIONS,
-    PART,
     BoomError,
     Category,
     Few,
     Flag,
     In,
+    LawOrNone,
+    LawRef,
     Length,
     NotNegative,
     Place,
     Positive,
     SegmentRef,
+    part,
 )
 from protractile.geometry.section import Direction, Side
 
@@ -44,7 +45,7 @@ SIDES: Mapping[PadSide, tuple[Direction, Side]] = {
 POLYAMIDE = 1.9e9
 
 
-@part(frozen=True, slots=True, config=PART)
+@part
 class PadSize:
     """Slide pad: a patch on a wall of the inner segment, beside a corner.
 
@@ -86,7 +87,7 @@ class PadSize:
         return start, start + self.length
 
 
-@part(frozen=True, slots=True, config=PART, kw_only=True)
+@part
 class SlidePad(PadSize):
     """Pair of identical pads at both corners of one wall.
 
@@ -97,11 +98,11 @@ class SlidePad(PadSize):
     (True, False)
     """
 
-    side: PadSide
+    side: PadSide = field(kw_only=True)
     """the wall of the inner segment with the pad; right is at positive y"""
-    thickness: Length
+    thickness: Length = field(kw_only=True)
     """the thickness in m, which determines the stiffness"""
-    shim: Annotated[NotNegative, In("m")] = 0.0
+    shim: Annotated[NotNegative, In("m")] = field(default=0.0, kw_only=True)
     """the thickness in m of its shim, by which the pad protrudes into the joint's play"""
 
     @property
@@ -165,7 +166,7 @@ def sample_times(history: Any) -> Array:
     return np.asarray(times[times >= 0.0])
 
 
-@part(frozen=True, slots=True, config=PART)
+@part
 class BareJoint:
     """Joint in which an inner segment slides in an outer one, without contact law and drive."""
 
@@ -218,7 +219,7 @@ class BareJoint:
     [[spectrum]]"""
 
 
-@part(frozen=True, slots=True, config=PART)
+@part
 class Joint(BareJoint):
     """Joint in which an inner segment slides in an outer one and touches it at stations.
 
@@ -234,8 +235,8 @@ class Joint(BareJoint):
             is constant.
     """
 
-    contact: Any = None
-    lateral_contact: Any = field(default=None, kw_only=True)
+    contact: LawOrNone = None
+    lateral_contact: LawOrNone = field(default=None, kw_only=True)
     drive: SkipValidation[Drive | None] = field(default=None, kw_only=True)
 
     def clearances(self, direction: Direction) -> tuple[float, float]:
@@ -281,7 +282,7 @@ class Joint(BareJoint):
         return [(pad, pad.stiffness / whole, pad.shim) for pad in here]
 
 
-@part(frozen=True, slots=True, config=PART)
+@part
 class BareStop:
     """Stop on the ground with a play, without contact law."""
 
@@ -296,7 +297,7 @@ class BareStop:
     box's height unless given"""
 
 
-@part(frozen=True, slots=True, config=PART)
+@part
 class Stop(BareStop):
     """Stop on the ground that a segment touches when it deflects along z.
 
@@ -309,7 +310,7 @@ class Stop(BareStop):
             is on one side only.
     """
 
-    contact: Any
+    contact: LawRef
 
     @property
     def sides(self) -> tuple[Side, ...]:

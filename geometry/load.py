@@ -4,11 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Protocol
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.fields import SegmentRef
+from protractile.geometry.fields import Flag, HistoryRef, Number, Place, SegmentRef, part
 from protractile.geometry.section import Direction
 
 
@@ -43,30 +42,28 @@ class LoadedSegment(Protocol):
         """
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class Load:
     """Force on the axis of a segment, with a history.
 
     >>> gust = pt.Load(segment=1, direction="z", magnitude=-1e3, x=14.0, history=pt.Sine(0.5))
     >>> len(pt.BeamElements(replace(boom, loads=(gust,))).system().excitations)
     1
-
-    Args:
-        segment: name of the segment, or its index in a boom.
-        direction: direction of the force.
-        magnitude: magnitude in N/m along the whole segment, or in N at one place.
-        x: position in m; None for the whole segment.
-        history: factor of the magnitude over time, see :mod:`.dynamics.excitation`.
-        inertial: True for the inertia load of an acceleration of the whole segment, which also
-            acts on collars and diaphragms.
     """
 
     segment: SegmentRef
+    """the name of the segment"""
     direction: Direction
-    magnitude: float
-    x: float | None
-    history: Any
-    inertial: bool = False
+    """the direction of the force"""
+    magnitude: Number
+    """the magnitude in N/m along the whole segment, or in N at one place"""
+    x: Place | None
+    """the x in m; None for the whole segment"""
+    history: HistoryRef
+    """the factor of the magnitude over time, see :mod:`.dynamics.excitation`"""
+    inertial: Flag = False
+    """whether it is the inertia load of an acceleration of the whole segment, which also acts on
+    collars and diaphragms"""
 
     @property
     def places(self) -> Mapping[str, float]:
@@ -86,11 +83,12 @@ class Load:
         return self.magnitude * segment.uniform(self.direction, None)
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class PartialLoad(Load):
     """Uniform load in N/m between two x in m."""
 
-    span: tuple[float, float] = (0.0, 0.0)
+    span: tuple[Place, Place] = (0.0, 0.0)
+    """both x in m"""
 
     @property
     def places(self) -> Mapping[str, float]:
@@ -104,7 +102,7 @@ class PartialLoad(Load):
         return self.magnitude * segment.uniform(self.direction, self.span)
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class Moment(Load):
     """Moment in N·m at a point, positive towards a larger slope of the segment."""
 
@@ -116,7 +114,7 @@ class Moment(Load):
         return self.magnitude * segment.moment(self.x, self.direction)
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class AngularAcceleration(Load):
     """Inertia load of an angular acceleration about x = 0; the magnitude is in rad/s².
 

@@ -6,13 +6,12 @@ from __future__ import annotations
 from typing import Annotated
 
 from pydantic import Field, model_validator
-from pydantic.dataclasses import dataclass as part
 from pydantic_core import PydanticCustomError
 
-from protractile.geometry.fields import PART, In, Positive, rising
+from protractile.geometry.fields import In, Positive, part, rising
 
 
-@part(frozen=True, slots=True, config=PART)
+@part
 class Material:
     """Isotropic linear-elastic material.
 

@@ -6,9 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
-from pydantic.dataclasses import dataclass
-
-from protractile.geometry.fields import PART, Name, Place, SegmentRef
+from protractile.geometry.fields import Name, Place, SegmentRef, part
 
 # Quantities that a case may request.
 Recorded = Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"]
@@ -47,7 +45,7 @@ KINDS: Mapping[Quantity, QuantityKind] = {
 }
 
 
-@dataclass(frozen=True, slots=True, config=PART)
+@part
 class Observation:
     """Output that a case requests from all models.
 

@@ -13,10 +13,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from numbers import Real
 
 import numpy as np
 
 from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.fields import is_positive
 from protractile.geometry.section import (
     COMPONENT,
     OUTWARDS,
@@ -214,10 +216,10 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
             "thicknesses; give one for each plate, the last one from the last corner to the first"
         )
     for place in (number for corner in corners for number in corner):
-        if not abs(place) < _LARGEST:
+        if not (isinstance(place, Real) and abs(float(place)) < _LARGEST):
             raise SectionError(f"corners must be numbers of m below {_LARGEST:g}, got {place}")
     for thickness in thicknesses:
-        if not 0.0 < thickness < _LARGEST:
+        if not (is_positive(thickness) and thickness < _LARGEST):
             raise SectionError(
                 f"thicknesses must be numbers of m above 0 and below {_LARGEST:g}, got {thickness}"
             )

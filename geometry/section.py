@@ -20,6 +20,7 @@ import numpy as np
 from numpy.polynomial import Polynomial
 
 from protractile.geometry.arrays import Array, Mask
+from protractile.geometry.fields import is_positive
 
 Direction = Literal["z", "y"]
 Side = Literal[-1, 0, 1]
@@ -278,7 +279,7 @@ class BoxSection(Section):
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if value is not None and not (np.isfinite(value) and value > 0.0):
+            if value is not None and not is_positive(value):
                 raise SectionError(f"{field.name} must be a positive number of m, got {value}")
         for name, other in (("bottom_flange", self.flange), ("left_web", self.web)):
             if getattr(self, name) == other:

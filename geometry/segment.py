@@ -12,10 +12,20 @@ from itertools import combinations, pairwise, product
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic.dataclasses import dataclass as part
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.fields import PART, BoomError, In, Place, Positive, resolve_distances
+from protractile.geometry.compression import NO_COMPRESSION, Compression
+from protractile.geometry.fields import (
+    BoomError,
+    Having,
+    In,
+    NotNegative,
+    Number,
+    Place,
+    Positive,
+    part,
+    resolve_distances,
+)
 from protractile.geometry.material import Material
 from protractile.geometry.section import COMPONENT, Direction, Section, SectionError
 from protractile.geometry.stiffeners import Collar, Diaphragm
@@ -37,43 +47,7 @@ SAME_PLACE = 1.0e-10
 APART = 1.0e-4
 
 
-@dataclass(frozen=True, slots=True)
-class Compression:
-    """Piecewise linear axial force P(x) in N along a segment, positive in compression.
-
-    >>> column = Compression(places=(0.0, 4.0, 10.0), ends=((9e3, 7e3), (2e3, 2e3)))
-    >>> column(np.array([1.0, 5.0]))
-    array([8500., 2000.])
-    """
-
-    #: ascending x in m of the ends of the pieces; empty if P is 0 everywhere
-    places: tuple[float, ...] = ()
-    ends: tuple[tuple[float, float], ...] = ()  #: P in N at both ends of each piece
-    #: total axial force in N, which acts at the lock or foot of the segment
-    transferred: float = 0.0
-
-    def __bool__(self) -> bool:
-        """Return whether there is any axial force."""
-        return bool(self.ends)
-
-    def __call__(self, x: Array) -> Array:
-        """Return P (num_places,) in N at x (num_places,) in m.
-
-        At a jump the value is that on the side of larger x.
-        """
-        if not self:
-            return np.zeros(x.shape)
-        places, ends = np.array(self.places), np.array(self.ends)
-        piece = np.clip(np.searchsorted(places, x, side="right") - 1, 0, len(ends) - 1)
-        first, last = ends[piece].T
-        part = (x - places[piece]) / (places[piece + 1] - places[piece])
-        return np.asarray(first + part * (last - first))
-
-
-NO_COMPRESSION = Compression()
-
-
-@part(frozen=True, slots=True, config=PART)
+@part
 class PointMass:
     """Point mass on a segment's axis, without rotary inertia.
 
@@ -105,7 +79,7 @@ class Lateral:
     load: float = 0.0  #: uniform load along y in N/m, constant from t = 0 on
 
 
-@dataclass(frozen=True, slots=True)
+@part
 class Segment:
     """Segment of the boom, with beam properties and, if given, its section.
 
@@ -137,23 +111,23 @@ class Segment:
     """
 
     name: str
-    start: float
-    end: float
+    start: Number
+    end: Number
     material: Material
-    mass_per_length: float
-    second_moment_of_area: float
-    rotary_inertia: float
-    section: Section | None = None
-    head_section: Section | None = None
-    load: float = 0.0
+    mass_per_length: Positive
+    second_moment_of_area: Positive
+    rotary_inertia: NotNegative
+    section: Annotated[Section | None, Having("section", "plates")] = None
+    head_section: Annotated[Section | None, Having("section", "plates")] = None
+    load: Number = 0.0
     supports: tuple[Support, ...] = ()
-    viscous_damping: float = 0.0
+    viscous_damping: NotNegative = 0.0
     masses: tuple[PointMass, ...] = ()
     lateral: Lateral | None = None
     collars: tuple[Collar, ...] = ()
     diaphragms: tuple[Diaphragm, ...] = ()
     compression: Compression = NO_COMPRESSION
-    shear_stiffnesses: tuple[float, float] | None = None
+    shear_stiffnesses: tuple[Positive, Positive] | None = None
 
     def __post_init__(self) -> None:
         for group in ("supports", "masses", "collars", "diaphragms"):

@@ -7,10 +7,8 @@ from typing import Annotated, NamedTuple
 
 import numpy as np
 from pydantic import Field
-from pydantic.dataclasses import dataclass as part
 
 from protractile.geometry.fields import (
-    PART,
     Category,
     In,
     Length,
@@ -18,6 +16,7 @@ from protractile.geometry.fields import (
     NotNegative,
     Place,
     Positive,
+    part,
 )
 from protractile.geometry.section import COMPONENT, Direction, Section
 
@@ -35,7 +34,7 @@ class Strip(NamedTuple):
     high: float
 
 
-@part(frozen=True, slots=True, config=PART)
+@part
 class Collar:
     """Doubler around a segment; it does not shift the walls' mid-surfaces.
 
@@ -90,7 +89,7 @@ class Collar:
         return bool((distances < section.near).all())
 
 
-@part(frozen=True, slots=True, config=PART)
+@part
 class Diaphragm:
     """Plate across a segment's box, welded to its walls.
 

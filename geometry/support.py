@@ -8,13 +8,12 @@ from math import pi
 from typing import Annotated, Literal
 
 from pydantic import Field
-from pydantic.dataclasses import dataclass
 
-from protractile.geometry.fields import PART, BoomError, In, NotNegative, Number, Place, Positive
+from protractile.geometry.fields import BoomError, In, NotNegative, Number, Place, Positive, part
 from protractile.geometry.section import Direction
 
 
-@dataclass(frozen=True, slots=True, config=PART)
+@part
 class Pin:
     """Pin in double or multiple shear, for the proof of strength of a foot or a cylinder.
 
@@ -35,7 +34,7 @@ class Pin:
         return 0.6 * self.planes * 0.25 * pi * self.diameter**2 * self.strength
 
 
-@dataclass(frozen=True, slots=True, config=PART)
+@part
 class Support:
     """Support of a segment on the ground, in space also against lateral motion and twist.
 

@@ -10,8 +10,8 @@ from typing import Any
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
 from protractile.geometry.axial import Thrust, with_compression
-from protractile.geometry.boom import Boom, BoomError, Direction, Segment, Stop, resolve_segments
-from protractile.geometry.fields import Distance, at
+from protractile.geometry.boom import Boom, BoomError, Direction, Segment, Stop
+from protractile.geometry.fields import Distance, at, resolve_segments
 from protractile.geometry.joint import BareStop
 from protractile.geometry.load import AngularAcceleration, Load, Moment, PartialLoad
 from protractile.geometry.typography import choices
@@ -104,7 +104,14 @@ def with_weight(
         angle: luffing angle in degrees, positive where the tip is up.
         acceleration: acceleration of gravity in m/s².
         thrusts: other axial forces, such as the force of a hoist rope.
+
+    Raises:
+        BoomError: the boom has axial forces or its weight already, or a segment is unknown.
     """
+    if any(segment.compression for segment in boom.segments):
+        raise BoomError("boom", "has axial forces already; give all of them as thrusts at once")
+    if any(one.inertial and one.history == Step() for one in boom.loads):
+        raise BoomError("boom", "has its weight already; give it once")
     gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
     segments = with_compression(boom.segments, boom.joints, thrusts, gravity.along)
     weights = _inertia_loads(-gravity.across, "z", Step(), segments)

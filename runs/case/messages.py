@@ -12,7 +12,18 @@ from typing import Any, get_args
 from pydantic import ValidationError
 from pydantic.fields import FieldInfo
 
-from protractile.geometry.fields import NAME, BoomError, describe, fields_of, names_of
+from protractile.geometry.fields import (
+    MESSAGES,
+    NAME,
+    UNKNOWN,
+    VALID_INPUT,
+    VALID_NAME,
+    BoomError,
+    describe,
+    fields_of,
+    format_value,
+    names_of,
+)
 from protractile.geometry.typography import choices
 from protractile.runs.case import schema
 from protractile.runs.case.kinds import KINDS
@@ -43,35 +54,6 @@ _ADVICE = {
     "load.mass": "give magnitude, -m g cos(luffing angle) in N, or the table payload",
 }
 
-# Descriptions of valid input by error type, for messages that quote the given value. Limits of the
-# schema replace the braces.
-_VALID_INPUT = {
-    "float_type": "a number",
-    "int_type": "a whole number",
-    "bool_type": "true or false",
-    "string_type": "a text",
-    "finite_number": "a finite number",
-    "greater_than": "a number greater than {gt:g}",
-    "greater_than_equal": "a number not less than {ge:g}",
-    "less_than": "a number less than {lt:g}",
-    "less_than_equal": "a number not greater than {le:g}",
-    "modes": "a whole number above 0, or 'auto'",
-    "contact_tolerance": "a number from {least} to below 1, or 'any'",
-    "place": "a number of m, 'tail', 'head' or a distance in m from one of them such as "
-    "{{ tail = 0.2 }}",
-    "ground": "a list of two numbers, or a table of two such as {{ front = 0.7, below = 1.1 }}",
-    "literal_error": "{expected}",
-    "tuple_type": "a list",
-}
-_UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
-# Messages by error type that do not quote the given value.
-_MESSAGES = {
-    "unsuitable": "{what}",
-    "too_short": "too short; give {min_length} at least",
-    "too_long": "too many; give {max_length} at most",
-    "string_too_long": "too long; give {max_length} characters at most",
-}
-
 
 class BadInput(Exception):
     """An input error, with its file, its key and a message that tells the valid input."""
@@ -89,7 +71,7 @@ class BadInput(Exception):
         If a misspelled key causes two errors, this is the unknown key, not the missing one.
         """
         faults = error.errors(include_url=False)
-        first = next((f for f in faults if f["type"] in _UNKNOWN), faults[0])
+        first = next((f for f in faults if f["type"] in UNKNOWN), faults[0])
         return cls(file, *_explain(first["type"], first["loc"], first["input"], first.get("ctx")))
 
     @classmethod
@@ -121,24 +103,24 @@ def _explain(
     key = _key(location)
     limits = context or {}
     if fault == "missing" and isinstance(location[-1], int):
-        return _key(location[:-1]), f"must be {_pair(location)}, got {_format_value(value)}"
+        return _key(location[:-1]), f"must be {_pair(location)}, got {format_value(value)}"
     if fault == "missing":
         return key, f"missing; it is {describe(_field(location))}"
     if fault == "union_tag_not_found":
         return f"{key}.kind", f"missing; give {choices([*KINDS])}"
-    if fault in _UNKNOWN:
+    if fault in UNKNOWN:
         return key, _unknown_key(location)
     if fault == "union_tag_invalid":
         tag, tags = ("kind", [*KINDS]) if location[0] == "model" else ("shape", [*SHAPES])
-        return f"{key}.{tag}", f"must be {choices(tags)}, got {_format_value(value[tag])}"
+        return f"{key}.{tag}", f"must be {choices(tags)}, got {format_value(value[tag])}"
     if fault == "too_short" and limits["min_length"] == 1:
         return key, "empty; give at least one"
     if fault == "too_long" and limits["max_length"] == 2:
         must = _pair(location)
-    elif fault in _MESSAGES:
-        return key, _MESSAGES[fault].format(**limits)
+    elif fault in MESSAGES:
+        return key, MESSAGES[fault].format(**limits)
     elif fault == "string_pattern_mismatch" and limits["pattern"] == NAME:
-        must = "made of letters, digits, blanks and . _ + -, starting with one of the first"
+        must = VALID_NAME
     elif fault == "string_pattern_mismatch":
         must = "a line of printable characters"
     elif fault == "tuple_type" and key in names_of(schema.Case):
@@ -146,8 +128,8 @@ def _explain(
     elif fault.startswith(("model_", "dict_", "dataclass_")):
         must = "a table"
     else:
-        must = _VALID_INPUT[fault].format(**limits)
-    return key, f"must be {must}, got {_format_value(value)}"
+        must = VALID_INPUT[fault].format(**limits)
+    return key, f"must be {must}, got {format_value(value)}"
 
 
 def _pair(location: Sequence[int | str]) -> str:
@@ -213,11 +195,6 @@ def _unknown_key(location: Sequence[int | str]) -> str:
     if near:
         return f"unknown key; the nearest known one is {near[0]}"
     return f"unknown key; known ones are {', '.join(keys)}"
-
-
-def _format_value(value: Any) -> str:
-    text = repr(value) if not isinstance(value, bool) else str(value).lower()
-    return text if len(text) <= 60 else f"{text[:57]}..."
 
 
 _TABLES = {**dict(_tables(schema.Case)), **SHAPES, **KINDS}

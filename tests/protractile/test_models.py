@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from pydantic import ValidationError
 
 import protractile as pt
 from protractile.runs.case.kinds.model import ModelTable
@@ -119,10 +118,50 @@ def test_unknown_segment_name_is_refused(boom: pt.Boom) -> None:
 
 
 def test_keys_are_those_of_the_table(boom: pt.Boom) -> None:
-    with pytest.raises(ValidationError, match="mesh"):
+    with pytest.raises(pt.BoomError, match=r"^Shell.mesh: unknown; known are name, contact, step"):
         pt.Shell(boom, mesh=0.1)
     with pytest.raises(pt.BoomError, match="must have one number for each of the 2 segments"):
         pt.Kantorovich(boom, terms=(4,)).system()
+
+
+def test_impossible_parts_are_refused_as_in_a_case_file(boom: pt.Boom) -> None:
+    arm, steel = boom.segments[0], pt.Material(0.5, 0.3, 7850.0)
+    high = pt.BoxSection(height=1.0e9, width=0.3, flange=0.01, web=0.01)
+    for part, message in (
+        (
+            pt.Segment.of_section("arm", 0.0, 8.0, steel, arm.section, supports=arm.supports),
+            "segments[0].material.youngs_modulus: Young's modulus is 0.5 Pa, usual is from 1e+09 "
+            "up to 1e+12 Pa; check the number and its unit",
+        ),
+        (
+            pt.Segment.of_section("arm", 0.0, 8.0, arm.material, high, supports=arm.supports),
+            "segments[0].section: the height of 'arm' is 1e+09 m, usual is from 0.016 up to 1.6 m; "
+            "check the number and its unit",
+        ),
+    ):
+        with pytest.raises(pt.BoomError) as error:
+            pt.BeamElements(pt.Boom([part])).system()
+        assert str(error.value) == message
+    with pytest.raises(pt.BoomError, match=r"^BeamElements.boom: must be a Boom, got None$"):
+        pt.BeamElements(None)  # type: ignore[arg-type] # see the message
+
+
+@pytest.mark.parametrize("angle", [0.0, 30.0])
+def test_weight_is_given_once(boom: pt.Boom, angle: float) -> None:
+    heavy = pt.with_weight(boom, angle)
+    with pytest.raises(pt.BoomError, match=r"^boom: has (its weight|axial forces) already; give"):
+        pt.with_weight(heavy, angle)
+
+
+def test_places_and_names_of_forces_are_those_of_a_boom(boom: pt.Boom) -> None:
+    """Reference: other code path, indices and x in m."""
+    named = [pt.Load("fly", "z", 1.0, "head", pt.Step()), pt.Thrust("fly", "head", 1e3)]  # type: ignore[arg-type]
+    there = [pt.Load(1, "z", 1.0, 14.0, pt.Step()), pt.Thrust(1, 14.0, 1e3)]
+    one, other = (
+        pt.with_weight(replace(boom, loads=[load]), thrusts=[thrust])
+        for load, thrust in (named, there)
+    )
+    assert one == other
 
 
 def test_weight_equals_the_weight_of_a_case_file(boom: pt.Boom) -> None:

@@ -19,8 +19,8 @@ from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.line import Line
 from protractile.geometry.boom import Boom, Cylinder, Load, Material, Segment, Support
+from protractile.geometry.compression import Compression
 from protractile.geometry.section import BoxSection
-from protractile.geometry.segment import Compression
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case

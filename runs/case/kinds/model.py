@@ -8,10 +8,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from time import perf_counter
+from types import EllipsisType
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, TypeVar, get_args
 
 import numpy as np
-from pydantic import PrivateAttr
+from pydantic import PrivateAttr, ValidationError
 
 from protractile.beam_model.boom_modes import critical_factor
 from protractile.beam_model.component import SegmentModel
@@ -19,9 +20,10 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.line import Line
 from protractile.geometry.boom import Boom, BoomError
-from protractile.geometry.fields import In, Name, Positive
+from protractile.geometry.fields import In, Name, Positive, error_in_python, format_value
 from protractile.runs.case.contact import ContactTable
 from protractile.runs.case.limits import CaseTable
+from protractile.runs.case.part_ranges import check_parts
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -131,7 +133,7 @@ class ModelTable(CaseTable):
     """the kind of model"""
     _boom: Boom | None = PrivateAttr(None)
 
-    def __init__(self, boom: Boom | None = None, /, **keys: Any) -> None:
+    def __init__(self, boom: Boom | EllipsisType = ..., /, **keys: Any) -> None:
         """Make a model of a boom.
 
         Args:
@@ -139,11 +141,17 @@ class ModelTable(CaseTable):
             keys: keys of the model in a case file; the default name is the kind.
 
         Raises:
-            ValidationError: an unknown key, or an invalid value.
+            BoomError: an object that is no boom, an unknown key, or an invalid value.
         """
+        name = type(self).__name__
+        if not isinstance(boom, Boom | EllipsisType):
+            raise BoomError(f"{name}.boom", f"must be a Boom, got {format_value(boom)}")
         kind = get_args(type(self).model_fields["kind"].annotation)[0]
-        super().__init__(**{"name": kind, "kind": kind, **keys})
-        self._boom = boom
+        try:
+            super().__init__(**{"name": kind, "kind": kind, **keys})
+        except ValidationError as error:
+            raise error_in_python(type(self), error) from None
+        self._boom = boom if isinstance(boom, Boom) else None
 
     # With this private attribute pydantic validates without __init__: a case file must give name
     # and kind. Functions are typed without attributes.
@@ -277,6 +285,7 @@ class ModelTable(CaseTable):
         """
         if self._boom is None:
             raise BoomError(self.name, "missing; give the boom that it is a model of")
+        check_parts(self._boom)
         model_boom = self.model_boom(self._boom)
         self.check(self.name, model_boom)
         context = None
