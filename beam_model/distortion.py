@@ -88,7 +88,7 @@ class _Frame(NamedTuple):
         return np.where(np.abs(found) > _ROUND_OFF, found, 0.0)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=512)
 def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array:
     """Return the compliance (num_presses, num_presses) in m/N of a segment by its distortion.
 

@@ -170,7 +170,7 @@ def _press(pad: Pad, side: Side, members: tuple[Segment, Segment], member: int) 
     return Press(pad.midpoint, pad.direction, side, parts)
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=512)
 def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     """Return the compliance (num_areas, num_areas) in m/N of the walls of a segment.
 

@@ -8,6 +8,10 @@ Friction, which would allow a range of equilibria, is ignored.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
 import numpy as np
 from scipy.linalg import LinAlgError, cho_solve, cholesky, eigh, solve_triangular
 
@@ -30,6 +34,9 @@ _FLAT = 1.0e-6
 # multiple of a step beyond which the search finds no equilibrium.
 _EXACT, _FARTHEST = 0.05, 1.0e9
 
+# Maximum number of slopes of a line search.
+_MOST_TRIALS = 100
+
 
 def equilibrium(system: GapSystem, load: Array, near: Array | None = None) -> Array:
     """Return the modal coordinates a (num_modes,) in √kg·m at equilibrium.
@@ -47,45 +54,84 @@ def equilibrium(system: GapSystem, load: Array, near: Array | None = None) -> Ar
     Raises:
         NumericsError: neither supports nor contacts resist the load.
     """
-    shim_forces = [float(law.force(np.zeros(()))) for law in system.laws]
-    # Scale of the force of shims at zero displacement.
-    unbalanced_load = load - np.array(shim_forces) @ system.rows
-    if not unbalanced_load.any():
-        return np.zeros(system.num_modes)
-    laws = contact_terms(system.laws)
-    # Unknowns are scaled by the Cholesky factor of the stiffness with closed contacts, so that all
-    # directions have a similar stiffness. A contact has its tangent at the force of the whole load.
-    whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(unbalanced_load)))
-    row, k, n = laws["row"], np.abs(laws["stiffness"]), laws["exponent"]
-    force, spring = whole * np.sqrt(system.row_masses), np.zeros(len(system.laws))
-    np.maximum.at(spring, row, n * k ** (1.0 / n) * force[row] ** (1.0 - 1.0 / n))
-    try:
-        factor = cholesky(system.stiffness + (system.rows.T * spring) @ system.rows, lower=True)
-    except LinAlgError:
-        raise NumericsError(
-            "nothing holds the boom, or axial forces buckle it: it has no static equilibrium"
-        ) from None
-    if not system.laws:
-        return np.asarray(cho_solve((factor, True), load))
-    scaled_load = solve_triangular(factor, load, lower=True)
-    scaled_push = solve_triangular(factor, unbalanced_load, lower=True)
-    unit = max(float(np.linalg.norm(scaled_load)), float(np.linalg.norm(scaled_push)))
-    scaled_load /= unit
-    # In scaled unknowns, the stiffness with springs is the unit matrix. So all iterates are in the
-    # span of load and rows, which has far fewer unknowns than a shell.
-    pushes = np.column_stack([scaled_load, solve_triangular(factor, system.rows.T, lower=True)])
-    span, _ = np.linalg.qr(pushes)
-    scaled_load = span.T @ scaled_load
-    unscaled = solve_triangular(factor, span, lower=True, trans=1)
-    rows = system.rows @ unscaled
-    stiffness = (unscaled.T * system.omega2) @ unscaled
-    if system.geometric_stiffness.size:
-        stiffness -= unscaled.T @ system.geometric_stiffness @ unscaled
-    start = np.zeros(scaled_load.size) if near is None else span.T @ (factor.T @ near) / unit
-    minimum = _minimum(stiffness, scaled_load, rows, laws, unit, start)
-    if minimum is None:
-        raise NumericsError("no static equilibrium is found: look for a segment that nothing holds")
-    return np.asarray(unit * unscaled @ minimum)
+    return Equilibria(system).under(load, near)
+
+
+class _Scaling(NamedTuple):
+    """Cholesky factor of the stiffness with closed contacts, and the rows in scaled unknowns."""
+
+    spring: Array  #: stiffness (num_rows,) in N/m of the closed contacts
+    factor: Array  #: lower factor (num_modes, num_modes)
+    rows: Array  #: the rows (num_modes, num_rows) over the factor
+
+
+class Equilibria:
+    """Equilibria of a gap system without travels, under several loads.
+
+    Loads share one factorisation of the stiffness if the contact laws are linear.
+    """
+
+    def __init__(self, system: GapSystem) -> None:
+        self._system = system
+        self._laws = contact_terms(system.laws)
+        shim_forces = [float(law.force(np.zeros(()))) for law in system.laws]
+        # Scale of the force of shims at zero displacement.
+        self._shims: Array = np.array(shim_forces) @ system.rows
+        self._last: _Scaling | None = None
+
+    def under(self, load: Array, near: Array | None = None) -> Array:
+        """Return the equilibrium (num_modes,) under a load, as :func:`equilibrium`."""
+        system, laws = self._system, self._laws
+        unbalanced_load = load - self._shims
+        if not unbalanced_load.any():
+            return np.zeros(system.num_modes)
+        whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(unbalanced_load)))
+        _, factor, scaled_rows = self._scaling(whole)
+        if not system.laws:
+            return np.asarray(cho_solve((factor, True), load))
+        scaled_load, scaled_push = solve_triangular(
+            factor, np.column_stack([load, unbalanced_load]), lower=True
+        ).T
+        unit = max(float(np.linalg.norm(scaled_load)), float(np.linalg.norm(scaled_push)))
+        scaled_load = scaled_load / unit
+        # In scaled unknowns, the stiffness with springs is the unit matrix. So all iterates are in
+        # the span of load and rows, which has far fewer unknowns than a shell.
+        span, _ = np.linalg.qr(np.column_stack([scaled_load, scaled_rows]))
+        scaled_load = span.T @ scaled_load
+        unscaled = solve_triangular(factor, span, lower=True, trans=1)
+        rows = system.rows @ unscaled
+        stiffness = (unscaled.T * system.omega2) @ unscaled
+        if system.geometric_stiffness.size:
+            stiffness -= unscaled.T @ system.geometric_stiffness @ unscaled
+        start = np.zeros(scaled_load.size) if near is None else span.T @ (factor.T @ near) / unit
+        minimum = _minimum(stiffness, scaled_load, rows, laws, unit, start)
+        if minimum is None:
+            raise NumericsError(
+                "no static equilibrium is found: look for a segment that nothing holds"
+            )
+        return np.asarray(unit * unscaled @ minimum)
+
+    def _scaling(self, whole: float) -> _Scaling:
+        """Return the scaling of unknowns by which all directions have a similar stiffness.
+
+        A contact has its tangent at the force of the whole load.
+        """
+        system, laws = self._system, self._laws
+        row, k, n = laws["row"], np.abs(laws["stiffness"]), laws["exponent"]
+        force, spring = whole * np.sqrt(system.row_masses), np.zeros(len(system.laws))
+        np.maximum.at(spring, row, n * k ** (1.0 / n) * force[row] ** (1.0 - 1.0 / n))
+        if self._last is None or not np.array_equal(spring, self._last.spring):
+            closed = system.stiffness + (system.rows.T * spring) @ system.rows
+            try:
+                factor = cholesky(closed, lower=True)
+            except LinAlgError:
+                raise NumericsError(
+                    "nothing holds the boom, or axial forces buckle it: it has no static "
+                    "equilibrium"
+                ) from None
+            rows = solve_triangular(factor, system.rows.T, lower=True)
+            self._last = _Scaling(spring, factor, rows)
+        return self._last
 
 
 def _minimum(
@@ -101,8 +147,6 @@ def _minimum(
         unit: factor from scaled unknowns to displacements in m.
         start: scaled unknowns of another equilibrium.
     """
-    from scipy.optimize import brentq
-
     # Terms with a common exponent, as arrays.
     terms = [
         {name: laws[name][laws["exponent"] == n] for name in ("row", *Term._fields)}
@@ -138,8 +182,46 @@ def _minimum(
             low, high = high, 4.0 * high
         if end < -small:
             return None
-        x = x + (brentq(slope, low, high, (x, step), rtol=_EXACT) if end > small else high) * step
+        if end > small:
+            start_slope = slope(low, x, step) if low else float(force @ step)
+            high = _flat_place(
+                partial(slope, x=x, step=step), (low, start_slope), (high, end), small
+            )
+        x = x + high * step
     return x if np.linalg.norm(force) < BALANCE else None
+
+
+def _flat_place(
+    slope: Callable[[float], float],
+    low: tuple[float, float],
+    high: tuple[float, float],
+    small: float,
+) -> float:
+    """Return a length at which a slope that rises through 0 is at most ``small``.
+
+    The method is the false position with halved ends (Dowell and Jarratt 1971).
+
+    Args:
+        slope: function of the length.
+        low, high: (length, slope) before and behind the root.
+        small: permitted magnitude of the slope.
+    """
+    (low_length, low_slope), (length, high_slope) = low, high
+    side, high_length = 0, length
+    for _ in range(_MOST_TRIALS):
+        length = low_length - low_slope * (high_length - low_length) / (high_slope - low_slope)
+        here = slope(length)
+        if abs(here) <= small:
+            break
+        if here < 0.0:
+            low_length, low_slope = length, here
+            high_slope *= 0.5 if side < 0 else 1.0
+            side = -1
+        else:
+            high_length, high_slope = length, here
+            low_slope *= 0.5 if side > 0 else 1.0
+            side = 1
+    return length
 
 
 def equilibrium_at(system: GapSystem, time: float = 0.0, near: Array | None = None) -> Array:

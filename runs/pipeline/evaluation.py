@@ -70,7 +70,7 @@ def results_at_rest(
     first = []
     if equilibria:
         still, rest = vibrating_state(loaded.system, equilibria)
-        first = modes(loaded._replace(system=still), rest)
+        first = modes(replace(loaded, system=still), rest)
     return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
 

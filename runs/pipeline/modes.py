@@ -78,7 +78,7 @@ def modes(model: LoadedModel, rest: Array) -> list[Mode]:
     The dominant motion of a mode has the largest share of the kinetic energy, in which rotary
     inertia and point masses are neglected. The equilibrium is (num_modes,).
     """
-    boom, system, lines = model
+    boom, system, lines = model.boom, model.system, model.lines
     omega, shapes = closed_contact_modes(system, rest)
     motions: list[Quantity] = [name for name in _MOTIONS if name in lines[0].rows]
     even = [np.linspace(line.x[0], line.x[-1], _PLACES) for line in lines]

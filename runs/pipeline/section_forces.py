@@ -8,10 +8,12 @@ their lugs and the foot of the boom.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
-from typing import NamedTuple, Self
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Self
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.line import Line, Quantity
@@ -38,7 +40,8 @@ def round_values(values: Array | Iterable[float]) -> list[float]:
     return [float(f"{value:.{_DIGITS}g}") for value in values]
 
 
-class LoadedModel(NamedTuple):
+@dataclass(frozen=True)
+class LoadedModel:
     """A model under all constant loads, with lines along its segments."""
 
     boom: Boom  #: boom with the play of the model
@@ -57,6 +60,11 @@ class LoadedModel(NamedTuple):
             normal = line.rows.get("normal", 0.0) + pull
             extended[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
         return cls(boom, system.gather_loads(), extended)
+
+    @cached_property
+    def axes(self) -> list[CubicSpline]:
+        """The rows (num_modes,) of the deflections along z of each segment, by x in m."""
+        return [CubicSpline(*dict(line.deflections)["z"]) for line in self.lines]
 
     def section_forces(self, number: int, states: Array, time: Array) -> dict[Quantity, Array]:
         """Return deflections and section forces of a segment as :func:`section_forces`."""

@@ -13,9 +13,8 @@ from dataclasses import dataclass
 from itertools import zip_longest
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
-from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.equilibrium import Equilibria
 from protractile.dynamics.excitation import Excitation
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.gap_system import GapSystem
@@ -212,10 +211,12 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
 
 def _equilibria(system: GapSystem, times: Sequence[float]) -> dict[float, Array]:
     equilibria: dict[float, Array] = {}
+    fixed = None if system.travels else Equilibria(system)
     for time in times:
         with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
             near = next(reversed(equilibria.values()), None)
-            equilibria[time] = equilibrium_at(system, time, near)
+            there = fixed or Equilibria(system.at_time(time))
+            equilibria[time] = there.under(system.load_at(time), near)
     return equilibria
 
 
@@ -225,7 +226,8 @@ def static_result(model: LoadedModel, time: float, position: Array) -> StaticRes
     The time in s is that of the loads and of the extension; the position (num_modes,) has modal
     coordinates.
     """
-    boom, system, diagrams = model.boom, model.system.at_time(time), []
+    boom, diagrams = model.boom, []
+    system = model.system.at_time(time) if model.system.travels else model.system
     for number, line in enumerate(model.lines):
         carried = model.section_forces(number, position, np.array(time))
         curves: dict[str, list[float]] = {
@@ -307,10 +309,7 @@ def tilts(model: LoadedModel, position: Array, time: float = 0.0) -> Iterator[Ti
 
     The equilibrium is (num_modes,), and the extension the one at a time in s.
     """
-    boom, axes = model.boom, []
-    for line in model.lines:
-        x, rows = dict(line.deflections)["z"]
-        axes.append(CubicSpline(x, rows @ position[: rows.shape[1]]))
+    boom, axes = model.boom, model.axes
     for joint in (joint for joint in boom.joints if not joint.bonded and len(joint.stations) > 1):
         before = travel(boom, joint.outer, time)
         extension = travel(boom, joint.inner, time) - before
@@ -324,7 +323,7 @@ def tilts(model: LoadedModel, position: Array, time: float = 0.0) -> Iterator[Ti
         for (x_outer, x_inner), offset in zip(places, offsets, strict=True):
             on_outer.append(x_outer + offset)
             relative = axes[joint.inner](x_inner + offset) - axes[joint.outer](x_outer + offset)
-            displacements.append(float(relative))
+            displacements.append(float(relative @ position[: relative.size]))
         tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
         rotation = (displacements[-1] - displacements[0]) / (on_outer[-1] - on_outer[0])
         inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))

@@ -142,3 +142,44 @@ def replacing(text: str, slips: Mapping[str, str]) -> list[Slip]:
 def adding(text: str, slips: Mapping[str, str]) -> list[Slip]:
     """Return input errors by lines added below a text of the case."""
     return replacing(text, {f"{text}\n{slip}": line for slip, line in slips.items()})
+
+
+def long_boom(segments: int = 8, loads: int = 40, combinations: int = 10) -> str:
+    """Return a crane of many segments with pads, loads with histories, and combinations."""
+    length, overlap = 6.0, 1.5
+    text = f"""
+title = "A long boom"
+time = {{ duration = 1.0 }}
+gravity = {{ angle = 40.0 }}
+start = {{ state = "equilibrium" }}
+payload = {{ mass = 150.0 }}
+{STEEL}yield_strength = 355e6
+{elements("beam")}
+[[load_case]]
+name = "light"
+payload = 100.0
+
+[[cylinder]]
+segment = "s0"
+x = 2.4
+depth = 0.4
+ground = [0.7, -1.6]
+stiffness = 5e8
+"""
+    pads = "pad = { length = 0.15, width = 0.05 }\nstiffness = 2e8"
+    for i in range(segments):
+        start, height = i * (length - overlap), 0.7 - 0.05 * i
+        section = height, 0.7 * height, 0.008 - 0.0005 * i, 0.006 - 0.0003 * i
+        text += box(f"s{i}", (start, start + length), section, "" if i else HINGED)
+        if i:
+            span = start + 0.1, start + overlap - 0.1
+            text += joint(f"s{i}", f"s{i - 1}", 0.002, span, pads)
+    for k in range(loads):
+        i = k % segments
+        x = i * (length - overlap) + 1.0 + 0.1 * (k // segments)
+        keys = {"segment": f"s{i}", "x": x, "magnitude": -20.0 - k, "ramp": 0.1 + 0.02 * k}
+        text += table("[[load]]", **keys)
+    for k in range(combinations):
+        factors = {"dead": 1.0 + 0.03 * k, "payload": 1.0 + 0.05 * k}
+        text += table("[[combination]]", name=f"c{k}", factors=factors)
+    return text
