@@ -31,9 +31,9 @@ from protractile.dynamics.line import Line
 from protractile.dynamics.stability import closing_load
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
+from protractile.geometry.compression import NO_COMPRESSION
 from protractile.geometry.contact_places import contact_centres, pad_places
 from protractile.geometry.load import Load
-from protractile.geometry.segment import NO_COMPRESSION
 
 # Minimum number of elements of the longest segment in a boom with axial forces or tapers.
 ELEMENTS_WITH_AXIAL_FORCE = 20
