@@ -15,7 +15,7 @@ from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.proportions import CHECK_UNITS
 from protractile.runs.pipeline.statics import state_at_rest
-from protractile.runs.report.formatting import milli
+from protractile.runs.report.formatting import milli, percent
 
 # Share of the tip deflection below which walls do not matter, share above which remedies are
 # listed, and fraction to which a listed remedy reduces the tip deflection at least.
@@ -40,11 +40,13 @@ def pad_wall_lines(case: Case, beam: BeamStates) -> Iterator[str]:
     share = part * tip
     what, where = boom.yielding.split(maxsplit=1)
     how, source = ("distort", "a frame of plates") if what == "sections" else ("bend", "plates")
+    begin = f"caution: {what}" if abs(part) > GOVERNING_SHARE else what.capitalize()
     yield (
-        f"{f'caution: {what}' if part > GOVERNING_SHARE else what.capitalize()} {how} {where}, "
+        f"{begin} {how} {where}, "
         f"which moves the tip by {milli(share)} of {milli(tip)} mm, "
-        f"{100.0 * part:.2g} %, under the loads at t = {time:.4g} s (estimate from {source})."
+        f"{percent(part, 2)}, under the loads at t = {time:.4g} s (estimate from {source})."
     )
+    # A negative share, of lateral pads that close the play, needs no remedy.
     if part < LARGE_SHARE:
         return
     remedies = (

@@ -205,6 +205,36 @@ def test_walls_on_corners_have_no_share(tmp_path: Path) -> None:
     assert notes == ["Includes the cylinder forces at t = 0."]
 
 
+def test_a_tip_that_rigid_sections_overestimate_by_half_causes_a_caution(tmp_path: Path) -> None:
+    """Reference: other code, a shell of edges of 0.15 m under a lateral force of 3 kN: −26.0 mm.
+
+    Rigid sections give −39.1 mm, 50 % more. Forces of lateral pads widen the section upwards, which closes the vertical play.
+    """
+    pad = {"length": 0.2, "width": 0.06, "thickness": 0.02, "bears": "corner"}
+    sizes = ("shape", "height", "width", "chamfer", "top", "bottom", "web")
+    outer = dict(zip(sizes, ("octagon", 0.56, 0.56, 0.15, 0.007, 0.007, 0.007), strict=True))
+    inner = dict(zip(sizes, ("octagon", 0.50, 0.50, 0.135, 0.006, 0.006, 0.006), strict=True))
+    clamp = [{"x": 0.0, "kind": "clamped"}]
+    joint = {"outer": "outer", "inner": "inner", "extension": 6.2, "play": 0.003}
+    load = {"segment": "inner", "x": "head"}
+    text = "".join(
+        (
+            'title = "Mast"\n' + table("[time]", duration=5.0) + STEEL,
+            table("[gravity]", angle=90.0) + REST + table("[payload]", mass=3000.0),
+            table("[[axial]]", force=120000.0) + elements("beam"),
+            table("[[segment]]", name="outer", length=7.5, supports=clamp, section=outer),
+            table("[[segment]]", name="inner", length=7.5, section=inner),
+            table("[[load]]", **load, direction="y", magnitude=3100.0),
+            table("[[load]]", **load, magnitude=-2000.0),
+            table("[[joint]]", **joint, lateral_play=0.003, pad=pad, stations=["tail", "head"]),
+        )
+    )
+    lines = check_case(CheckedCase(read_case(tmp_path, text))).lines
+    (line,) = (one for one in lines if "distort under pads" in one)
+    assert line.startswith("caution: sections distort under pads, which moves the tip by 1")
+    assert ", −5" in line
+
+
 def test_sections_that_distort_have_their_share_and_remedies(tmp_path: Path) -> None:
     """Reference: other code, a shell of edges of 50 mm at −444.7 mm; by hand without, −265 mm."""
     pad = {"length": 0.25, "width": 0.07, "thickness": 0.02, "bears": "corner"}
