@@ -208,7 +208,8 @@ def test_walls_on_corners_have_no_share(tmp_path: Path) -> None:
 def test_a_tip_that_rigid_sections_overestimate_by_half_causes_a_caution(tmp_path: Path) -> None:
     """Reference: other code, a shell of edges of 0.15 m under a lateral force of 3 kN: −26.0 mm.
 
-    Rigid sections give −39.1 mm, 50 % more. Forces of lateral pads widen the section upwards, which closes the vertical play.
+    Rigid sections give −39.1 mm, 50 % more. Forces of lateral pads widen the section upwards,
+    which closes the vertical play.
     """
     pad = {"length": 0.2, "width": 0.06, "thickness": 0.02, "bears": "corner"}
     sizes = ("shape", "height", "width", "chamfer", "top", "bottom", "web")
