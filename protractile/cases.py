@@ -4,8 +4,9 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import partial
+from numbers import Real
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -251,7 +252,15 @@ def frequencies(
 
 
 def _options(vary: Mapping[str, Sequence[float]]) -> list[str]:
-    """Return ``vary`` as options of the command line, without loss of digits."""
-    return [
-        f"{key}={','.join(repr(float(value)) for value in values)}" for key, values in vary.items()
-    ]
+    """Return ``vary`` as options of the command line, without loss of digits.
+
+    Raises:
+        BadInput: the values of a key are no list of numbers.
+    """
+    options = []
+    for key, values in vary.items():
+        listed = isinstance(values, Iterable) and not isinstance(values, str)
+        if not (listed and all(isinstance(value, Real) for value in values)):
+            raise BadInput(_CASE, key, f"must be a list of numbers, got {values!r}")
+        options.append(f"{key}={','.join(repr(float(value)) for value in values)}")
+    return options

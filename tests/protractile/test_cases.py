@@ -146,6 +146,16 @@ EXPLAINED = sorted(
 )
 
 
+@pytest.mark.parametrize("values", ["30", 30.0, [None], ["30"]])
+def test_values_of_a_sweep_are_a_list_of_numbers(values: Any) -> None:
+    """Reference: exact words. The digits of a text were taken as values, others were tracebacks."""
+    message = f"case: gravity.angle: must be a list of numbers, got {values!r}"
+    for study in (pt.sweep, pt.frequencies):
+        with pytest.raises(pt.BadInput) as refused:
+            study(pt.load_case(SHORT), {"gravity.angle": values}, BEAM)
+        assert str(refused.value) == message
+
+
 def test_senseless_arguments_are_named() -> None:
     """Reference: by construction. Python has the messages of case files."""
     case = pt.load_case(COARSE)
