@@ -358,12 +358,15 @@ def frequencies(
 
 
 @app.command()
-def check(case: CaseFile, picture: Picture = None) -> int:
+def check(case: CaseFile, picture: Picture = None, large: Large = False) -> int:
     """Check a case file, and print its loads, static state, stresses and first frequency."""
     from protractile.runs.case.reading import load_checked
     from protractile.runs.check import check_case
+    from protractile.runs.pipeline import estimates
 
     checked = load_checked(case)
+    if not large:
+        estimates.refuse_large(estimates.states_cost(checked.case), case)
     if picture is not None:
         import_module("protractile.runs.report.boom_drawing").save_drawing(
             checked.case, case, picture
@@ -382,6 +385,7 @@ def prove(
         typer.Option(metavar="NAME", help="A shell of the case, in place of beam elements."),
     ] = None,
     no_cache: NoCache = False,
+    large: Large = False,
 ) -> int:
     """Prove strength, stability, deflection and fatigue for all combinations of a case.
 
@@ -390,9 +394,12 @@ def prove(
     from protractile.runs.case.kinds.shell import Shell
     from protractile.runs.case.messages import BadInput
     from protractile.runs.case.reading import load
+    from protractile.runs.pipeline import estimates
     from protractile.runs.report.terminal_tables import print_proofs
 
     checked = load(case)
+    if not large:
+        estimates.refuse_large(estimates.states_cost(checked), case)
     if shell is None:
         if ending.launched_rank():
             return 0

@@ -45,6 +45,10 @@ _SUBSTEPS, _OF_MOST, _TOLERANCE, _REPEATED = 4.0, 0.5, 1.0e-3, 2.5
 # Number of motions for the horizons of a model.
 _HORIZONS = 24
 
+# Time in s and memory in bytes of the states of a combination in a load case, per square of the
+# number of segments.
+_STATE, _STATE_MEMORY = 0.011, 1.5e5
+
 # Number of points of a sweep whose cost is estimated; the others are extrapolated.
 _SAMPLE = 20
 
@@ -114,6 +118,17 @@ def models_cost(preview: Preview) -> Cost:
     return total
 
 
+def states_cost(case: Case) -> Cost:
+    """Return the cost of the static states of all combinations in their load cases."""
+    names = [one.name for one in case.load_cases] or [""]
+    count = sum(
+        len(names) if one.load_cases is None else len({*names} & {*one.load_cases})
+        for one in case.combinations
+    ) or len(names)
+    size = count * len(case.segments) ** 2
+    return Cost(_LIBRARIES + _STATE_MEMORY * size, _STATE * size)
+
+
 def sweep_cost(cases: Sequence[Case]) -> Cost:
     """Return the cost of a sweep of checked cases on all cores."""
     at_a_time = min(len(cases), os.cpu_count() or 1)
@@ -134,7 +149,7 @@ def refuse_large(cost: Cost, file: str) -> None:
             file,
             "--large",
             f"missing, and it may take {cost}; give it to start anyway, or ask for fewer "
-            "outputs, members, points or steps, or for coarser meshes",
+            "outputs, members, points, states or steps, or for coarser meshes",
         )
 
 

@@ -22,10 +22,11 @@ from protractile.runs.pipeline.estimates import (
     models_cost,
     refuse_large,
     run_cost,
+    states_cost,
     sweep_cost,
 )
 from protractile.runs.sweep import points as sweep_points
-from tests.runs.case_texts import COARSE, edited, refused, shipped
+from tests.runs.case_texts import COARSE, edited, refused, shipped, table
 from tests.runs.summaries import printed
 from tests.system.run_folder import python
 
@@ -144,7 +145,7 @@ def test_excessive_memory_or_time_is_refused(edits: dict[str, str], line: str) -
     write(edits)
     with refused(
         f"case.toml: --large: missing, and it may take {line}; give it to start anyway, or "
-        "ask for fewer outputs, members, points or steps, or for coarser meshes"
+        "ask for fewer outputs, members, points, states or steps, or for coarser meshes"
     ):
         refuse_large(run_cost(case_file.load("case.toml")), "case.toml")
 
@@ -188,3 +189,20 @@ def test_shipped_cases_need_no_confirmation(path: Path) -> None:
 def test_an_unknown_cost_is_a_large_one() -> None:
     with pytest.raises(BadInput):
         refuse_large(Cost(float("nan"), 0.0), "case.toml")
+
+
+def test_many_combined_states_need_a_confirmation() -> None:
+    """Reference: analytic. 100 combinations in 100 load cases are 10,000 states."""
+    text = COARSE
+    for number in range(100):
+        text += table("[[load_case]]", name=f"l{number}")
+        text += table("[[combination]]", name=f"c{number}", factors={"dead": 1.0})
+    Path("case.toml").write_text(text, "utf-8")
+    many = case_file.load("case.toml")
+    with refused(
+        "case.toml: --large: missing, and it may take 7.3 GB and 7 min; give it to start anyway, "
+        "or ask for fewer outputs, members, points, states or steps, or for coarser meshes"
+    ):
+        refuse_large(states_cost(many), "case.toml")
+    few = many.model_copy(update={"combinations": many.combinations[:9]})
+    assert not states_cost(few).large
