@@ -97,7 +97,7 @@ imitate: ## `make test` as on three other processors
 	NUMBA_CPU_NAME=haswell OPENBLAS_CORETYPE=Haswell NPY_DISABLE_CPU_FEATURES="$(AVX512)" $(MAKE) test
 	NUMBA_CPU_NAME=znver2 OPENBLAS_CORETYPE=Zen NPY_DISABLE_CPU_FEATURES="$(AVX512)" $(MAKE) test
 
-fuzz: $(READY) ## a thousand errors in cases, load files and command lines; each must give one line
+fuzz: $(READY) ## a thousand valid and wrong cases, load files, command lines and Python calls
 	$(BIN)/python -m tests.fuzz
 
 torture: $(READY) ## full disks, kills, flipped bits, shared folders: losses, as a table

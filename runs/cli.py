@@ -328,18 +328,22 @@ def frequencies(
     models: ModelNames = None,
     mesh_size: MeshSize = None,
     no_cache: NoCache = False,
+    large: Large = False,
 ) -> int:
     """Chart the first natural frequencies over the values of keys.
 
     The joints are once in contact where they touch at rest under the loads, and once bonded.
     """
     from protractile.runs.folder.cache import Cache
+    from protractile.runs.pipeline import estimates
     from protractile.runs.sweep import frequencies as charts
     from protractile.runs.sweep import points
     from protractile.runs.sweep import run as sweep_runs
 
     plan = points.plan(case, vary, _names(models), mesh_size)
     cases = [point.case for point in plan.points]
+    if not large:
+        estimates.refuse_large(estimates.frequencies_cost(cases), case)
     comm = ranks.enter_mpi(cases[0], case)
     cache = None if no_cache else Cache.of_user()
     with ranks.end_all_ranks_on_error(comm):

@@ -16,6 +16,7 @@ import numpy as np
 
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.motion import MOST_STEPS, Motion
+from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import ModelTable
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase
@@ -138,8 +139,21 @@ def sweep_cost(cases: Sequence[Case]) -> Cost:
     return Cost(at_a_time * max(cost.memory for cost in sample), seconds / at_a_time)
 
 
+def frequencies_cost(cases: Sequence[Case]) -> Cost:
+    """Return the cost of the frequencies of checked cases, which are computed one after the other.
+
+    Each model is built with play and bonded.
+    """
+    costs = [
+        Cost(surrogate.memory, 2.0 * surrogate.seconds)
+        for case in cases
+        for surrogate in (model.surrogate(build_boom(case)) for model in case.models)
+    ]
+    return Cost(_LIBRARIES + max(cost.memory for cost in costs), sum(c.seconds for c in costs))
+
+
 def refuse_large(cost: Cost, file: str) -> None:
-    """Refuse a run or sweep whose memory or time needs a confirmation.
+    """Refuse a run, a sweep or frequencies whose memory or time needs a confirmation.
 
     Raises:
         BadInput: the cost exceeds :data:`MAX_MEMORY` or :data:`MAX_TIME`.

@@ -1,50 +1,57 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Many seeded errors in input, several at a time, each in a folder and a process of its own."""
+"""Many seeded inputs, several at a time, each in a folder and a process of its own."""
 
 import os
 import shutil
 from collections.abc import Iterable, Iterator
+from functools import partial
 from pathlib import Path
 from random import Random
 from tempfile import TemporaryDirectory
 
 from protractile.runs import CASES
-from tests.fuzz import cases, command_lines, contract, histories
+from tests.fuzz import cases, command_lines, contract, histories, python_calls, valid
 
-COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
-SHORT = COARSE.replace("duration = 0.6", "duration = 0.02")
-# Beams alone: a shell takes FEniCSx, whose import alone takes longer than a beam's run.
-WITHOUT_SHELLS = "kantorovich-5,beam-fe"
-
-# Kinds of input, and their shares of all errors.
-KINDS = {"case, checked": 0.6, "case, run": 0.1, "history": 0.12, "command line": 0.18}
+# Kinds of input, and their shares.
+KINDS = {
+    "case, varied": 0.26, "case, broken": 0.16, "run, scaled": 0.06, "history": 0.05,
+    "command": 0.22, "command line": 0.05, "Python": 0.2,
+}  # fmt: skip
 
 
 def kind_of(seed: int) -> str:
-    """Return the kind of a seed's error."""
+    """Return the kind of a seed's input."""
     return Random(f"kind {seed}").choices(list(KINDS), list(KINDS.values()))[0]
 
 
 def prepare(seed: int, folder: Path) -> list[str]:
-    """Write the files of a seed to a folder; return the arguments of its command."""
+    """Write the files of a seed to a folder; return the arguments of its command.
+
+    A call from Python has none.
+    """
     random, kind = Random(seed), kind_of(seed)
-    path = random.choice(sorted(CASES.glob("*.toml")))
-    text = path.read_text(encoding="utf-8")
+    if kind == "Python":
+        return []
+    text = valid.small(random)
     arguments = ["check", "case.toml"]
-    if kind == "case, run":
-        text = SHORT
-        arguments = ["run", "case.toml", "--models", WITHOUT_SHELLS, "--out", "out"]
-    if kind == "case, checked" or random.random() < 0.2:
-        text = cases.mutate(text, random)
-    elif kind == "case, run":
+    if kind.startswith("case") and random.random() < 0.5:
+        text = random.choice(sorted(CASES.glob("*.toml"))).read_text(encoding="utf-8")
+    if kind == "case, varied":
+        text = valid.varied(text, random)
+    if kind == "run, scaled":
+        # Beams alone: a shell takes FEniCSx, whose import alone takes longer than a beam's run.
+        arguments = ["run", "case.toml", "--models", "beam,series", "--out", "out"]
         text = cases.scaled(text, random)
+    if kind == "case, broken" or (kind != "case, varied" and random.random() < 0.1):
+        text = cases.mutate(text, random)
     if kind == "history":
         table = '[[base]]\nacceleration = 1.0\nfile = "history.csv"\n\n[[model]]'
         text = text.replace("[[model]]", table, 1)
         histories.put(folder / "history.csv", random)
-    if kind == "command line":
-        text = SHORT
-        arguments = command_lines.mutate(random)
+    if kind.startswith("command"):
+        draw = command_lines.usual if kind == "command" else command_lines.mutate
+        arguments = draw(random)
+    (folder / "gust.csv").symlink_to(CASES / "gust.csv")
     (folder / "case.toml").write_text(text, encoding="utf-8", errors="surrogateescape")
     return arguments
 
@@ -58,7 +65,8 @@ def run(seeds: Iterable[int]) -> Iterator[tuple[int, contract.Ending]]:
                 yield _next(running)
             folder = Path(top, str(seed))
             folder.mkdir()
-            running[contract.start(prepare(seed, folder), folder)] = seed, folder
+            action = prepare(seed, folder) or partial(python_calls.call, seed)
+            running[contract.start(action, folder)] = seed, folder
         while running:
             yield _next(running)
 

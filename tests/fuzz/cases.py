@@ -6,6 +6,7 @@ from collections.abc import Callable
 from random import Random
 
 from protractile.runs.case.schema import case_schema
+from tests.fuzz.valid import TABLES, with_table
 from tests.fuzz.values import any_value
 
 _LINE = re.compile(r"^(?P<key>[a-z_]+) = (?P<value>.+?)(?P<rest>\s*#.*)?$", re.MULTILINE)
@@ -14,41 +15,6 @@ _NUMBER = re.compile(r"-?\d+(?:\.\d*)?(?:e-?\d+)?")
 _KEYS = sorted(
     {key for table in case_schema()["$defs"].values() for key in table.get("properties", ())}
 )
-_TABLES = (
-    "[payload]\nmass = {}\n", "[damping]\nmodal = {}\n", "[damping]\nstiffness = {}\n",
-    "[damping]\nmass = {}\n", '[start]\nstate = "equilibrium"\n',
-    "[start]\nvelocity = {{ inner = {} }}\n", "[[base]]\nacceleration = {}\n",
-    '[[base]]\nacceleration = 1.0\nramp = {}\n',
-    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = {}\n',
-    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = -100.0\nfrequency = {}\n',
-    '[[stop]]\nsegment = "inner"\nx = 18.0\nplay = 0.1\nstiffness = {}\n',
-    '[[cylinder]]\nsegment = "outer"\nx = 4.0\nground = [1.0, {}]\nstiffness = 1e7\n',
-    '[[cylinder]]\nsegment = "outer"\nx = 4.0\nground = [1.0, -2.0]\nstiffness = {}\n',
-    "[gravity]\nacceleration = {}\nangle = 60.0\n", "[gravity]\nangle = {}\n",
-    "[[axial]]\nforce = {}\n", "[[axial]]\nfalls = 2\nmass = {}\n",
-    '[[observe]]\nname = "seat"\nsegment = "inner"\nx = {}\n',
-    '[[observe]]\nname = {}\nsegment = "inner"\nx = {{ head = 1.0 }}\nquantity = "velocity"\n',
-    "[start]\nvelocity = {{ inner = {{ turn = {}, x = \"tail\" }} }}\n",
-    "[ensemble]\nmembers = {}\n", "[ensemble]\nmembers = 3\nrelative = {}\n",
-    "[ensemble]\nmembers = 3\nseed = {}\n",
-    '[[load]]\nsegment = "inner"\nfrom = 12.0\nto = {}\nmagnitude = -10.0\n',
-    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = {}\nmoment = true\n',
-    '[[model]]\nname = "more"\nkind = "rigid"\ncontact = {{ force_table = [[0.001, {}]] }}\n',
-    '[[model]]\nname = "more"\nkind = "shell"\ncontact_tolerance = {}\n',
-    '[[model]]\nname = "more"\nkind = "kantorovich"\nterms = {}\n',
-    '[[model]]\nname = "more"\nkind = "finite-element"\nelement_length = {}\n',
-    '[[model]]\nname = "more"\nkind = "finite-element"\ncalibrated_by = {}\n',
-    '[[model]]\nname = "more"\nkind = "finite-element"\n'
-    'calibrated_by = {{ name = "by", kind = "shell", {key} = {} }}\n',
-    '[[model]]\nname = "more"\nkind = "finite-element"\n'
-    'calibrated_by = {{ name = "by", kind = "shell", contact = {{ {key} = {} }} }}\n',
-    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = -100.0\n'
-    "table = [[0.0, {}], [{}, 1.0]]\n",
-    '[[load]]\nsegment = "inner"\nx = 19.0\nmagnitude = {}\nramp = {}\nreleased = {}\n',
-    "[[axial]]\nforce = {}\nsegment = {}\n", "[life]\ndetail_category = {}\n",
-    '[[base]]\nacceleration = 1.0\nfile = {}\n',
-    '[[cylinder]]\nsegment = "outer"\nx = {}\ndepth = {}\nground = [{}, {}]\n',
-)  # fmt: skip
 
 
 def mutate(text: str, random: Random) -> str:
@@ -102,10 +68,8 @@ def _one_more_key(text: str, random: Random) -> str:
 
 
 def _one_more_table(text: str, random: Random) -> str:
-    table = random.choice(_TABLES)
-    values = [any_value(random, "1.0") for _ in range(table.count("{}"))]
-    table = table.format(*values, key=random.choice(_KEYS))
-    return text.replace("[[model]]", f"{table}\n[[model]]", 1)
+    change = random.choice((_other_value, _other_number, _one_more_key))
+    return with_table(text, change(random.choice(TABLES), random), random)
 
 
 def _tables_again(text: str, random: Random) -> str:

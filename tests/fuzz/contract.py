@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Contract of every command for any input, and a process that checks it.
+"""Contract of every command and every call from Python for any input, checked in a process.
 
 The exit status is 0, 1, 2 or 3. If it is not 0, stderr has a single printable line of less than
 300 characters besides progress. A command needs at most 4 GB, and 60 s of CPU time more than
-announced.
+announced. A call returns, or this program itself raises BadInput, ValueError or NumericsError with
+such a line: status 2.
 """
 
 import os
@@ -11,11 +12,12 @@ import re
 import resource
 import sys
 import traceback
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 
+import protractile as pt
 from protractile.runs import cli
 from protractile.runs.case import reading as case_file
 from protractile.runs.pipeline import estimates
@@ -35,7 +37,7 @@ OUT, ERR = ".stdout", ".stderr"
 
 
 # What runs/process/terminal.py says of what takes long.
-PROGRESS = re.compile(r".+: .+ (started|finished|took \d+ s|\d+ %, \d+ s left)")
+PROGRESS = re.compile(r".+: .+ (started|finished|took \d+ s|\d+ %(, \d+ s left)?)")
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,16 +68,21 @@ class Ending:
             return f"{len(lines)} lines with exit status {self.status}: {self.err[-300:]!r}"
         if any(len(line) >= LONGEST or not line.isprintable() for line in lines):
             return f"a line that cannot be read: {lines[0]!r}"
-        if any(not line.startswith("protractile: ") for line in lines):
+        if any(not line.startswith("protractile: ") or "pydantic" in line for line in lines):
             return f"a line that is not protractile's: {lines[0]!r}"
         return ""
 
+    @property
+    def accepted(self) -> bool:
+        """Whether the input was valid; status 1 is a limit exceeded, 3 a motion not computed."""
+        return self.status in (0, 1, 3)
 
-def start(arguments: Sequence[str], folder: Path) -> int:
-    """Start a command in a folder in a process of its own; return its id."""
+
+def start(action: Sequence[str] | Callable[[], object], folder: Path) -> int:
+    """Start a command or a call in a folder in a process of its own; return its id."""
     pid = os.fork()
     if pid == 0:
-        os._exit(_run(arguments, folder))
+        os._exit(_run(action, folder))
     return pid
 
 
@@ -89,14 +96,15 @@ def finish(folder: Path, pid: int, status: int, used: resource.struct_rusage) ->
     )
 
 
-def _run(arguments: Sequence[str], folder: Path) -> int:
+def _run(action: Sequence[str] | Callable[[], object], folder: Path) -> int:
     os.chdir(folder)
     for name, number in ((OUT, 1), (ERR, 2)):
         os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), number)
-    limit = MOST_CPU + _announced(arguments)
+    limit = MOST_CPU + (0 if callable(action) else _announced(action))
     resource.setrlimit(resource.RLIMIT_CPU, (limit, limit))
+    status: object = 0
     try:
-        cli.main(arguments)
+        _call(action) if callable(action) else cli.main(action)
     except SystemExit as end:
         status = end.code
     except BaseException:
@@ -107,9 +115,21 @@ def _run(arguments: Sequence[str], folder: Path) -> int:
     return status if isinstance(status, int) else 0
 
 
+def _call(action: Callable[[], object]) -> None:
+    """Make a call; an error that this program raises ends the process as a command would."""
+    try:
+        action()
+    except (pt.BadInput, pt.NumericsError, ValueError) as error:
+        *_, (frame, _) = traceback.walk_tb(error.__traceback__)
+        if not frame.f_globals["__name__"].startswith("protractile."):
+            raise
+        print(f"protractile: {error}", file=sys.stderr)
+        sys.exit(2)
+
+
 def _announced(arguments: Sequence[str]) -> int:
     """Return the estimated duration of a run in s."""
-    if arguments[:2] != ["run", "case.toml"]:
+    if list(arguments[:2]) not in (["run", "case.toml"], ["sweep", "case.toml"]):
         return 0
     try:
         return int(estimates.run_cost(case_file.load("case.toml")).seconds)

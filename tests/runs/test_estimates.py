@@ -28,7 +28,7 @@ from protractile.runs.pipeline.estimates import (
 from protractile.runs.sweep import points as sweep_points
 from tests.runs.case_texts import COARSE, edited, refused, shipped, table
 from tests.runs.summaries import printed
-from tests.system.run_folder import python
+from tests.system.run_folder import protractile, python
 
 PROGRAM = """
 import sys
@@ -148,6 +148,17 @@ def test_excessive_memory_or_time_is_refused(edits: dict[str, str], line: str) -
         "ask for fewer outputs, members, points, states or steps, or for coarser meshes"
     ):
         refuse_large(run_cost(case_file.load("case.toml")), "case.toml")
+
+
+def test_frequencies_of_short_elements_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    """Reference: non-regression, a dense eigenproblem of 22,000 coordinates."""
+    write({})
+    vary = "--vary", "model[3].element_length=0.002,0.5"
+    assert protractile("frequencies", "case.toml", *vary, "--models", "beam-fe") == 2
+    assert capsys.readouterr().err == (
+        "protractile: case.toml: --large: missing, and it may take 21 GB and 22.3 h; give it to "
+        "start anyway, or ask for fewer outputs, members, points or steps, or for coarser meshes\n"
+    )
 
 
 @pytest.mark.parametrize("name", ["lift", "coarse"])
