@@ -121,15 +121,16 @@ Number = Annotated[float, Field(strict=True, allow_inf_nan=False)]
 Length = Annotated[Positive, In("m")]
 # The number of a detail category by EN 1993-1-9: 71 for 71 N/mm².
 Category = Annotated[Positive, In("1")]
-# Names occur in file names and comma-separated lists.
-NAME = r"^[A-Za-zÀ-ÖØ-öø-ž0-9][A-Za-zÀ-ÖØ-öø-ž0-9 ._+-]*$"
+# Names occur in file names and comma-separated lists. Latin letters are those of Unicode's blocks
+# of Latin up to Extended-B, and Extended Additional: ä, é, ß, ș, ẞ.
+NAME = r"^[A-Za-zÀ-ÖØ-öø-ɏḀ-ỿ0-9][A-Za-zÀ-ÖØ-öø-ɏḀ-ỿ0-9 ._+-]*$"
 Name = Annotated[str, Field(pattern=NAME, max_length=60)]
 Flag = Annotated[bool, Field(strict=True)]
 # Maximum number of parts of a kind. More are an input error.
 Few = Field(max_length=100)
 MOST_STATIONS = 50
 
-VALID_NAME = "made of letters, digits, blanks and . _ + -, starting with one of the first"
+VALID_NAME = "made of Latin letters, digits, blanks and . _ + -, starting with a letter or a digit"
 # Descriptions of valid input by error type, for messages that quote the given value. Limits of the
 # schema replace the braces.
 VALID_INPUT = {

@@ -72,8 +72,11 @@ FORMS = [
             "https://toml.io",
     }),
     ('name = "beam-fe"', 'name = "beam/fe"',
-     "model[3].name: must be made of letters, digits, blanks and . _ + -, starting with one of "
-     "the first, got 'beam/fe'"),
+     "model[3].name: must be made of Latin letters, digits, blanks and . _ + -, starting with a "
+     "letter or a digit, got 'beam/fe'"),
+    ('name = "beam-fe"', 'name = "балка"',
+     "model[3].name: must be made of Latin letters, digits, blanks and . _ + -, starting with a "
+     "letter or a digit, got 'балка'"),
     ("play = 0.014", "play = 0,014",
      "line 39: not TOML: 0,014 has a decimal comma; give 0.014"),
     ("height_to_width = 1.5",

@@ -41,6 +41,15 @@ def test_any_text_and_number_survives_writing(tmp_path: Path) -> None:
     assert read_case(tmp_path, toml.dumps(case)) == case
 
 
+@pytest.mark.parametrize("name", ["Träger ß", "flèche 2", "Țeavă ẞ", "Žebrík", "Ống 2"])
+def test_names_have_any_latin_letter(tmp_path: Path, name: str) -> None:
+    """Reference: the letters of German, French, Romanian, Slovak and Vietnamese."""
+    text = COARSE.replace('"inner"', f'"{name}"').replace('"beam-fe"', f'"{name}"')
+    case = read_case(tmp_path, text)
+    assert (case.segments[1].name, case.models[2].name) == (name, name)
+    assert case.joints[0].inner == name
+
+
 def test_the_paper_case_is_the_paper(paper_boom: Boom) -> None:
     """Reference: external, the data of the paper, which gives no sections."""
     case = shipped("paper")
