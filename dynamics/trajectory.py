@@ -107,8 +107,8 @@ class Trajectory:
     """Motion of one model.
 
     >>> motion = simulate(ball, duration=1.0, position=[0.5])
-    >>> print(f"{float(abs(motion.data['contact_force_peak']).max()):.0f} N")
-    3142 N
+    >>> print(f"{1.0e-3 * float(abs(motion.data['contact_force_peak']).max()):.1f} kN")
+    3.1 kN
 
     Args:
         data: dims ``time`` and ``station``; the output of each observer; ``contact_force`` in N,
