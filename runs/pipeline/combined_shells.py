@@ -110,7 +110,7 @@ def _by_kind(boom: Boom) -> dict[str, Load]:
             continue
         if isinstance(load.history, ReleasedLoad):
             load = replace(load, history=_RELEASE)
-        kind = repr(replace(load, magnitude=1.0, history=None))
+        kind = repr(replace(load, magnitude=1.0, history=Step()))
         loads_by_key[f"{kind}#{numbers[kind]}"] = load
         numbers[kind] += 1
     return loads_by_key

@@ -368,8 +368,8 @@ SLIPS: dict[str, Callable[[], object]] = {
         "free",  # type: ignore[arg-type]
     ),
     "Diaphragm.thickness: must be a finite number, got inf": lambda: Diaphragm(1.0, float("inf")),
-    "Observation.name: must be made of letters, digits, blanks and . _ + -, starting with one of "
-    "the first, got 'a/b'": lambda: Observation("a/b", 0, 1.0),
+    "Observation.name: must be made of Latin letters, digits, blanks and . _ + -, starting with a "
+    "letter or a digit, got 'a/b'": lambda: Observation("a/b", 0, 1.0),
     "SlidePad.thickness: missing; give thickness=… by name; it is the thickness in m, which "
     "determines the stiffness": lambda: SlidePad(**{"length": 0.1, "width": 0.1, "side": "above"}),
     "Joint.contact: must be a contact law such as PowerContact(1e9, exponent=1.0), got 'x'": (

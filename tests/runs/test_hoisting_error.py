@@ -66,12 +66,12 @@ def actual(case: Case) -> tuple[float, list[str]]:
 def test_small_deflections_agree_with_large_rotations() -> None:
     """Reference: other code, a bar with large rotations, at 0.5 % of its length.
 
-    The estimate is then small, too: 0.0075, where 0.0073 is found.
+    The estimate is then small, too, and on the safe side: 0.0109, where 0.0073 is found.
     """
     case = bar_case(2.0e8, 1.5, mass=300.0, travel=0.5)
     found, cautions = actual(case)
     assert found < 0.01
-    assert estimated(case) < 0.01
+    assert found < estimated(case) < 1.6 * found
     assert not cautions
 
 
