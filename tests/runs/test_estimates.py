@@ -157,7 +157,8 @@ def test_frequencies_of_short_elements_are_refused(capsys: pytest.CaptureFixture
     assert protractile("frequencies", "case.toml", *vary, "--models", "beam-fe") == 2
     assert capsys.readouterr().err == (
         "protractile: case.toml: --large: missing, and it may take 21 GB and 22.3 h; give it to "
-        "start anyway, or ask for fewer outputs, members, points, states or steps, or for coarser meshes\n"
+        "start anyway, or ask for fewer outputs, members, points, states or steps, or for coarser "
+        "meshes\n"
     )
 
 
