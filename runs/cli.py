@@ -491,7 +491,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     terminal.show_notices()
     if ending.launched_rank():
         # Help, progress and results are those of the first rank.
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115 # for the whole process
     # Figures go into files, whatever backend the environment selects.
     os.environ["MPLBACKEND"] = "agg"
     command = typer.main.get_command(app)

@@ -5,4 +5,4 @@ from contextlib import suppress
 
 # The wheels of DOLFINx need MPI before every other library of theirs, which this module loads.
 with suppress(ModuleNotFoundError):
-    import dolfinx_solver  # noqa: F401
+    import dolfinx_solver  # noqa: F401 # its import alone does it

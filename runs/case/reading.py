@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from protractile.dynamics.motion import MOST_OUTPUTS
 from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.fields import describe, is_number
 from protractile.geometry.typography import choices
@@ -44,9 +45,6 @@ from protractile.runs.case.sanity import check_ranges, usual_ranges
 from protractile.runs.case.schema import Case, EnsembleTable, Model, TimeTable
 from protractile.runs.case.units import System, scale
 from protractile.runs.case.user_files import read_text
-
-# Maximum number of output times: the run would take too long for more.
-MOST_OUTPUTS = 10_000_000
 
 _NOTICES = logging.getLogger("protractile")
 

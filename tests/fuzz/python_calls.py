@@ -52,11 +52,11 @@ def _case(random: Random) -> object:
             table[random.choice(list(table))] = random.choice(_OBJECTS)
     case = pt.load_case(tables)
     key, ends = random.choice(list(USUAL.items()))
-    value = random.choice(ends)
+    value: object = random.choice(ends)
     if random.random() < 0.15:
         key = random.choice(WRONG_KEYS)
     if random.random() < 0.15:
-        value = random.choice(_OBJECTS)  # type: ignore[assignment]
+        value = random.choice(_OBJECTS)
     if random.random() < 0.6:
         case = pt.change(case, **{key: value})
     calls: tuple[Callable[[], object], ...] = (
