@@ -65,8 +65,10 @@ def closed_contact_modes(system: GapSystem, rest: Array | None = None) -> tuple[
     free = null_space(bonded) if bonded.size else np.eye(system.num_modes)
     rows = system.rows @ free
     omega2, combination = eigh(free.T @ system.stiffness @ free + (rows.T * stiffness) @ rows)
-    # Without elastic modes, the scale of round-off is the largest ω² with closed contacts.
-    least = min(system.omega2[system.omega2 > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
+    # A load on a rope may swing far more slowly than any segment bends. Without elastic modes, the
+    # scale of round-off is the largest ω² with closed contacts.
+    scales = np.append(system.omega2, stiffness @ (system.rows @ system.hung.T) ** 2)
+    least = min(scales[scales > 0.0], default=_ROUND_OFF * omega2.max(initial=0.0))
     moving = omega2 > 1.0e-6 * least
     return np.sqrt(omega2[moving]), free @ combination[:, moving]
 
@@ -87,7 +89,7 @@ def closed_stiffness(system: GapSystem, rest: Array) -> Array:
 
 
 def _unloaded_stations(system: GapSystem, force: Array) -> Iterator[list[int]]:
-    """Yield the rows of each station between segments that has neither play nor load at rest.
+    """Yield the rows of each station that has neither play nor load at rest.
 
     Args:
         force: size of the force (num_rows,) in N of each row at rest.
@@ -96,7 +98,7 @@ def _unloaded_stations(system: GapSystem, force: Array) -> Iterator[list[int]]:
         rows = np.flatnonzero(system.station_of_row == station).tolist()
         play = sum(min(system.laws[row].onset(side) for row in rows) for side in (1.0, -1.0))
         loaded = force[rows].max(initial=0.0) > _UNLOADED * force.max(initial=0.0)
-        if station not in system.grounded and play <= 0.0 and not loaded:
+        if play <= 0.0 and not loaded:
             yield rows
 
 

@@ -181,12 +181,19 @@ def test_free_segment_decays_at_the_ratio_of_the_first_mode(heavy: GapSystem) ->
     assert run.energy_residual < 1e-12
 
 
-def test_contact_force_of_round_off_does_not_close_a_contact() -> None:
-    """Reference: analytic. With a penetration of 1e-17 m, the mass still has 20 rad/s."""
+@pytest.mark.parametrize("gap", [0.0, 1.0e-3])
+def test_contact_force_of_round_off_does_not_close_a_contact(gap: float) -> None:
+    """Reference: analytic. With a penetration of 1e-17 m, the mass still has 20 rad/s.
+
+    Held on both sides without a gap, it has √(400 + 10⁶) rad/s; it had 20 rad/s.
+    """
     stop = PowerContact(stiffness=1.0e6, exponent=1.0)
-    system = modal_system([400.0, 0.0], [0.0, 10.0], np.eye(2), [stop, stop], grounded=[0, 1])
+    first = stop.with_clearance(0.0, gap)
+    system = modal_system([400.0, 0.0], [0.0, 10.0], np.eye(2), [first, stop], grounded=[0, 1])
     omega, _ = closed_contact_modes(system, np.array([1.0e-17, 1.0e-5]))
-    np.testing.assert_allclose(omega, [20.0, 1000.0], rtol=1e-12)
+    held = np.sqrt(400.0 + 1.0e6)
+    right = [20.0, 1000.0] if gap else [1000.0, held]
+    np.testing.assert_allclose(omega, right, rtol=1e-12)
 
 
 def test_a_bonded_boom_keeps_its_exact_flow(

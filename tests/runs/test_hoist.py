@@ -2,12 +2,14 @@
 """Hoisting in a case: statics and results of a hanging load, messages for bad input."""
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from protractile.cases import change, run_case
+from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.runs import CASES
@@ -24,7 +26,7 @@ from protractile.runs.pipeline.evaluation import bonded_system
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.models import build, initial_motion
 from protractile.runs.pipeline.statics import boom_with_play, state_at_rest
-from tests.runs.case_texts import REST, STEEL, elements, refusal, shipped, table
+from tests.runs.case_texts import CLAMPED, REST, STEEL, elements, refusal, shipped, table
 from tests.runs.summaries import static_tip
 
 HOIST = (CASES / "hoist.toml").read_text(encoding="utf-8")
@@ -190,6 +192,55 @@ def test_modes_with_a_heavy_load_have_the_given_damping(case: Case) -> None:
     motion = initial_motion(build(case, build_boom(case), case.models[0]).system, case)
     ratios = closed_contact_damping(motion.system, motion.position)[1]
     assert ratios[:8] == pytest.approx(0.01, rel=1e-9)
+
+
+def at_rest(case: Case) -> tuple[Array, Array]:
+    """Return frequencies in Hz and damping ratios of the modes of the first model at rest."""
+    motion = initial_motion(build(case, build_boom(case), case.models[0]).system, case)
+    return closed_contact_damping(motion.system, motion.position)
+
+
+@pytest.mark.parametrize(
+    "model",
+    [
+        elements("bar", theory="euler-bernoulli", rotary_inertia=False),
+        table("[[model]]", name="bar", kind="kantorovich", terms=[12], base="complete"),
+    ],
+)
+def test_a_load_at_rest_is_a_pendulum(model: str) -> None:
+    """Reference: analytic, a load on a rope below a clamped bar without mass at 60 degrees.
+
+    The compliance of the bar is (tan kL/k − L)/P under the force P along it, with k² = P/E J, that
+    of the pendulum l/(m g). The pendulum of 0.189 Hz was missing, and the first mode at 0.903 Hz.
+    """
+    text = 'title = "bar"\n' + STEEL + REST + table("[time]", duration=0.02)
+    text += table("[gravity]", angle=60.0) + table("[damping]", modal=0.02)
+    text += table("[[segment]]", name="bar", length=12.0, mass_per_length=0.1)
+    text += f"second_moment_of_area = 2e-5\n{CLAMPED}\n" + model
+    text += table("[hoist]", mass=800.0, stiffness=1e6, hanging=True, pendulum=6.0)
+    hertz, ratios = at_rest(Case.model_validate(tomllib.loads(text)))
+    weight, along = 800.0 * 9.80665, np.array([0.5, -np.sqrt(0.75)])
+    k = np.sqrt(-along[1] * weight / (2.1e11 * 2e-5))
+    bar = (np.tan(12.0 * k) / k - 12.0) / (-along[1] * weight)
+    compliance = bar * np.outer(along, along) + np.diag([1e-6, 6.0 / weight])
+    right = 1.0 / (2.0 * np.pi * np.sqrt(800.0 * np.linalg.eigvalsh(compliance)))
+    assert hertz[:2] == pytest.approx(right[::-1], rel=1e-3)
+    assert ratios[:4] == pytest.approx(0.02, rel=1e-6)
+
+
+@pytest.mark.parametrize("model", ["timoshenko", "bonded"])
+def test_a_load_swings_to_all_sides(model: str) -> None:
+    """Reference: analytic, √(g/l)/2π in both directions below a stiff boom, which lowers it a bit.
+
+    Bending a thousand times faster than the pendulum hid it as round-off.
+    """
+    case = select(shipped("slew"), "", [model])
+    stiff = replace(case.material, youngs_modulus=100.0 * case.material.youngs_modulus)
+    hertz, ratios = at_rest(case.model_copy(update={"material": stiff}))
+    right = np.sqrt(9.80665 / 5.0) / (2.0 * np.pi)
+    assert hertz[:2] == pytest.approx(right, rel=1e-3)
+    assert hertz[2] > 5.0
+    assert ratios[:2] == pytest.approx(0.02, rel=1e-4)
 
 
 def test_dropped_load(case: Case) -> None:
