@@ -7,7 +7,7 @@ supports, f the load, and w the static deflection.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -28,7 +28,7 @@ from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.line import Line
-from protractile.dynamics.stability import closing_load
+from protractile.dynamics.stability import closing_loads
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.compression import NO_COMPRESSION
@@ -161,21 +161,28 @@ def estimate_critical_factor(boom: Boom) -> float | None:
         return float("inf")
     try:
         with np.errstate(all="ignore"):
-            walls = station_compliance(boom, _closed_stiffness(boom))
-            return critical_factor(boom, Elements(boom).segments, walls)
+            segments = Elements(boom).segments
+            factors = [
+                critical_factor(boom, segments, station_compliance(boom, stiffness))
+                for stiffness in _closed_stiffness(boom)
+            ]
+            return min((factor for factor in factors if factor is not None), default=None)
     except NUMERICAL_ERRORS:
         return None
 
 
-def _closed_stiffness(boom: Boom) -> Array:
-    """Return the stiffness (num_rows,) in N/m of contacts at rest, 0 where they are open."""
+def _closed_stiffness(boom: Boom) -> Iterator[Array]:
+    """Yield the stiffness (num_rows,) in N/m of contacts at rest, 0 where they are open.
+
+    In space, contacts that no load presses are closed in one direction at a time.
+    """
     segments = [replace(segment, compression=NO_COMPRESSION) for segment in boom.segments]
     unloaded = replace(boom, segments=segments, axial_changes=())
     modes = BoomModes(unloaded, Elements(unloaded).segments)
     system = with_wall_springs(system_without_drives(unloaded, modes, EACH_SIDE), unloaded)
     system = system.gather_loads().at_time(0.0)
-    rest = equilibrium(system, closing_load(system, system.load_at(0.0)))
-    return closed_stiffness(system, rest)
+    for load in closing_loads(system, system.load_at(0.0)):
+        yield closed_stiffness(system, equilibrium(system, load))
 
 
 def telescoping_system(boom: Boom) -> GapSystem:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -20,15 +21,18 @@ _ROUND_OFF = 1.0e-13
 _CLOSING = 1.0e-3
 
 
-def closing_load(system: GapSystem, load: Array) -> Array:
-    """Return a load (num_modes,) in N/√kg with small forces across the tip.
+def closing_loads(system: GapSystem, load: Array) -> Iterator[Array]:
+    """Yield a load (num_modes,) in N/√kg with a small force across the tip in each direction.
 
-    They close the contacts that the load does not press, such as those of a column.
+    It closes the contacts that the load does not press, such as those of a column. Forces in both
+    directions at once would press contacts at right angles, each of which may then open: a softer
+    boom than one without forces.
     """
     size = float(np.linalg.norm(load)) or 1.0
-    names = [name for name in ("tip", "tip_lateral") if name in system.observers]
-    rows = [system.observers[name].row for name in names]
-    return load + sum(_CLOSING * size / np.linalg.norm(row) * row for row in rows)
+    for name in ("tip", "tip_lateral"):
+        if name in system.observers:
+            row = system.observers[name].row
+            yield load + _CLOSING * size / np.linalg.norm(row) * row
 
 
 def closed_contact_factor(system: GapSystem, geometric: Array, rest: Array) -> float:

@@ -16,7 +16,7 @@ from mpi4py import MPI
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.stability import closed_contact_factor, closing_load
+from protractile.dynamics.stability import closed_contact_factor, closing_loads
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.plating import PlatedMesh
@@ -81,7 +81,8 @@ class ReducedShell:
     def critical_factor_at(self, system: GapSystem, load: Array) -> float:
         """Return the buckling factor of all axial forces with the contacts closed under a load.
 
-        Small forces across the tip close the contacts that the load does not press.
+        A small force across the tip closes contacts that the load does not press. In space the
+        factor is the lower one of both directions.
 
         Args:
             system: completed system of this shell, at a fixed extension.
@@ -90,11 +91,11 @@ class ReducedShell:
         Raises:
             NumericsError: there is no equilibrium under the load.
         """
-        rest = equilibrium(system, closing_load(system, load))
         geometric = np.pad(self.geometric, (0, system.num_modes - len(self.geometric)))
         if system.geometric_stiffness.size:
             geometric = geometric + system.geometric_stiffness
-        return closed_contact_factor(system, geometric, rest)
+        rests = [equilibrium(system, closing) for closing in closing_loads(system, load)]
+        return min(closed_contact_factor(system, geometric, rest) for rest in rests)
 
 
 def reduce_boom(
