@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -24,6 +23,7 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom, ModelTable
 from protractile.runs.case.motions import hanging_load, with_elastic_drives, with_hanging_load
 from protractile.runs.case.schema import Case, Model
+from protractile.runs.pipeline.static_results import instants
 
 if TYPE_CHECKING:
     from protractile.dynamics.integrator import AdaptiveStep, FixedStep
@@ -58,14 +58,19 @@ def build_on(
     if context is not None and boom.axial_changes:
         system = replace(system, travels=context.comm.bcast(system.travels))
     if built.shell is not None and boom.compressed:
-        return replace(built, system=system, critical_factor=_factor_at_rest(built, system))
+        factor = _factor_at_rest(built, system, model_boom.boom, case.time.duration)
+        return replace(built, system=system, critical_factor=factor)
     return replace(built, system=system)
 
 
-def _factor_at_rest(built: BuiltModel, system: GapSystem) -> float | None:
-    """Return the buckling factor of a shell with the contacts that are closed at t = 0.
+def _factor_at_rest(
+    built: BuiltModel, system: GapSystem, boom: Boom, duration: float
+) -> float | None:
+    """Return the buckling factor of a shell with the contacts that are closed at rest.
 
-    It is at most that of bonded joints, which is the result without an equilibrium.
+    The states are that at t = 0, and those of extreme loads if axial forces change. The factor is
+    at most that of bonded joints. Without an equilibrium, and if the boom telescopes, it is also at
+    most that of the built model.
 
     Raises:
         NumericsError: the factor is 1 or less: the boom buckles.
@@ -73,10 +78,17 @@ def _factor_at_rest(built: BuiltModel, system: GapSystem) -> float | None:
     from protractile.shell_model.reduced_shell import refuse_buckling
 
     assert built.shell is not None
-    at_start, factors = system.gather_loads().at_time(0.0), [built.critical_factor]
-    with suppress(NumericsError):
-        factors.append(built.shell.critical_factor_at(at_start, at_start.load_at(0.0)))
-    factor = None if built.critical_factor is None else min(f for f in factors if f is not None)
+    loaded, own = system.gather_loads(), [built.shell.critical_factor]
+    changing = boom.axial_changes and not boom.telescopes
+    try:
+        for time in instants(loaded, duration) if changing else [0.0]:
+            at_time = loaded.at_time(time)
+            own.append(built.shell.critical_factor_at(at_time, loaded.load_at(time)))
+    except NumericsError:
+        own.append(built.critical_factor)
+    if boom.telescopes:
+        own.append(built.critical_factor)
+    factor = None if None in own else min(f for f in own if f is not None)
     refuse_buckling(factor)
     return factor
 

@@ -224,7 +224,8 @@ def buckling_table(results: Results) -> Table | None:
     if "shell" in {one.kind for one in models.values()}:
         notes.append(
             "Joints of beams count as bonded. Closed contacts of a shell have their stiffness at "
-            "t = 0."
+            "rest: at t = 0 and, if axial forces change, under their extremes. The factor of a "
+            "shell that telescopes is at most that of a beam."
         )
     return Table("Axial forces", columns, notes, "axial")
 
