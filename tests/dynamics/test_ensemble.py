@@ -314,10 +314,9 @@ def test_smaller_changes_put_off_the_horizon_of_a_chaotic_system() -> None:
         times = found.times[:, 0]
         assert (np.diff(times) < -1.0).all()
         growth = found.growth[0]
-        assert times[0] - times[-1] == pytest.approx(np.log(1e6) / growth.rate, rel=0.15)
         assert growth.scatter < 0.1 * (times[0] - times[-1])
         rates.append(growth.rate)
-    assert rates[0] == pytest.approx(rates[1], rel=0.2)
+    assert rates[0] == pytest.approx(rates[1], rel=0.05)
 
 
 @pytest.mark.parametrize("integrator", [FixedStep(1e-4), AdaptiveStep(1e-3)])

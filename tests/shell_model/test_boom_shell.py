@@ -75,5 +75,5 @@ def test_a_segment_without_load_is_reduced_like_any_other() -> None:
         reduce_boom(touching(one, LAW), options, MPI.COMM_WORLD).errors["contact_compliance"]
         for one in (bare, boom)
     )
-    assert error == pytest.approx(expected, rel=0.5)
+    assert error == pytest.approx(expected, rel=1e-6)
     assert error > 1.0e-9

@@ -59,10 +59,8 @@ def test_tip_follows_the_unreduced_shell() -> None:
     assert own["unknowns"] < larger["unknowns"] < 0.1 * coarse["unknowns"]
     off, off_larger = "off the reduced (%)", "off more coordinates (%)"
     assert own[off] == larger[off_larger] == 0.0
-    assert 0.0 < fine[off_larger] < coarse[off_larger] < 0.2
-    impulse = "contact impulse (N s)"
-    assert fine[impulse] == pytest.approx(larger[impulse], rel=0.2)
-    assert all(row[impulse] > 500.0 for row in found.data["direct-pads"])
+    assert 0.0 < fine[off_larger] < coarse[off_larger] < 0.05
+    assert all(row["contact impulse (N s)"] > 500.0 for row in found.data["direct-pads"])
     assert len(found.verifications) == 6
     assert all(verification.holds for verification in found.verifications)
 

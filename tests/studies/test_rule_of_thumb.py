@@ -96,11 +96,14 @@ def test_the_rule_lowers_the_tip_by_walls_as_statics_do() -> None:
 
 @pytest.mark.slow
 def test_error_of_a_short_boom_follows_the_rule() -> None:
-    """Reference: other code, the shell. Beams with springs are five times nearer than others."""
+    """Reference: other code, the shell: within 1 % without play and without shear. Contacts of a
+    boom with play are more compliant than the rule takes them, by up to 30 % of the small error of
+    Timoshenko beams. Beams with springs are five times nearer than others.
+    """
     name = "a third as long"
     sizes = Sizes(booms={name: BOOMS[name]}, mesh_size=0.3, plays=(0.0, 4e-3), periods=2.0)
     found = measure(BOOMS[name], sizes)
-    for beam in (EULER, PLAIN):
+    for beam, with_play in ((EULER, 0.02), (PLAIN, 0.3)):
         told = [found.rule.peak_error(beam, point) for point in found.points]
-        assert found.peaks[beam] == pytest.approx(told, rel=0.35)
+        assert (np.abs(found.peaks[beam] / told - 1.0) < [0.02, with_play]).all()
         assert (found.peaks[SPRUNG] < 0.2 * found.peaks[beam]).all()
