@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field as dataclass_field
 from dataclasses import fields, is_dataclass, replace
 from itertools import pairwise
-from numbers import Real
+from numbers import Integral, Real
 from typing import (
     TYPE_CHECKING,
     Annotated,
@@ -411,14 +411,15 @@ def resolve_segments(part: _Part, where: str, segments: Sequence[_Spanned]) -> _
         where: attribute of the boom with this part, for messages.
 
     Raises:
-        BoomError: a segment name is unknown.
+        BoomError: a segment is unknown.
     """
     names = [segment.name for segment in segments]
     for key in ("outer", "inner", "segment"):
-        name = getattr(part, key, None)
-        if isinstance(name, str):
-            if name not in names:
-                raise BoomError(f"{where}.{key}", f"{name!r} is no segment; give {choices(names)}")
+        name = getattr(part, key, 0)
+        if isinstance(name, str) and name in names:
             part = replace(part, **{key: names.index(name)})
+        elif not (isinstance(name, Integral) and 0 <= int(name) < len(names)):
+            what = f"{format_value(name)} is no segment; give {choices(names)}"
+            raise BoomError(f"{where}.{key}", what)
     outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
     return resolve_distances(part, segments[inner].start, segments[outer].end)

@@ -102,7 +102,7 @@ def units_of(table: Any, key: str, exponent: float = 2.0) -> tuple[str, ...]:
     if hasattr(table, "exponent_of"):
         n = table.exponent_of(key)
     n = n or exponent
-    powers = (("^(n+2)", f"^{n + 2.0:g}"), ("^n", f"^{n:g}"))
+    powers = (("^(n+2)", f"^{n + 2.0:g}"), ("^n", "" if n == 1.0 else f"^{n:g}"))
     return tuple(reduce(lambda unit, power: unit.replace(*power), powers, u) for u in units)
 
 

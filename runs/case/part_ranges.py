@@ -67,7 +67,9 @@ class UsualRange(NamedTuple):
 
     def likely_units(self, system: System) -> Iterator[tuple[str, float]]:
         """Yield the units in which the number is usual, and its values in SI units in these."""
-        for name in _LIKELY_UNITS.get(self.unit, ()):
+        units = _LIKELY_UNITS.get(self.unit, ())
+        # In a case in mm and t, numbers in m and kg are the likely mistake.
+        for name in units if system.name == "SI" else reversed(units):
             value = system.of(self.value, self.unit) * Unit.of(name).factor
             if self.least <= value <= self.most:
                 yield name, value
@@ -104,8 +106,24 @@ def material_ranges(tables: Mapping[str, Material]) -> Iterator[UsualRange]:
 def section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
     name, length, section = repr(segment.name), segment.length, segment.section
     low, high = length / 500.0, length / 5.0
+    if (lateral := segment.lateral) is not None:
+        for key, what, value in (
+            (
+                "lateral_second_moment_of_area",
+                "lateral second moment of area",
+                lateral.second_moment_of_area,
+            ),
+            ("torsion_constant", "torsion constant", lateral.torsion_constant),
+        ):
+            least, most = (factor * segment.second_moment_of_area for factor in (1e-3, 1e3))
+            yield UsualRange(
+                f"{where}.{key}", f"the {what} of {name}", value, "m^4", least, most, 100.0
+            )
+    mass_key, mass_what = f"{where}.mass_per_length", f"the mass per length of {name}"
+    mass_per_length = segment.mass_per_length
     if section is None:
-        area = segment.mass_per_length / segment.material.density
+        yield UsualRange(mass_key, mass_what, mass_per_length, "kg/m", 0.02, 2.0e4, 100.0)
+        area = mass_per_length / segment.material.density
         least, most = (area * (height / _HEIGHT_OVER_GYRATION) ** 2 for height in (low, high))
         where, what = f"{where}.second_moment_of_area", f"the second moment of area of {name}"
         yield UsualRange(where, what, segment.second_moment_of_area, "m^4", least, most, 25.0)
@@ -120,6 +138,8 @@ def section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
     yield UsualRange(
         f"{where}.section", what, wall.thickness, "m", wall.length / 1e3, np.inf, 100.0
     )
+    mass = segment.material.density * segment.area
+    yield UsualRange(mass_key, mass_what, mass_per_length, "kg/m", 0.5 * mass, 20.0 * mass, 50.0)
     if segment.head_section is None:
         plate_value, case_value = section.second_moment_of_area, segment.second_moment_of_area
         where, what = f"{where}.second_moment_of_area", "the second moment of area"

@@ -3,26 +3,56 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from math import prod
-from typing import NamedTuple
+from collections.abc import Callable, Iterator, Mapping
+from math import prod, sqrt
+from typing import Any, NamedTuple
 
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import names_of
-from protractile.geometry.joint import PadSize
-from protractile.geometry.support import Pin
+from protractile.geometry.joint import BareStop, PadSize, SlidePad
+from protractile.geometry.material import Material
+from protractile.geometry.segment import PointMass
+from protractile.geometry.stiffeners import Collar, Diaphragm
+from protractile.geometry.support import Pin, Support
 from protractile.runs.case.actions import STANDARD_GRAVITY
+from protractile.runs.case.contact import ContactTable, JointTable, RestitutionTable
+from protractile.runs.case.kinds.model import ModelTable
 from protractile.runs.case.limits import units_of, walk_tables
 from protractile.runs.case.load_tables import (
     AxialTable,
     FactorsTable,
+    GroundAccelerationTable,
+    HistoryTable,
     LoadCaseTable,
+    LoadTable,
     PayloadTable,
     ResistanceTable,
 )
-from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
-from protractile.runs.case.schema import Case, LifeTable
+from protractile.runs.case.motion_tables import (
+    DriveTable,
+    HoistTable,
+    LuffTable,
+    SlewTable,
+    TravelTable,
+    WindTable,
+)
+from protractile.runs.case.schema import (
+    BucklingTable,
+    Case,
+    DampingTable,
+    EnsembleTable,
+    GravityTable,
+    LifeTable,
+    LimitsTable,
+    StopTable,
+    TimeTable,
+    VelocityTable,
+)
+from protractile.runs.case.sections import SegmentTable
+
+# Larger numbers overflow in other units.
+_MOST = 1.0e300
 
 
 class Usual(NamedTuple):
@@ -43,71 +73,260 @@ class KeyValue(NamedTuple):
     usual: Usual
 
 
+# Usual range of a key: of its numbers, of each column of its pairs, or by its table and key.
+UsualOfKey = Usual | tuple[Usual | None, ...] | Callable[[Any, str], Usual]
+
+
 def key_values(case: Case, boom: Boom) -> Iterator[KeyValue]:
-    """Yield the numbers of a case whose tables have usual ranges."""
-    ranges = _ranges(case, boom)
+    """Yield the numbers of a case whose tables have usual ranges, of a list its extremes."""
+    ranges = usual_of_tables(case, boom)
     for where, table in walk_tables(case):
         for of, usual_of_keys in ranges.items():
             if not isinstance(table, of):
                 continue
             for key, usual in usual_of_keys.items():
                 value = getattr(table, names_of(type(table))[key])
-                size = prod(value) if isinstance(value, tuple) else value
-                if size is not None:
-                    unit = units_of(table, key)[0]
-                    yield KeyValue(f"{where}.{key}", abs(size), unit, usual)
+                if not value and value != 0.0:
+                    continue
+                one = usual(table, key) if callable(usual) else usual
+                columns = [one] if isinstance(one, Usual) else one
+                for column, unit, sizes in zip(
+                    columns, units_of(table, key), _columns(table, key, value), strict=False
+                ):
+                    for size in dict.fromkeys((max(sizes), min(sizes))):
+                        # 0 means none where it is not usual.
+                        if column is not None and (size or not column.least):
+                            yield KeyValue(f"{where}.{key}", size, unit, column)
 
 
-def _ranges(case: Case, boom: Boom) -> Mapping[type, Mapping[str, Usual]]:
+def _columns(table: Any, key: str, value: Any) -> list[list[float]]:
+    """Return the sizes of the numbers of a key, by the columns of its pairs."""
+    if isinstance(table, FactorsTable):
+        value = prod(value)
+    if isinstance(table, HistoryTable) and key == table.amount:
+        value *= max((abs(factor) for _, factor in table.table or ()), default=1.0)
+    if not isinstance(value, tuple):
+        return [[min(abs(value), _MOST)]]
+    columns = zip(*value, strict=True) if isinstance(value[0], tuple) else [value]
+    return [[min(abs(number), _MOST) for number in column] for column in columns]
+
+
+def usual_of_tables(case: Case, boom: Boom) -> Mapping[type, Mapping[str, UsualOfKey]]:
     """Return the usual ranges of keys by the classes of their tables.
 
-    Forces, masses and stiffnesses are compared with those of the boom, so that laboratory booms of
-    1 m and cranes of 60 m are within them.
+    Forces, masses, stiffnesses and dashpots are compared with those of the boom, so that laboratory
+    booms of 1 m and cranes of 60 m are within them.
     """
-    bare = boom.mass - (0.0 if case.payload is None else case.payload.mass)
-    weight = STANDARD_GRAVITY * bare
+    bare = sum(segment.mass_per_length * segment.length for segment in boom.segments)
+    weight, length = STANDARD_GRAVITY * bare, boom.length
+    most_axial = 100.0 * STANDARD_GRAVITY * boom.mass
     hoisted = STANDARD_GRAVITY * (bare if case.hoist is None else case.hoist.mass)
+    category = Usual("the detail category after EN 1993-1-9, in N/mm^2,", 36.0, 160.0, 10.0)
+    friction = Usual("the coefficient of friction", 0.0, 1.0, 10.0)
+    interference = Usual("the interference of shims", 0.0, 0.005, 20.0)
+    gravity = Usual("the acceleration of gravity", 0.0, 12.0, 50.0)
+    time = Usual("the time", 0.0, 1.0e5, 1.0e3)
+    frequency = Usual("the frequency", 1.0e-3, 1.0e3, 100.0)
+    exponent = Usual("the exponent of the contact law", 1.0, 3.0, 10.0)
+    contact_length = Usual("the length of contact", 1.0e-3, 0.2 * length, 20.0)
+    stiffener = Usual("the thickness of the stiffener", 3.0e-4, 0.2, 20.0)
+    stress = Usual("the limit of stresses", 1.0e6, 4.0e9, 100.0)
+    deflection = Usual("the limit of deflections", 1.0e-5 * length, length, 1.0e3)
+    speed = Usual("the speed at t = 0", 0.0, 20.0, 20.0)
+    turn = Usual("the rate of rotation at t = 0", 0.0, 20.0, 20.0)
+    moving = Usual("the speed of telescoping", 1.0e-4, 5.0, 200.0)
+    travel = Usual("the length of telescoping", 1.0e-3 * length, length, 1.0e3)
+    hoisting = Usual("the length of hoisting", 2.0e-3 * length, 200.0, 1.0e3)
+    turning = Usual("the angle of turning", 0.0, 720.0, 10.0)
+    # Twice the square root of the largest usual stiffness and the mass of the boom, for dashpots.
+    critical = 2.0e4 * bare * sqrt(STANDARD_GRAVITY / length)
+
+    def dashpot(of: str) -> Usual:
+        return Usual(f"the dashpot of the {of}", 0.0, critical, 1.0e4)
+
+    def spring(of: str) -> Usual:
+        least, most = (factor * weight / length for factor in (1.0, 1.0e8))
+        return Usual(f"the stiffness of the {of}", least, most, 1.0e4)
+
+    def contact(table: Any, key: str) -> Usual:
+        """Return the range in which half the weight presses a contact in by 1e-9 m at least."""
+        n = table.exponent_of(key) if isinstance(table, ContactTable) else table.exponent
+        return Usual("the stiffness of the contact", 0.0, 0.5 * weight / 1e-9 ** (n or 2.0), 1e3)
+
     return {
-        ResistanceTable: {
-            key: Usual("the resistance factor", 1.0, 3.0, 10.0) for key in names_of(ResistanceTable)
+        TimeTable: {
+            "duration": Usual("the duration", 1.0e-3, 1.0e5, 1.0e3),
+            "output_step": Usual("the output step", 1.0e-7, 10.0, 1.0e3),
+            "step": Usual("the time step", 1.0e-9, 1.0, 1.0e3),
         },
-        FactorsTable: {
-            key: Usual("the factor on loads", 0.0, 3.0, 10.0) for key in names_of(FactorsTable)
+        ModelTable: {"step": Usual("the time step", 1.0e-9, 1.0, 1.0e3)},
+        EnsembleTable: {"relative": Usual("the relative change", 0.0, 0.1, 20.0)},
+        Material: {
+            "poissons_ratio": Usual("Poisson's ratio", 0.0, 0.49, 10.0),
+            "yield_by_thickness": (
+                Usual("the thickness of a plate", 1.0e-4, 0.5, 100.0),
+                Usual("the yield strength", 1.0e7, 4.0e9, 10.0),
+            ),
         },
-        LifeTable: {"partial_factor": Usual("the partial factor of fatigue", 1.0, 2.0, 5.0)},
+        SegmentTable: {
+            "rotary_inertia": Usual("the rotary inertia", 0.0, bare * length / 25.0, 100.0),
+            "lateral_rotary_inertia": Usual(
+                "the lateral rotary inertia", 0.0, bare * length / 25.0, 100.0
+            ),
+            "polar_inertia": Usual("the polar inertia", 0.0, bare * length / 12.0, 100.0),
+            "height_to_width": Usual("the ratio of height to width", 0.1, 10.0, 10.0),
+            "lateral_load": Usual(
+                "the lateral load along the segment", 0.0, 100.0 * weight / length, 100.0
+            ),
+            "viscous_damping": Usual("the viscous damping", 0.0, 1.0e3 * bare / length, 1.0e4),
+        },
+        PointMass: {"mass": Usual("the mass at one place", 0.0, 50.0 * bare, 1.0e4)},
+        Collar: {"thickness": stiffener, "detail_category": category},
+        Diaphragm: {"thickness": stiffener, "detail_category": category},
+        Support: {
+            "stiffness": spring("support"),
+            "rotation_stiffness": Usual(
+                "the rotational stiffness of the support", 0.01 * weight * length,
+                1.0e7 * weight * length, 1.0e4,
+            ),
+            "dashpot": dashpot("support"),
+            "depth": Usual("the depth of the pin", 0.0, 0.3 * length, 20.0),
+        },
         Pin: {
             "diameter": Usual("the diameter of the pin", 0.003, 0.5, 20.0),
             "strength": Usual("the strength of the pin", 2.0e8, 2.0e9, 10.0),
         },
-        PadSize: {
-            "allowable_pressure": Usual("the allowable pressure of the pad", 1.0e6, 3.0e8, 1.0e5)
+        ContactTable: {
+            "stiffness": contact,
+            "stiffness_below": contact,
+            "exponent": exponent,
+            "force_table": (
+                Usual("the penetration", 0.0, 0.1 * length, 20.0),
+                Usual("the contact force", 0.0, 1.0e4 * weight, 1.0e4),
+            ),
         },
+        JointTable: {
+            "lateral_stiffness": contact,
+            "lateral_exponent": exponent,
+            "friction": friction,
+            "interference": interference,
+            "lateral_interference": interference,
+            "normal_forces": Usual("the normal force of friction", 0.0, 100.0 * weight, 1.0e3),
+            "contact_length": contact_length,
+            "dashpot": dashpot("joint"),
+            "detail_category": category._replace(least=12.0),
+        },
+        RestitutionTable: {
+            "coefficient": Usual("the coefficient of restitution", 0.05, 1.0, 50.0),
+            "speed": Usual("the impact speed", 1.0e-4, 10.0, 1.0e3),
+        },
+        PadSize: {
+            "length": Usual("the length of the pad", 0.001, 0.2 * length, 20.0),
+            "width": Usual("the width of the pad", 0.001, 0.1 * length, 20.0),
+            "offset": Usual("the offset of the pad", 0.0, 0.1 * length, 20.0),
+            "thickness": Usual("the thickness of the pad", 0.0005, 0.1, 10.0),
+            "modulus": Usual("the modulus of the pad", 1.0e6, 3.0e11, 100.0),
+            "allowable_pressure": Usual("the allowable pressure of the pad", 1.0e6, 3.0e8, 1.0e5),
+        },
+        SlidePad: {"shim": Usual("the shim beyond the play", 0.0, 0.02, 10.0)},
+        BareStop: {
+            "play": Usual("the play of the stop", 0.0, 0.1 * length, 20.0),
+            "contact_length": contact_length,
+        },
+        StopTable: {"stiffness": contact, "stiffness_below": contact, "exponent": exponent},
         Cylinder: {
             "stiffness": Usual(
-                "the stiffness of the cylinder", 1e2 * weight / boom.length,
-                1e7 * weight / boom.length, 1.0e4,
+                "the stiffness of the cylinder", 1e2 * weight / length,
+                1e7 * weight / length, 1.0e4,
             ),
             "capacity": Usual("the capacity of the cylinder", 0.5 * weight, 1e3 * weight, 1.0e3),
+            "depth": Usual("the depth of the lug", 0.0, 0.3 * length, 20.0),
+            "dashpot": dashpot("cylinder"),
+            "spread": Usual("the spread of the cylinders", 0.0, 0.3 * length, 20.0),
         },
-        AxialTable: {"mass": Usual("the mass on the rope", 0.0, 50.0 * bare, 1.0e4)},
-        PayloadTable: {"mass": Usual("the mass of the payload", 0.0, 50.0 * bare, 1.0e4)},
+        HistoryTable: {
+            "ramp": time._replace(what="the time of the ramp", least=1.0e-6),
+            "frequency": frequency,
+            "half_sine": time._replace(what="the time of the pulse", least=1.0e-6),
+            "table": (time, None),
+        },
+        # Smaller loads are compared with the boom as a whole.
+        LoadTable: {"magnitude": Usual("the load", 0.0, 1.0e6 * weight, 1.0e3)},
+        WindTable: {"force": Usual("the force on the load", 0.0, 10.0 * hoisted, 1.0e3)},
+        GroundAccelerationTable: {
+            "acceleration": Usual("the acceleration of the ground", 0.0, 100.0, 100.0)
+        },
+        AxialTable: {
+            "force": Usual("the size of the force along the boom", 0.0, most_axial, 100.0),
+            "mass": Usual("the mass on the rope", 0.0, 50.0 * bare, 1.0e4),
+        },
+        PayloadTable: {
+            "mass": Usual("the mass of the payload", 0.0, 50.0 * bare, 1.0e4),
+            "gravity": gravity,
+        },
         LoadCaseTable: {"payload": Usual("the payload", 0.0, 50.0 * bare, 1.0e4)},
+        GravityTable: {"acceleration": gravity},
+        TravelTable: {
+            "time": time._replace(what="the time of the motion", least=1.0e-4),
+            "ramp": time._replace(what="the time of the ramp"),
+            "start": time._replace(what="the time of the start"),
+            "shaper": (frequency, None),
+        },
+        DriveTable: {
+            "travel": travel,
+            "speed": moving,
+            "table": (time, travel._replace(least=0.0)),
+            "least_overlap": Usual("the least overlap", 0.0, 0.5 * length, 20.0),
+            "stiffness": spring("drive"),
+            "dashpot": dashpot("drive"),
+            "static_friction": friction,
+        },
         HoistTable: {
             "mass": Usual("the mass of the load", 0.0, 50.0 * bare, 1.0e4),
             "stiffness": Usual("the stiffness of the rope", hoisted / 2.0, hoisted / 1e-5, 100.0),
             "area": Usual("the cross-section of a fall", 1.0e-6, 1.0e-2, 10.0),
             "modulus": Usual("the modulus of the rope", 1.0e9, 3.0e11, 10.0),
             "length": Usual("the length of the falls", 0.3, 300.0, 20.0),
-            "speed": Usual("the speed of hoisting", 0.0, 5.0, 20.0),
-            "travel": Usual("the length of hoisting", 0.0, 200.0, 20.0),
+            "speed": Usual("the speed of hoisting", 0.003, 5.0, 1.0e3),
+            "travel": hoisting,
+            "table": (time, hoisting._replace(least=0.0)),
             "slack": Usual("the slack of the rope", 0.0, 5.0, 20.0),
             "pendulum": Usual("the length of the pendulum", 0.1, 200.0, 20.0),
             "phi_2_min": Usual("the least dynamic factor", 1.0, 2.0, 5.0),
             "beta_2": Usual("the increase of the dynamic factor", 0.0, 1.0, 20.0),
         },
         LuffTable: {
-            "travel": Usual("the angle of turning", 0.0, 720.0, 10.0),
+            "travel": turning,
             "speed": Usual("the speed of turning", 0.0, 30.0, 20.0),
+            "table": (time, turning),
         },
-        SlewTable: {"radius": Usual("the radius of the foot", 0.0, boom.length, 20.0)},
+        SlewTable: {"radius": Usual("the radius of the foot", 0.0, length, 20.0)},
+        VelocityTable: {"z": speed, "y": speed, "turn": turn, "lateral_turn": turn},
+        DampingTable: {
+            "modal": Usual("the damping ratio", 0.0, 0.1, 100.0),
+            "mass": Usual("the mass-proportional damping", 0.0, 50.0, 100.0),
+            "stiffness": Usual("the stiffness-proportional damping", 0.0, 0.1, 100.0),
+        },
+        LifeTable: {
+            "detail_category": category,
+            "partial_factor": Usual("the partial factor of fatigue", 1.0, 2.0, 5.0),
+        },
+        BucklingTable: {"curve": (Usual("the slenderness", 0.0, 10.0, 100.0), None)},
+        LimitsTable: {
+            "tip": deflection,
+            "tip_at_rest": deflection,
+            "tip_lateral": deflection,
+            "stress": stress,
+            "wall_stress": stress,
+            "pad_pressure": Usual("the limit of the pressure of pads", 1.0e5, 1.0e9, 1.0e3),
+            "first_frequency": Usual("the limit of the first frequency", 0.01, 1.0e3, 100.0),
+            "decay_time": Usual("the limit of the decay time", 0.01, 1.0e4, 1.0e3),
+            "settling_time": Usual("the limit of the settling time", 0.01, 1.0e4, 1.0e3),
+        },
+        FactorsTable: {
+            key: Usual("the factor on loads", 0.0, 3.0, 10.0) for key in names_of(FactorsTable)
+        },
+        ResistanceTable: {
+            key: Usual("the resistance factor", 1.0, 3.0, 10.0) for key in names_of(ResistanceTable)
+        },
     }  # fmt: skip
