@@ -1,5 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Array types for annotations. ``geometry`` is independent of this package and has its own."""
+"""Array types for annotations, and checks of numbers from Python.
+
+``geometry`` is independent of this package and has its own.
+"""
+
+import math
+from collections.abc import Sequence
+from numbers import Real
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -7,3 +15,16 @@ import numpy.typing as npt
 Array = npt.NDArray[np.float64]
 Indices = npt.NDArray[np.int64]
 Mask = npt.NDArray[np.bool_]
+
+
+def is_finite(value: Any) -> bool:
+    """Return whether a value is a number that a float can hold."""
+    try:
+        return isinstance(value, Real) and math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def are_finite(values: Any) -> bool:
+    """Return whether values are a sequence of such numbers."""
+    return isinstance(values, Sequence | np.ndarray) and all(map(is_finite, values))

@@ -10,13 +10,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field, replace
-from numbers import Real
 from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
 
-from protractile.dynamics.arrays import Array
+from protractile.dynamics.arrays import Array, is_finite
 
 # A negligible force in N, and logarithms of penetrations in m between which forces are
 # interpolated.
@@ -153,10 +152,6 @@ class ContactLaw(ABC):
         return np.asarray(sum(of_term(term, gaps) for term in contact_terms([self])))
 
 
-def _is_finite(value: Any) -> bool:
-    return isinstance(value, Real) and bool(np.isfinite(float(value)))
-
-
 @dataclass(frozen=True, slots=True)
 class Gap(ContactLaw):
     """Contact law with clearances and a factor, on one side or on both.
@@ -248,13 +243,13 @@ class PowerContact(ContactLaw):
 
     def __post_init__(self) -> None:
         for name, k in (("stiffness", self.stiffness), ("stiffness_below", self.below)):
-            if not (_is_finite(k) and k >= 0.0):
+            if not (is_finite(k) and k >= 0.0):
                 raise ValueError(f"{name} must be a number of N/m^n, not negative, got {k}")
         if self.stiffness == 0.0 and self.below == 0.0:
             raise ValueError("stiffness must be positive on one side at least, got 0.0 on both")
-        if not (_is_finite(self.exponent) and self.exponent >= 1.0):
+        if not (is_finite(self.exponent) and self.exponent >= 1.0):
             raise ValueError(f"exponent must be at least 1, got {self.exponent}")
-        if not (_is_finite(self.damping) and self.damping >= 0.0):
+        if not (is_finite(self.damping) and self.damping >= 0.0):
             raise ValueError(f"damping must be finite and not negative, got {self.damping} s/m")
 
     @property
@@ -348,9 +343,9 @@ def restitution_damping(restitution: float, speed: float) -> float:
     from scipy.optimize import brentq
 
     e = restitution
-    if not 0.0 < e <= 1.0:
+    if not (is_finite(e) and 0.0 < e <= 1.0):
         raise ValueError(f"restitution must be above 0 and at most 1, got {e}")
-    if not 0.0 < speed < np.inf:
+    if not (is_finite(speed) and speed > 0.0):
         raise ValueError(f"speed must be finite and positive, got {speed} m/s")
     # The root of the third-order series in χ v₀, whose relative error is of the order of (χ v₀)².
     first = 1.5 * (1.0 - e**2) / (1.0 + e**3)

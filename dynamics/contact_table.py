@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from protractile.dynamics.arrays import Array
+from protractile.dynamics.arrays import Array, are_finite
 from protractile.dynamics.contact import ContactLaw, Term
 
 
@@ -36,6 +36,8 @@ class TableContact(ContactLaw):
     damping: float = 0.0
 
     def __post_init__(self) -> None:
+        if not (are_finite(self.depths) and are_finite(self.forces)):
+            raise ValueError("depths and forces must be sequences of finite numbers")
         if not 0 < len(self.depths) == len(self.forces):
             raise ValueError("a table needs one force for each depth, and one at least")
         if not (np.isfinite(self._slopes()).all() and (np.diff([0.0, *self.depths]) > 0.0).all()):

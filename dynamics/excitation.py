@@ -12,7 +12,7 @@ from typing import Protocol, runtime_checkable
 
 import numpy as np
 
-from protractile.dynamics.arrays import Array
+from protractile.dynamics.arrays import Array, are_finite, is_finite
 
 
 @runtime_checkable
@@ -105,7 +105,7 @@ class Sine:
 
     def __post_init__(self) -> None:
         _check_positive("frequency", self.frequency, "Hz")
-        if not np.isfinite(self.phase):
+        if not is_finite(self.phase):
             raise ValueError(f"phase must be finite, got {self.phase} rad")
 
     @property
@@ -142,13 +142,13 @@ class PiecewiseLinear:
     fastest = 0.0
 
     def __post_init__(self) -> None:
+        if not (are_finite(self.times) and are_finite(self.values)):
+            raise ValueError("times and values must be finite numbers in two sequences")
         if len(self.times) != len(self.values) or len(self.times) == 0:
             raise ValueError(
                 f"a history needs one value for each time, got {len(self.values)} for "
                 f"{len(self.times)}"
             )
-        if not np.isfinite([*self.times, *self.values]).all():
-            raise ValueError("times and values must be finite")
         if (np.diff(self.times) <= 0.0).any():
             raise ValueError("times must rise")
 
@@ -243,6 +243,8 @@ class SCurve:
 
     def __post_init__(self) -> None:
         _check_positive("duration", self.duration, "s")
+        if not (is_finite(self.travel) and is_finite(self.start)):
+            raise ValueError(f"travel and start must be finite, got {self.travel} and {self.start}")
 
     @property
     def kinks(self) -> tuple[float, float]:
@@ -294,7 +296,9 @@ class Stroke:
 
     def __post_init__(self) -> None:
         _check_positive("speed", self.speed, "m/s")
-        if not 0.0 <= self.ramp < np.inf:
+        if not is_finite(self.travel):
+            raise ValueError(f"travel must be finite, got {self.travel}")
+        if not (is_finite(self.ramp) and self.ramp >= 0.0):
             raise ValueError(f"ramp must be finite and not negative, got {self.ramp} s")
         if self.speed * self.ramp > abs(self.travel):
             raise ValueError(
@@ -398,7 +402,7 @@ class Shaped:
 
     def __post_init__(self) -> None:
         _check_positive("frequency", self.frequency, "Hz")
-        if not 0.0 <= self.damping < 1.0:
+        if not (is_finite(self.damping) and 0.0 <= self.damping < 1.0):
             raise ValueError(f"damping must be at least 0 and below 1, got {self.damping}")
 
     @property
@@ -491,5 +495,5 @@ def is_constant(history: History) -> bool:
 
 
 def _check_positive(name: str, value: float, unit: str) -> None:
-    if not 0.0 < value < np.inf:
+    if not (is_finite(value) and value > 0.0):
         raise ValueError(f"{name} must be finite and positive, got {value} {unit}")

@@ -11,7 +11,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from protractile.dynamics.arrays import Array
+from protractile.dynamics.arrays import Array, is_finite
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.kernels.march import State
 from protractile.dynamics.motion import MOST_STEPS, Motion
@@ -170,7 +170,7 @@ class AdaptiveStep:
     tolerance: float = TOLERANCE
 
     def __post_init__(self) -> None:
-        if not 0.0 < self.tolerance < 1.0:
+        if not (is_finite(self.tolerance) and 0.0 < self.tolerance < 1.0):
             raise ValueError(f"tolerance must be between 0 and 1, got {self.tolerance}")
 
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:

@@ -8,7 +8,7 @@ from numbers import Real
 
 import numpy as np
 
-from protractile.dynamics.arrays import Array
+from protractile.dynamics.arrays import Array, is_finite
 from protractile.dynamics.damping import with_modal_damping
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.gap_system import GapSystem
@@ -49,7 +49,7 @@ class Motion:
     def __post_init__(self) -> None:
         for name in ("duration", "output_step"):
             time = getattr(self, name)
-            if not (isinstance(time, Real) and 0.0 < float(time) < np.inf):
+            if not (is_finite(time) and time > 0.0):
                 raise ValueError(f"{name} must be finite and positive, got {time!r} s")
         if self.duration > MOST_OUTPUTS * self.output_step:
             raise ValueError(

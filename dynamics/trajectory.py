@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from numbers import Real
 from typing import TYPE_CHECKING, ClassVar, NamedTuple
 
 import numpy as np
@@ -258,8 +259,8 @@ class Trajectory:
         The prominence of a peak is at least a fifth of the whole range, which excludes the ripple
         of micro-impacts. Both values are NaN without a peak.
         """
-        deflection = np.asarray(self.data[observer].values)
-        prominence = 0.2 * np.ptp(deflection)
+        deflection = self._values(observer)
+        prominence = 0.2 * float(np.ptp(deflection))
         off = deflection - deflection[0]
         side = np.sign(off[np.argmax(np.abs(off) > prominence)])
         peak = _first_prominent(side * deflection, prominence)
@@ -284,14 +285,22 @@ class Trajectory:
         Raises:
             ValueError: the times differ, or the comparison ends before they begin.
         """
+        if not isinstance(other, Trajectory):
+            raise ValueError(f"other must be a Trajectory, got {other!r}")
         if not np.array_equal(self.time, other.time):
             raise ValueError("the motions must have the same times")
-        if not until > self.time[0]:
+        if not (isinstance(until, Real) and until > self.time[0]):
             raise ValueError(f"until must be after the first time, got {until!r} s")
-        one, two = (np.asarray(motion.data[name].values) for motion in (self, other))
+        one, two = (motion._values(name) for motion in (self, other))
         return PointwiseDifferences.from_curves(
-            one, two, self.time, min(until, float(self.time[-1]))
+            one, two, self.time, float(min(until, self.time[-1]))
         )
+
+    def _values(self, name: str) -> Array:
+        if not (isinstance(name, str) and name in self.data):
+            known = ", ".join(map(str, self.data))
+            raise ValueError(f"the motion has no output {name!r}; it has {known}")
+        return np.asarray(self.data[name].values)
 
 
 def prominent_peaks(values: Array, prominence: float) -> list[int]:

@@ -13,7 +13,7 @@ from functools import cached_property
 from protractile.geometry.axial import AxialChange, moving_force_places
 from protractile.geometry.boom_checks import check_boom
 from protractile.geometry.cylinder import Cylinder
-from protractile.geometry.fields import BoomError, format_value, resolve_segments
+from protractile.geometry.fields import BoomError, check_kind, format_value, resolve_segments
 from protractile.geometry.joint import Joint, PadSize, SlidePad, Stop
 from protractile.geometry.load import Load
 from protractile.geometry.material import Material
@@ -98,14 +98,16 @@ class Boom:
     axial_changes: Sequence[AxialChange] = ()
 
     def __post_init__(self) -> None:
+        for group, kind in _KINDS.items():
+            parts = getattr(self, group)
+            if not isinstance(parts, list | tuple):
+                what = f"must be a list or a tuple, got {format_value(parts)}"
+                raise BoomError(group, what)
+            for number, part in enumerate(parts):
+                check_kind(f"{group}[{number}]", part, kind)
         if not self.segments:
             raise BoomError("segments", "a boom needs at least one segment")
         object.__setattr__(self, "segments", tuple(self.segments))
-        for group, kind in _KINDS.items():
-            for number, part in enumerate(getattr(self, group)):
-                if not isinstance(part, kind):
-                    what = f"must be a {kind.__name__}, got {format_value(part)}"
-                    raise BoomError(f"{group}[{number}]", what)
         for group in [*_KINDS][1:]:
             parts = tuple(
                 resolve_segments(part, f"{group}[{number}]", self.segments)

@@ -244,7 +244,37 @@ def error_in_python(table: Any, error: ValidationError) -> BoomError:
 
 def is_positive(value: Any) -> bool:
     """Return whether a value is a finite number above 0."""
-    return isinstance(value, Real) and 0.0 < float(value) < math.inf
+    return is_finite(value) and value > 0.0
+
+
+def is_finite(value: Any) -> bool:
+    """Return whether a value is a number that a float can hold."""
+    try:
+        return isinstance(value, Real) and math.isfinite(value)
+    except OverflowError:
+        return False
+
+
+def check_numbers(where: str, **numbers: float) -> None:
+    """Check that arguments from Python are finite numbers.
+
+    Raises:
+        BoomError: an argument is none.
+    """
+    for name, value in numbers.items():
+        if not is_finite(value):
+            what = f"must be a finite number, got {format_value(value)}"
+            raise BoomError(f"{where}.{name}", what)
+
+
+def check_kind(where: str, value: Any, kind: type) -> None:
+    """Check that an argument from Python is of a class.
+
+    Raises:
+        BoomError: it is of another one.
+    """
+    if not isinstance(value, kind):
+        raise BoomError(where, f"must be a {kind.__name__}, got {format_value(value)}")
 
 
 @part
@@ -266,7 +296,7 @@ def _place(value: Any) -> Any:
     if isinstance(value, Distance):
         return value
     if is_number(value):
-        if not math.isfinite(value):
+        if not is_finite(value):
             raise PydanticKnownError("finite_number")
         return float(value)
     distances = {value: 0.0} if isinstance(value, str) else value

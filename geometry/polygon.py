@@ -18,7 +18,7 @@ from numbers import Real
 import numpy as np
 
 from protractile.geometry.arrays import Array, Indices
-from protractile.geometry.fields import is_positive
+from protractile.geometry.fields import format_value, is_positive
 from protractile.geometry.section import (
     COMPONENT,
     OUTWARDS,
@@ -198,6 +198,9 @@ def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> S
     Raises:
         SectionError: as in :class:`PolygonSection`.
     """
+    for name, values in (("corners", corners), ("thicknesses", thicknesses)):
+        if not isinstance(values, Sequence | np.ndarray):
+            raise SectionError(f"{name} must be a sequence, got {format_value(values)}")
     section = PolygonSection(tuple(corners), tuple(thicknesses))
     if len(section.plates) != 4 or len(section.faces) != 4:
         # Tapers need corners in the order of plates.
@@ -215,8 +218,10 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
             f"{len(corners)} corners have as many plates between them, got {len(thicknesses)} "
             "thicknesses; give one for each plate, the last one from the last corner to the first"
         )
+    if not all(isinstance(corner, Sequence | np.ndarray) for corner in corners):
+        raise SectionError(f"corners must be pairs of numbers, got {format_value(corners)}")
     for place in (number for corner in corners for number in corner):
-        if not (isinstance(place, Real) and abs(float(place)) < _LARGEST):
+        if not (isinstance(place, Real) and abs(place) < _LARGEST):
             raise SectionError(f"corners must be numbers of m below {_LARGEST:g}, got {place}")
     for thickness in thicknesses:
         if not (is_positive(thickness) and thickness < _LARGEST):

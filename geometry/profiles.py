@@ -11,6 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from protractile.geometry.arrays import Array
+from protractile.geometry.fields import check_numbers
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.section import SectionError
 
@@ -32,6 +33,7 @@ def hexagon(
     Raises:
         SectionError: the top is not narrower than the section, or as in :class:`PolygonSection`.
     """
+    check_numbers("hexagon", height=height, width=width, flat=flat)
     if not flat < width:
         raise SectionError(f"flat must be below the width of {width:g} m, got {flat:g}")
     return _mirror_right_half(
@@ -55,6 +57,7 @@ def octagon(
     Raises:
         SectionError: the cuts remove a whole side, or as in :class:`PolygonSection`.
     """
+    check_numbers("octagon", height=height, width=width, chamfer=chamfer)
     if not 2.0 * chamfer < min(height, width):
         raise SectionError(
             f"chamfer must be below half the height and half the width, "
@@ -85,6 +88,7 @@ def u_section(
         SectionError: the bends are larger than the section or have no facet, or as in
             :class:`PolygonSection`.
     """
+    check_numbers("u_section", height=height, width=width, radius=radius, facets=facets)
     if facets < 1:
         raise SectionError(f"a bend has one facet at least, got {facets}")
     most = min(0.5 * width, height)

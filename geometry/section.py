@@ -13,7 +13,7 @@ for the outermost segment, and the clearance within the next larger section for 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import MISSING, dataclass, fields
 from typing import Literal, NamedTuple, Protocol
 
 import numpy as np
@@ -279,7 +279,8 @@ class BoxSection(Section):
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
-            if value is not None and not is_positive(value):
+            needed = field.default is MISSING
+            if (needed or value is not None) and not is_positive(value):
                 raise SectionError(f"{field.name} must be a positive number of m, got {value}")
         for name, other in (("bottom_flange", self.flange), ("left_web", self.web)):
             if getattr(self, name) == other:

@@ -23,6 +23,8 @@ from protractile.geometry.fields import (
     Number,
     Place,
     Positive,
+    check_kind,
+    format_value,
     part,
     resolve_distances,
 )
@@ -158,6 +160,10 @@ class Segment:
         Args:
             name, start, end, material, section, others: as in :class:`Segment`.
         """
+        check_kind("Segment.material", material, Material)
+        if not hasattr(section, "plates"):
+            what = f"must be a section such as a BoxSection, got {format_value(section)}"
+            raise BoomError("Segment.section", what)
         head = others.get("head_section")
         numbers = middle_section(section, head)
         density, second_moment = material.density, numbers.second_moment_of_area

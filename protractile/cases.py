@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
+from protractile.geometry.fields import format_value
 from protractile.runs.case import reading
 from protractile.runs.case.build import hold_ground
 from protractile.runs.case.messages import BadInput, refusing
@@ -56,6 +57,9 @@ def load_case(source: str | Path | Mapping[str, Any]) -> Case:
     """
     if isinstance(source, Mapping):
         return reading.check_tables(source, _CASE).case
+    if not isinstance(source, str | Path):
+        what = f"must be a path or a dictionary, got {format_value(source)}"
+        raise BadInput(_CASE, "source", what)
     return reading.load(str(source))
 
 
@@ -71,7 +75,7 @@ def check(case: Case) -> Check:
     """
     from protractile.runs.check import check_case
 
-    return check_case(CheckedCase(case))
+    return check_case(CheckedCase(_checked(case)))
 
 
 def change(case: Case, **values: Any) -> Case:
@@ -91,7 +95,7 @@ def change(case: Case, **values: Any) -> Case:
     Raises:
         BadInput: a key is unknown or a value is invalid.
     """
-    tables = case.model_dump(mode="json", by_alias=True, exclude_none=True)
+    tables = _checked(case).model_dump(mode="json", by_alias=True, exclude_none=True)
     for key, value in values.items():
         if isinstance(value, float) and not math.isfinite(value):
             raise BadInput(_CASE, key, f"must be a finite number, got {value}")
@@ -131,7 +135,7 @@ def run_case(
         BadInput: the case has no model with a given name, or the folder contains other files.
         NumericsError: no model can be computed.
     """
-    chosen = reading.select(case, _CASE, models)
+    chosen = reading.select(_checked(case), _CASE, _names(models))
     path = None if folder is None else prepare(str(folder), _CASE)
     run = run_models(chosen, _CASE, RunContext(single_rank(chosen), cache=Cache.of_user()))
     assert run is not None
@@ -170,6 +174,8 @@ def tables(results: Results) -> dict[str, pd.DataFrame]:
     """
     from protractile.runs.report.document import tables_by_part
 
+    if not isinstance(results, Results):
+        raise BadInput("results", "results", f"must be Results, got {format_value(results)}")
     of_parts = tables_by_part(results).values()
     return {table.name: table.flat_frame for several in of_parts for table in several}
 
@@ -208,8 +214,9 @@ def sweep(
     from protractile.runs.sweep.run import prepare as prepare_sweep
 
     plan_of = partial(
-        points.plan, _CASE, models=models, mesh_size=None, reference=against, whole=case
-    )
+        points.plan, _CASE, models=_names(models), mesh_size=None, reference=against,
+        whole=_checked(case),
+    )  # fmt: skip
     plan = plan_of(_options(vary))
     bound = None if until is None else search.parse_bound(until, plan)
     with TemporaryDirectory() as temporary, workers.workers(None) as pool:
@@ -245,10 +252,35 @@ def frequencies(
     """
     from protractile.runs.sweep import frequencies
 
-    plan = points.plan(_CASE, _options(vary or {}), models, None, whole=case)
+    plan = points.plan(_CASE, _options(vary or {}), _names(models), None, whole=_checked(case))
     cases = [point.case for point in plan.points]
     results = frequencies.measure(cases, single_rank(cases[0]), Cache.of_user())
     return frequencies.gather(plan, results)
+
+
+def _checked(case: Case) -> Case:
+    """Return a case.
+
+    Raises:
+        BadInput: it is another object.
+    """
+    if not isinstance(case, Case):
+        what = f"must be a Case, such as load_case returns, got {format_value(case)}"
+        raise BadInput(_CASE, "case", what)
+    return case
+
+
+def _names(models: Sequence[str] | None) -> Sequence[str] | None:
+    """Return the names of models.
+
+    Raises:
+        BadInput: they are no list of names.
+    """
+    several = isinstance(models, list | tuple) and all(isinstance(name, str) for name in models)
+    if models is not None and not several:
+        what = f"must be a list of names, got {format_value(models)}"
+        raise BadInput(_CASE, "models", what)
+    return models
 
 
 def _options(vary: Mapping[str, Sequence[float]]) -> list[str]:
@@ -257,6 +289,9 @@ def _options(vary: Mapping[str, Sequence[float]]) -> list[str]:
     Raises:
         BadInput: the values of a key are no list of numbers.
     """
+    if not isinstance(vary, Mapping):
+        what = f"must be a dictionary of keys and lists of numbers, got {format_value(vary)}"
+        raise BadInput(_CASE, "vary", what)
     options = []
     for key, values in vary.items():
         listed = isinstance(values, Iterable) and not isinstance(values, str)

@@ -7,11 +7,20 @@ from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from typing import Any
 
+from pydantic import ValidationError
+
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, BoomError, Direction, Segment, Stop
-from protractile.geometry.fields import Distance, at, resolve_segments
+from protractile.geometry.fields import (
+    Distance,
+    at,
+    check_kind,
+    check_numbers,
+    error_in_python,
+    resolve_segments,
+)
 from protractile.geometry.joint import BareStop
 from protractile.geometry.load import AngularAcceleration, Load, Moment, PartialLoad
 from protractile.geometry.typography import choices
@@ -108,11 +117,16 @@ def with_weight(
     Raises:
         BoomError: the boom has axial forces or its weight already, or a segment is unknown.
     """
+    check_kind("with_weight.boom", boom, Boom)
     if any(segment.compression for segment in boom.segments):
         raise BoomError("boom", "has axial forces already; give all of them as thrusts at once")
     if any(one.inertial and one.history == Step() for one in boom.loads):
         raise BoomError("boom", "has its weight already; give it once")
-    gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
+    check_numbers("with_weight", angle=angle, acceleration=acceleration)
+    try:
+        gravity = GravityTable(acceleration=float(acceleration), angle=float(angle))
+    except ValidationError as error:
+        raise error_in_python(GravityTable, error) from None
     segments = with_compression(boom.segments, boom.joints, thrusts, gravity.along)
     weights = _inertia_loads(-gravity.across, "z", Step(), segments)
     return replace(boom, segments=segments, loads=(*boom.loads, *weights))

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from random import Random
 
 from protractile.runs.case.schema import case_schema
-from tests.fuzz.valid import TABLES, with_table
+from tests.fuzz.valid import TABLES, fill, with_table
 from tests.fuzz.values import any_value
 
 _LINE = re.compile(r"^(?P<key>[a-z_]+) = (?P<value>.+?)(?P<rest>\s*#.*)?$", re.MULTILINE)
@@ -69,7 +69,7 @@ def _one_more_key(text: str, random: Random) -> str:
 
 def _one_more_table(text: str, random: Random) -> str:
     change = random.choice((_other_value, _other_number, _one_more_key))
-    return with_table(text, change(random.choice(TABLES), random), random)
+    return with_table(text, change(fill(random.choice(TABLES), random), random), random)
 
 
 def _tables_again(text: str, random: Random) -> str:

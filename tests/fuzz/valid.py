@@ -246,7 +246,7 @@ _CYLINDER = next(table for table in TABLES if table.startswith("[[cylinder]]"))
 def small(random: Random) -> str:
     """Return a case of two boxes with usual numbers, and a few tables more."""
     kind = random.choice(("clamped", "hinged"))
-    text = _fill(_SMALL.replace("KIND", kind), random)
+    text = fill(_SMALL.replace("KIND", kind), random)
     if kind == "hinged":
         text = with_table(text, _CYLINDER, random)
     for table in random.sample(TABLES, random.choice((0, 1, 1, 2, 3))):
@@ -264,7 +264,8 @@ def varied(text: str, random: Random) -> str:
     return text
 
 
-def _fill(template: str, random: Random) -> str:
+def fill(template: str, random: Random) -> str:
+    """Return a template with a number in place of each pair of limits."""
     return re.sub(
         r"<(\S+) (\S+)>",
         lambda ends: f"{random.uniform(float(ends[1]), float(ends[2])):.4g}",
@@ -275,7 +276,7 @@ def _fill(template: str, random: Random) -> str:
 def with_table(text: str, table: str, random: Random) -> str:
     """Return a case file with a filled table, which replaces one that may not be repeated."""
     segments = re.findall(r'\[\[segment\]\]\nname = "(.+)"', text) or ["base", "fly"]
-    table = _fill(table, random).replace("BASE", segments[0]).replace("FLY", segments[-1])
+    table = fill(table, random).replace("BASE", segments[0]).replace("FLY", segments[-1])
     heading = re.escape(table.splitlines()[0])
     if not heading.startswith(r"\[\["):
         text = re.sub(rf"(?ms)^{heading}.*?(?=^\[)", "", text)
