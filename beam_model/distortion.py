@@ -19,10 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag, null_space
-from scipy.sparse import csc_matrix, kron
 from scipy.sparse.linalg import splu
 
-from protractile.beam_model.hermite import HermiteAxis
+from protractile.beam_model.hermite import HermiteAxis, sum_of_products
 from protractile.geometry.arrays import Array
 from protractile.geometry.material import Material
 from protractile.geometry.polygon import ShearFlow
@@ -128,16 +127,11 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
     rows = [np.kron(axis.at(press.x), frames[collars_at(press.x)].row(press)) for press in presses]
     compliance = np.zeros((len(rows),) * 2)
     if np.any(rows):
-        stiffness = 0.0
+        lefts, rights = list[Array](), list[Array]()
         for collars in dict.fromkeys(around):
             frame = frames[collars]
-            within = np.array([one == collars for one in around], dtype=float)
-            for along, own in zip(
-                axis.integrals(within),
-                (frame.bending, frame.twisting, frame.warping),
-                strict=False,
-            ):
-                stiffness = stiffness + kron(along, own)
+            lefts += axis.integrals(np.array([one == collars for one in around], dtype=float))[:3]
+            rights += [frame.bending, frame.twisting, frame.warping]
         free = np.ones((axis.nodes.size, 2, rows[0].size // axis.nodes.size // 2), dtype=bool)
         for x in closed:
             free[np.abs(axis.nodes - x) <= near, 0] = False
@@ -145,13 +139,14 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
             if support.kind == "clamped":
                 free[np.abs(axis.nodes - support.x) <= near] = False
         forces = np.array(rows)[:, free.ravel()]
-        solve = splu(csc_matrix(stiffness)[free.ravel()][:, free.ravel()]).solve
+        solve = splu(sum_of_products(lefts, rights, free.ravel())).solve
         compliance = np.asarray(forces @ solve(forces.T))
     compliance.flags.writeable = False
     return compliance
 
 
-def _frame(material: Material, section: Section, collars: Sequence[Collar]) -> _Frame:
+@lru_cache(maxsize=512)
+def _frame(material: Material, section: Section, collars: tuple[Collar, ...]) -> _Frame:
     """Return the frame of a section with the thickness of collars."""
     plates, count = section.plates, len(section.plates)
     folds = _modes(section)
@@ -176,8 +171,8 @@ def _frame(material: Material, section: Section, collars: Sequence[Collar]) -> _
             material.youngs_modulus * thickness**3 / (12.0 * (1.0 - material.poissons_ratio**2))
         )
         axes.append(axis)
-        bending.append(axis.integrals(rigidity)[2].toarray())
-        twisting.append(axis.integrals(material.shear_modulus * thickness**3 / 3.0)[1].toarray())
+        bending.append(axis.integrals(rigidity)[2])
+        twisting.append(axis.integrals(material.shear_modulus * thickness**3 / 3.0)[1])
         areas.append(thickness @ np.diff(nodes))
     first = np.cumsum([0, *(2 * axis.nodes.size for axis in axes)])
     # Values at the ends of plates are those of the folds, and adjacent plates have the same slope.

@@ -3,6 +3,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import cached_property
+
 import numpy as np
 from scipy.interpolate import CubicHermiteSpline
 from scipy.sparse import csc_matrix
@@ -11,6 +14,26 @@ from protractile.geometry.arrays import Array
 
 # Gauss points and weights, exact for products of two cubics.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+
+
+def sum_of_products(lefts: Sequence[Array], rights: Sequence[Array], free: Array) -> csc_matrix:
+    """Return the sum of Kronecker products of sparse matrices, with the free unknowns alone.
+
+    Args:
+        lefts: matrices (num_lefts, num_lefts).
+        rights: a matrix (num_rights, num_rights) for each of ``lefts``.
+        free: whether each unknown (num_lefts · num_rights,) is free.
+    """
+    left, right = np.array(lefts), np.array(rights)
+    of_left, of_right = left.any(axis=0).nonzero(), right.any(axis=0).nonzero()
+    values = left[:, *of_left].T @ right[:, *of_right]
+    number = np.where(free, np.cumsum(free) - 1, -1).reshape(left.shape[1], right.shape[1])
+    row, column = (
+        number[one[:, None], other].ravel() for one, other in zip(of_left, of_right, strict=True)
+    )
+    kept = (row >= 0) & (column >= 0)
+    shape = (np.count_nonzero(free),) * 2
+    return csc_matrix((values.ravel()[kept], (row[kept], column[kept])), shape)
 
 
 class HermiteAxis:
@@ -23,18 +46,24 @@ class HermiteAxis:
         self._shapes = CubicHermiteSpline(self.nodes, identity[::2], identity[1::2])
         self._sums = self._shapes.antiderivative()
 
-    def integrals(self, weights: Array) -> list[csc_matrix]:
+    def integrals(self, weights: Array) -> list[Array]:
         """Return ∫ φφ, ∫ φ′φ′, ∫ φ″φ″ and ∫ φφ″ of the functions φ, each (num_dofs, num_dofs).
 
         Args:
             weights: factors (num_elements,) of the elements.
         """
         lengths = np.diff(self.nodes)[:, None]
-        x = (self.nodes[:-1, None] + 0.5 * lengths * (1.0 + _PLACES)).ravel()
         scale = (0.5 * lengths * weights[:, None] * _WEIGHTS).ravel()[:, None]
-        value, slope, curvature = (self._shapes(x, order) for order in range(3))
+        value, slope, curvature = self._at_gauss_points
         pairs = (value, value), (slope, slope), (curvature, curvature), (value, curvature)
-        return [csc_matrix((scale * left).T @ right) for left, right in pairs]
+        return [np.asarray((scale * left).T @ right) for left, right in pairs]
+
+    @cached_property
+    def _at_gauss_points(self) -> list[Array]:
+        """The functions and their first two derivatives, each (num_points, num_dofs)."""
+        lengths = np.diff(self.nodes)[:, None]
+        x = (self.nodes[:-1, None] + 0.5 * lengths * (1.0 + _PLACES)).ravel()
+        return [self._shapes(x, order) for order in range(3)]
 
     def mean(self, start: float, end: float) -> Array:
         """Return the row (num_dofs,) of the mean value between two positions in m."""

@@ -17,13 +17,12 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag
-from scipy.sparse import csc_matrix, kron
 from scipy.sparse.linalg import splu
 
 from protractile.beam_model.boom_modes import ContactPlace, StationCompliance
 from protractile.beam_model.calibration import with_springs
 from protractile.beam_model.distortion import Press, distortion_compliance
-from protractile.beam_model.hermite import HermiteAxis
+from protractile.beam_model.hermite import HermiteAxis, sum_of_products
 from protractile.beam_model.segment_model import EACH_SIDE
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
@@ -230,19 +229,14 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
 
     modulus, ratio = segment.material.youngs_modulus, segment.material.poissons_ratio
     walls = np.array([section.plates[number].thickness for number in plates])
-    stiffness = 0.0
+    lefts, rights = list[Array](), list[Array]()
     kinds, kind = np.unique(doubled, axis=0, return_inverse=True)
     for number, more in enumerate(kinds):
         rigidity = modulus * (walls + more) ** 3 / (12.0 * (1.0 - ratio**2))
         x0, x1, x2, x02 = along_x.integrals((kind == number).astype(float))
         s0, s1, s2, s02 = around.integrals(rigidity)
-        stiffness = (
-            stiffness
-            + kron(x2, s0)
-            + kron(x0, s2)
-            + ratio * (kron(x02, s02.T) + kron(x02.T, s02))
-            + 2.0 * (1.0 - ratio) * kron(x1, s1)
-        )
+        lefts += [x2, x0, ratio * x02, ratio * x02.T, 2.0 * (1.0 - ratio) * x1]
+        rights += [s0, s2, s02.T, s02, s1]
     # Values on folds and diaphragms are zero; slopes are free.
     free = np.ones((along_x.nodes.size, 2, around.nodes.size - 1, 2), dtype=bool)
     free[:, :, np.isin(around.nodes[:-1], folds), 0] = False
@@ -259,7 +253,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     )
     # The matrix is symmetric positive definite, so that the factorisation needs no pivoting.
     factor = splu(
-        csc_matrix(stiffness)[free.ravel()][:, free.ravel()],
+        sum_of_products(lefts, rights, free.ravel()),
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},

@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from protractile.beam_model.distortion import Press, distortion_compliance
+from protractile.beam_model.distortion import Press, _frame, distortion_compliance
+from protractile.beam_model.hermite import sum_of_products
 from protractile.geometry.boom import Collar, Diaphragm, Segment
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.profiles import hexagon
@@ -107,3 +108,22 @@ def test_elements_are_fine_enough(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("protractile.beam_model.distortion._LENGTH", 0.125)
     fine = distortion_compliance.__wrapped__(segment(HEXAGON), pressed)
     np.testing.assert_allclose(default, fine, rtol=1.0e-3)
+
+
+def test_kronecker_products_of_free_unknowns_are_summed() -> None:
+    """Reference: another implementation (`numpy.kron`) of the dense matrices."""
+    rng = np.random.default_rng(1)
+    shape = np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    lefts, rights = rng.normal(size=(2, 3, 3)) * shape, rng.normal(size=(2, 4, 4))
+    free = np.arange(12) % 5 > 0
+    found = sum_of_products([*lefts], [*rights], free).toarray()
+    whole = sum(np.kron(left, right) for left, right in zip(lefts, rights, strict=True))
+    assert found == pytest.approx(whole[free][:, free], abs=1e-14)
+
+
+def test_a_frame_is_computed_once() -> None:
+    """Reference: the number of computed frames. Forces at other x act on the same frame."""
+    _frame.cache_clear()
+    for x in (4.0, 5.0):
+        distortion_compliance(segment(BoxSection(SIDE, SIDE, WALL, 0.9 * WALL)), (corners(x, 1.0),))
+    assert _frame.cache_info().misses == 1
