@@ -51,13 +51,28 @@ class NodeReaction(NamedTuple):
     moment: float
 
 
-class StaticState(NamedTuple):
+@dataclass(frozen=True)
+class StaticState:
     """Static state of a boom."""
 
     boom: Boom  #: the boom
     system: GapSystem  #: gap system of its beams
     position: Array  #: modal coordinates (num_modes,) in √kg·m
-    reactions: list[NodeReaction]  #: reactions on each segment, from its start to its end
+    _modes: BoomModes  #: modes of the segments
+    _elements: Elements  #: elements of the segments
+    _hung: Sequence[Load]  #: forces of loads that the boom lacks
+    _time: float  #: time of the loads in s
+
+    @cached_property
+    def reactions(self) -> list[NodeReaction]:
+        """The reactions on each segment, from its start to its end."""
+        loaded = replace(self.boom, loads=(*self.boom.loads, *self._hung))
+        position = self.position[: self._modes.omega2.size]
+        return [
+            reaction
+            for number, component in enumerate(self._elements.unsupported)
+            for reaction in _reactions(loaded, number, component, self._modes, position, self._time)
+        ]
 
     @property
     def tip(self) -> float:
@@ -134,20 +149,11 @@ def static_state(
     system = with_wall_springs(system_without_drives(boom, modes, EACH_SIDE), boom, walls)
     if complete is not None:
         # The coordinates of wall springs come after those of the segments.
-        basis = np.eye(modes.omega2.size, system.num_modes)
         along = lines(boom, elements.segments) if boom.axial_changes else ()
-        system = complete(system, [line.transform(basis) for line in along])
+        system = complete(system, [line.extend(system.num_modes) for line in along])
     system = system.gather_loads()
     position = equilibrium_at(system, time)
-    loaded = replace(boom, loads=(*boom.loads, *hung))
-    reactions = [
-        reaction
-        for number, component in enumerate(elements.unsupported)
-        for reaction in _reactions(
-            loaded, number, component, modes, position[: modes.omega2.size], time
-        )
-    ]
-    return StaticState(boom, system, position, reactions)
+    return StaticState(boom, system, position, modes, elements, hung, time)
 
 
 def estimate_critical_factor(boom: Boom) -> float | None:

@@ -131,9 +131,10 @@ class ContactLaw(ABC):
         """Return dF/dy in N/m, in the shape of ``y``."""
         return self._sum(slope_of, y)
 
-    def depth(self, y: float) -> float:
-        """Return the penetration in m at the relative displacement y in m; 0 without contact."""
-        return max(0.0, *(term.side * y - term.onset for term in self.terms))
+    def depth(self, y: Array) -> Array:
+        """Return the penetration in m, 0 without contact, in the shape of ``y`` in m."""
+        beyond = [term.side * y - term.onset for term in self.terms]
+        return np.asarray(np.max(beyond, axis=0, initial=0.0))
 
     def slope_at(self, force: float) -> float:
         """Return dF/dy in N/m at a contact force in N, on the stiffer side of the law."""

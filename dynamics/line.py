@@ -61,6 +61,14 @@ class Line:
         rows = {name: row @ basis[: row.shape[1]] for name, row in self.rows.items()}
         return replace(self, rows=rows)
 
+    def extend(self, num_modes: int) -> Line:
+        """Return the line of a model with further coordinates, on which it does not depend."""
+        rows = {
+            name: np.pad(row, ((0, 0), (0, num_modes - row.shape[1])))
+            for name, row in self.rows.items()
+        }
+        return replace(self, rows=rows)
+
     def one_sided_row(self, name: Quantity, x: float, side: int) -> Array:
         """Return the row (num_modes,) of a quantity at x from one side; 0 outside the segment.
 

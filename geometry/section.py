@@ -365,7 +365,8 @@ class BoxSection(Section):
     @property
     def faces(self) -> tuple[Face, ...]:
         """The faces of all plates."""
-        return tuple(Face.from_plate(self.plates, n, *normal) for n, normal in enumerate(OUTWARDS))
+        plates = self.plates
+        return tuple(Face.from_plate(plates, n, *normal) for n, normal in enumerate(OUTWARDS))
 
     @property
     def mirrors(self) -> tuple[Direction, ...]:

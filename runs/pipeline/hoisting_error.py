@@ -83,8 +83,8 @@ def straight_path_error(case: Case, beam: BeamStates) -> float:
     if load is None or gravity is None:
         return 0.0
     hanging = load.slack is None
-    step = 0 if hanging else int(np.argmax([abs(rest.tip) for rest in beam.rests]))
-    at, position, rest = float(beam.time[step]), beam.positions[step], beam.rests[step].tip
+    step = 0 if hanging else int(np.abs(beam.observed("tip")).argmax())
+    at, position, rest = float(beam.time[step]), beam.positions[step], beam.observed("tip")[step]
     system = beam.model.system
     mode = _Mode.of(system.at_time(at), position, load)
     lifted = hanging or system.observers["load_height"].row @ position > 0.0

@@ -7,7 +7,8 @@ The model has beam elements and the compliance of walls under pads, at the initi
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import cached_property
 from itertools import chain
 from typing import Literal, NamedTuple
 
@@ -19,6 +20,7 @@ from protractile.dynamics.failure import NumericsError
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom
+from protractile.geometry.cylinder import forces
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import select_kind
@@ -30,9 +32,11 @@ from protractile.runs.pipeline.proportions import CHECK_UNITS, tip_cautions
 from protractile.runs.pipeline.section_forces import LoadedModel
 from protractile.runs.pipeline.static_results import (
     StaticResult,
+    StationLoad,
     instants,
     positions,
     static_result,
+    station_loads,
 )
 from protractile.runs.pipeline.statics import state_at_rest
 from protractile.runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
@@ -43,6 +47,8 @@ from protractile.runs.report.tables import Column, Table
 _ELEMENTS = 20
 # Fraction of the largest result of a unit that is displayed as 0.
 _NEGLIGIBLE = 1.0e-4
+# Difference of results, as a fraction, up to which the first one counts as the largest.
+_ROUND_OFF = 1.0e-9
 
 
 # Kinds of static results.
@@ -70,28 +76,42 @@ class StaticExtreme(NamedTuple):
         return ", ".join(filter(None, (self.kind, self.part)))
 
 
-class BeamStates(NamedTuple):
+@dataclass(frozen=True)
+class BeamStates:
     """States of a boom without drives under the loads at several times, at rest or in motion."""
 
     model: LoadedModel  #: the model of the boom
     time: Array  #: (num_states,) in s
     positions: Array  #: modal coordinates (num_states, num_modes)
-    rests: Sequence[StaticResult] = ()  #: result of each state; empty for a whole motion
 
     @property
     def boom(self) -> Boom:
         """The boom of the model."""
         return self.model.boom
 
+    @cached_property
+    def rests(self) -> list[StaticResult]:
+        """The result of each state."""
+        states = zip(self.time.tolist(), self.positions, strict=True)
+        return [static_result(self.model, *state) for state in states]
+
     @property
     def farthest(self) -> StaticResult:
         """The result with the largest tip deflection."""
-        return max(self.rests, key=lambda rest: abs(rest.tip))
+        step = int(np.abs(self.observed("tip")).argmax())
+        return static_result(self.model, float(self.time[step]), self.positions[step])
 
-    def with_results(self) -> BeamStates:
-        """Return the states, completed by their static results."""
+    def observed(self, name: str) -> Array:
+        """Return the values (num_states,) of an observer of the model."""
+        return np.asarray(self.positions @ self.model.system.observers[name].row)
+
+    def _station_loads(self) -> list[list[StationLoad]]:
+        """Return the loads of all stations in each state."""
+        boom, system = self.boom, self.model.system
+        if not system.travels:
+            return station_loads(boom, system, self.positions)
         states = zip(self.time.tolist(), self.positions, strict=True)
-        return self._replace(rests=[static_result(self.model, *state) for state in states])
+        return [station_loads(boom, system.at_time(at), one[None])[0] for at, one in states]
 
     @classmethod
     def of(cls, case: Case, boom: Boom) -> BeamStates:
@@ -105,10 +125,8 @@ class BeamStates(NamedTuple):
         boom = boom.without_drives
         elements = Elements(boom, _ELEMENTS)
         system = state_at_rest(case, boom, elements).system
-        lines_of_elements = lines(boom, elements.segments)
         # The coordinates of wall springs come after the coordinates of the segments.
-        basis = np.eye(lines_of_elements[0].rows["deflection"].shape[1], system.num_modes)
-        along = [line.transform(basis) for line in lines_of_elements]
+        along = [line.extend(system.num_modes) for line in lines(boom, elements.segments)]
         return cls.at_rest(LoadedModel.of(boom, system, along), case.time.duration)
 
     @classmethod
@@ -123,8 +141,7 @@ class BeamStates(NamedTuple):
         equilibria = positions(model.system, instants(model.system, duration))
         if not equilibria:
             raise NumericsError("the boom has no static equilibrium under the loads at t = 0")
-        states = cls(model, np.array([*equilibria]), np.array([*equilibria.values()]))
-        return states.with_results()
+        return cls(model, np.array([*equilibria]), np.array([*equilibria.values()]))
 
     @classmethod
     def in_motion(cls, case: Case) -> BeamStates:
@@ -144,29 +161,25 @@ class BeamStates(NamedTuple):
         return cls(loaded, trajectory.time, trajectory.states)
 
     def at_extremes(self) -> BeamStates:
-        """Return the states of a motion at which tip, contacts, cylinders or stresses are extreme.
-
-        Each state has its result in ``rests``.
-        """
+        """Return the states of a motion with extreme tip, contacts, cylinders or stresses."""
         states, system = self.positions, self.model.system
         rows = [system.rows, *(one.row[None] for one in system.observers.values())]
         curves = [states @ np.vstack(rows).T]
-        for _, fibres, forces in fibre_forces(self.model, states, self.time):
-            stresses = (fibres.stress(fibre, forces) for fibre in range(len(fibres.z)))
+        for _, fibres, carried in fibre_forces(self.model, states, self.time):
+            stresses = (fibres.stress(fibre, carried) for fibre in range(len(fibres.z)))
             curves += [np.abs(one).max(axis=1, keepdims=True) for one in stresses]
         every = np.hstack(curves)
         steps = np.unique([0, *every.argmax(axis=0), *every.argmin(axis=0)])
-        return BeamStates(self.model, self.time[steps], states[steps]).with_results()
+        return BeamStates(self.model, self.time[steps], states[steps])
 
     def extremes(self, system: System) -> list[StaticExtreme]:
         """Return the extremes of tip, stresses, pads, contacts and cylinders.
 
         Names have positions in units of ``system``.
         """
-        boom, rests = self.boom, self.rests
-        extremes = [self._extreme("tip", "", "tip", "m", [rest.tip for rest in rests])]
-        if boom.spatial:
-            aside = [rest.tip_lateral or 0.0 for rest in rests]
+        extremes = [self._extreme("tip", "", "tip", "m", self.observed("tip").tolist())]
+        if self.boom.spatial:
+            aside = self.observed("tip_lateral").tolist()
             extremes.append(self._extreme("lateral tip", "", "lateral tip", "m", aside))
         for segment, fibres, curves in fibre_forces(self.model, self.positions, self.time):
             forces_at_rest = {name: values[:1] for name, values in curves.items()}
@@ -179,10 +192,10 @@ class BeamStates(NamedTuple):
                 StaticExtreme("bending stress", segment.name, what, "Pa", *values, used)
             )
         extremes += self._at_stations(system)
-        for name in rests[0].cylinders:
-            forces = [rest.cylinders[name] for rest in rests]
+        for name in forces(self.boom):
             part, what = name.partition("-")[2], name.replace("_", " ")
-            extremes.append(self._extreme("cylinder force", part, what, "N", forces))
+            of_states = self.observed(name).tolist()
+            extremes.append(self._extreme("cylinder force", part, what, "N", of_states))
         return extremes
 
     def foot_extremes(self, system: System) -> Iterator[StaticExtreme]:
@@ -200,7 +213,7 @@ class BeamStates(NamedTuple):
             ]
             boom = self.boom
             thrust = foot_thrust(boom.segments, boom.joints, index, self.time, boom.axial_changes)
-            along = parts.pop() if "normal" in line.rows else np.zeros(len(self.rests))
+            along = parts.pop() if "normal" in line.rows else np.zeros(self.time.size)
             whole = np.linalg.norm([*parts, thrust + along], axis=0)
             what = f"foot reaction at {system.text(x, 'm', 5)}"
             yield self._extreme("foot reaction", segment.name, what, "N", whole.tolist())
@@ -215,20 +228,21 @@ class BeamStates(NamedTuple):
         used: Sequence[Utilisation] = (),
     ) -> StaticExtreme:
         """Return the extreme of a result from its value in each state."""
-        step = int(np.abs(values).argmax())
-        most = values[0], values[step], self.rests[step].time
+        sizes = np.abs(values)
+        step = int(np.argmax(sizes >= (1.0 - _ROUND_OFF) * sizes.max()))
+        most = values[0], values[step], float(self.time[step])
         return StaticExtreme(kind, part, what, unit, *most, used[step] if used else None)
 
     def _at_stations(self, system: System) -> Iterator[StaticExtreme]:
-        boom, rests = self.boom, self.rests
+        boom, states = self.boom, self._station_loads()
         stations = [
             (joint.inner, number)
             for joint in boom.joints
             if not joint.bonded
             for number, _ in enumerate(joint.stations, start=1)
         ]
-        for index, station in enumerate(rests[0].stations):
-            loads = [rest.stations[index] for rest in rests]
+        for index, loads in enumerate(zip(*states, strict=True)):
+            station = loads[0]
             lateral = ", lateral" if station.direction == "y" else ""
             where = f"{system.text(station.x, 'm', 5)}{lateral}"
             # Stops come after the stations of joints.
@@ -239,9 +253,9 @@ class BeamStates(NamedTuple):
                 part = f"{inner}, station {number}{lateral}"
                 place = f", {inner}{place}"
             if station.pressure is None:
-                forces = [load.force for load in loads]
+                pushes = [load.force for load in loads]
                 what = f"contact force{place}"
-                yield self._extreme("contact", part, what, "N", forces)
+                yield self._extreme("contact", part, what, "N", pushes)
                 continue
             pressures = [load.pressure or 0.0 for load in loads]
             used = [

@@ -138,13 +138,14 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Ar
 
 
 def loaded_pads(
-    joint: Joint, direction: Direction, sides: Sequence[float]
-) -> list[tuple[PadSize, float]]:
-    """Return the pads of known size at a station, each with its force in N.
+    joint: Joint, direction: Direction, sides: Sequence[Array]
+) -> list[tuple[PadSize, Array]]:
+    """Return the pads of known size at a station, each with its forces (num_states,) in N.
 
-    ``sides`` are the forces on the two sides in N, in the order of ``SIGNS``, not negative.
+    ``sides`` are the forces (num_states,) on the two sides in N, in the order of ``SIGNS``, not
+    negative.
     """
-    loads = []
+    loads = list[tuple[PadSize | None, Array]]()
     for side, force in zip(SIGNS, sides, strict=True) if joint.padded else ():
         # Pairs with thicker shims close first.
         pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
@@ -152,13 +153,20 @@ def loaded_pads(
         stiffnesses = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
         stiffness = PADS_OF_SIDE * sum(stiffnesses) or 1.0
         # Each pair that closes reduces the compression of the pairs that closed before.
-        compressions = (force / stiffness - np.cumsum(shares * shims)) / np.cumsum(shares)
-        forces = stiffness * (shares * np.maximum(compressions.min() + shims, 0.0)) / PADS_OF_SIDE
-        loads += [(pair[0], float(one)) for pair, one in zip(pairs, forces, strict=True)]
+        closing = force[:, None] / stiffness - np.cumsum(shares * shims)
+        compression = (closing / np.cumsum(shares)).min(axis=1, keepdims=True)
+        forces = stiffness * (shares * np.maximum(compression + shims, 0.0)) / PADS_OF_SIDE
+        loads += [(pair[0], of_pad) for pair, of_pad in zip(pairs, forces.T, strict=True)]
     return [(pad, force) for pad, force in loads if pad is not None]
 
 
-def side_force(law: ContactLaw, side: int, gap: float) -> float:
-    """Return the contact force in N on one side at a gap in m, positive in compression."""
-    depths = [(term, max(side * gap - term.onset, 0.0)) for term in law.terms if term.side == side]
-    return float(sum(term.stiffness * depth**term.exponent for term, depth in depths))
+def side_force(law: ContactLaw, side: int, gaps: Array) -> Array:
+    """Return the contact forces (num_states,) in N on one side at gaps (num_states,) in m.
+
+    They are positive in compression.
+    """
+    force = np.zeros(gaps.shape)
+    for term in law.terms:
+        if term.side == side:
+            force += term.stiffness * np.maximum(side * gaps - term.onset, 0.0) ** term.exponent
+    return force

@@ -16,6 +16,7 @@ import numpy as np
 from protractile.beam_model.statics import estimate_critical_factor
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.arrays import Array
+from protractile.geometry.cylinder import force_name
 from protractile.runs.case.load_tables import CombinationTable
 from protractile.runs.case.schema import Case
 from protractile.runs.case.units import System
@@ -360,7 +361,7 @@ def _column_proofs(
 def _deflection_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
     permitted = case.limits.tip_at_rest if case.limits else None
     if permitted is not None:
-        tip = max(abs(rest.tip) for rest in beam.rests)
+        tip = float(np.abs(beam.observed("tip")).max())
         yield Proof("deflection", "tip", "tip", None, tip, permitted, "m")
 
 
@@ -374,7 +375,7 @@ def _station_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> It
             yield Proof("pad", one.part, place, used.x, used.load, resistance, "Pa")
     for number, cylinder in enumerate(beam.boom.cylinders, start=1):
         name = "cylinder" if len(beam.boom.cylinders) == 1 else f"cylinder {number}"
-        force = max(abs([*rest.cylinders.values()][number - 1]) for rest in beam.rests)
+        force = float(np.abs(beam.observed(force_name(number))).max())
         if cylinder.capacity is not None:
             resistance = cylinder.capacity / table.resistance.cylinder
             yield Proof("cylinder", name, name, None, force, resistance, "N")

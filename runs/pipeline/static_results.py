@@ -7,10 +7,11 @@ moment causes tension at the top, a positive lateral moment tension at larger y.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import zip_longest
+from itertools import repeat, zip_longest
+from typing import Any
 
 import numpy as np
 
@@ -236,20 +237,24 @@ def static_result(model: LoadedModel, time: float, position: Array) -> StaticRes
         name, normal = boom.segments[number].name, curves.pop("normal")
         diagrams.append(Diagram(name, round_values(line.x), normal, curves))
     seen = {name: float(one.row @ position) for name, one in system.observers.items()}
+    (stations,) = station_loads(boom, system, position[None])
     return StaticResult(
         time=time,
         tip=seen["tip"],
         tip_lateral=seen.get("tip_lateral"),
         diagrams=diagrams,
         tilts=list(tilts(model, position, time)),
-        stations=list(station_loads(boom, system, position)),
+        stations=stations,
         cylinders={name: seen[name] for name in forces(boom)},
     )
 
 
-def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[StationLoad]:
-    """Yield the loads of stations with play and of stops, at an equilibrium (num_modes,)."""
-    gaps = system.rows @ position
+def station_loads(boom: Boom, system: GapSystem, states: Array) -> list[list[StationLoad]]:
+    """Return the loads of stations with play and of stops, in each state.
+
+    ``states`` are equilibria (num_states, num_modes).
+    """
+    gaps, stations = states @ system.rows.T, []
     loose = [joint for joint in boom.joints if not joint.bonded]
     joints = [joint for _ in boom.directions for joint in loose for _ in joint.stations]
     for k, ((x, direction), name, joint) in enumerate(
@@ -257,8 +262,10 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
     ):
         # The stations of a model without play have no contacts.
         here = np.flatnonzero(system.station_of_row == k)
+        none = np.zeros(len(gaps))
         sides = [
-            sum(side_force(system.laws[row], side, gaps[row]) for row in here) for side in SIGNS
+            sum((side_force(system.laws[row], side, gaps[:, row]) for row in here), none)
+            for side in SIGNS
         ]
         pads = [] if joint is None else loaded_pads(joint, direction, sides)
         used = [
@@ -266,25 +273,36 @@ def station_loads(boom: Boom, system: GapSystem, position: Array) -> Iterator[St
             for pad, force in pads
             if pad.allowable_pressure is not None
         ]
-        yield StationLoad(
-            place=name,
-            x=x,
-            direction=direction,
-            force=sides[0] - sides[1],
-            pad=max((force for _, force in pads), default=None),
-            depth=max((system.laws[row].depth(float(gaps[row])) for row in here), default=0.0),
-            pressure=max((force / pad.area for pad, force in pads), default=None),
-            utilisation=max(used, default=None),
-            closed=_closed_play(system, gaps, here) if direction == "y" else 0.0,
+        columns = (
+            (sides[0] - sides[1]).tolist(),
+            _largest([force for _, force in pads]),
+            _largest([none, *(system.laws[row].depth(gaps[:, row]) for row in here)]),
+            _largest([force / pad.area for pad, force in pads]),
+            _largest(used),
+            (_closed_play(system, gaps, here) if direction == "y" else none).tolist(),
         )
+        stations.append(
+            [StationLoad(name, x, direction, *values) for values in zip(*columns, strict=False)]
+        )
+    return [list(loads) for loads in zip(*stations, strict=True)] or [[] for _ in states]
 
 
-def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> float:
-    """Return the play in m that bulging walls close: mean approach on the right less the left."""
+def _largest(values: Sequence[Array]) -> Iterable[Any]:
+    """Return the largest of the values (num_states,) in each state; None without values."""
+    return np.max(values, axis=0).tolist() if values else repeat(None)
+
+
+def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> Array:
+    """Return the play (num_states,) in m that bulging walls close.
+
+    It is the mean approach on the right less that on the left.
+    """
     right, left = (
-        [gaps[row] for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
+        [row for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
     )
-    return float(np.mean(right) - np.mean(left)) if right and left else 0.0
+    if not (right and left):
+        return np.zeros(len(gaps))
+    return np.asarray(gaps[:, right].mean(axis=1) - gaps[:, left].mean(axis=1))
 
 
 def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:

@@ -172,7 +172,7 @@ def _depths(state: StaticState) -> dict[tuple[int, float], float]:
         for midpoints in contact_centres(boom, joint).values()
     ]
     owners = [*inner, *((stop.segment, (stop.x,)) for stop in boom.stops)]
-    loads = station_loads(boom, state.system, state.position)
+    (loads,) = station_loads(boom, state.system, state.position[None])
     return {
         (number, x): one.depth
         for (number, midpoints), one in zip(owners, loads, strict=True)

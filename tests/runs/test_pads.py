@@ -135,7 +135,7 @@ def test_governing_pad_at_rest_is_named(tmp_path: Path, shim: float) -> None:
     boom = build_boom(case)
     system = build(case, boom, case.models[0]).system.gather_loads()
     position = positions(system)[0.0]
-    tail, head = station_loads(boom, system, position)
+    ((tail, head),) = station_loads(boom, system, position[None])
     of_rows = [
         abs(law.force(y)) for law, y in zip(system.laws, system.rows @ position, strict=True)
     ]
