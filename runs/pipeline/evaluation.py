@@ -35,7 +35,7 @@ from protractile.runs.pipeline.static_results import (
     extended_positions,
     instants,
     positions,
-    static_result,
+    static_results,
     vibrating_state,
 )
 from protractile.runs.pipeline.statics import reactions, statics
@@ -64,7 +64,9 @@ def results_at_rest(
     extension.
     """
     static, static_extended = (
-        [static_result(loaded, time, position) for time, position in positions.items()]
+        static_results(loaded, np.array([*positions]), np.array([*positions.values()]))
+        if positions
+        else []
         for positions in (equilibria, extended)
     )
     first = []

@@ -35,7 +35,7 @@ from protractile.runs.pipeline.static_results import (
     StationLoad,
     instants,
     positions,
-    static_result,
+    static_results,
     station_loads,
 )
 from protractile.runs.pipeline.statics import state_at_rest
@@ -92,14 +92,14 @@ class BeamStates:
     @cached_property
     def rests(self) -> list[StaticResult]:
         """The result of each state."""
-        states = zip(self.time.tolist(), self.positions, strict=True)
-        return [static_result(self.model, *state) for state in states]
+        return static_results(self.model, self.time, self.positions)
 
     @property
     def farthest(self) -> StaticResult:
         """The result with the largest tip deflection."""
         step = int(np.abs(self.observed("tip")).argmax())
-        return static_result(self.model, float(self.time[step]), self.positions[step])
+        at = slice(step, step + 1)
+        return static_results(self.model, self.time[at], self.positions[at])[0]
 
     def observed(self, name: str) -> Array:
         """Return the values (num_states,) of an observer of the model."""

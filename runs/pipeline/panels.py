@@ -7,9 +7,8 @@ linear and the shear stress constant. Restraint by adjacent walls and pad forces
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import chain
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +18,7 @@ from protractile.geometry.material import Material
 from protractile.geometry.section import Plate, Section
 from protractile.geometry.segment import Segment
 from protractile.runs.case.units import System
-from protractile.runs.pipeline.static_results import Diagram, StaticResult
+from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.pipeline.strength import outer_corners
 from protractile.runs.report.formatting import number
 from protractile.runs.report.tables import Table
@@ -108,7 +107,7 @@ def panel_factor(
 def weakest_panels(segments: Sequence[Segment], *rests: StaticResult) -> list[PanelBuckling]:
     """Return the wall that buckles first in the states, of each segment with a known section."""
     weakest: dict[str, PanelBuckling] = {}
-    for wall in chain.from_iterable(nominal_wall_stresses(segments, rest) for rest in rests):
+    for wall in nominal_wall_stresses(segments, rests):
         name = wall.segment.name
         factors = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
         least = int(factors.argmin())
@@ -119,30 +118,38 @@ def weakest_panels(segments: Sequence[Segment], *rests: StaticResult) -> list[Pa
 
 
 def nominal_wall_stresses(
-    segments: Sequence[Segment], rest: StaticResult
+    segments: Sequence[Segment], rests: Sequence[StaticResult]
 ) -> Iterator[WallStresses]:
-    """Yield the stresses of each wall in a static state, for segments with known sections."""
-    for segment, diagram in zip(segments, rest.diagrams, strict=True):
-        if segment.section is None or "moment" not in diagram.curves:
+    """Yield the stresses of each wall in static states, for segments with known sections.
+
+    The places of a wall are those of the first state, then those of the next one.
+    """
+    for segment, *diagrams in zip(segments, *(rest.diagrams for rest in rests), strict=True):
+        if segment.section is None or "moment" not in diagrams[0].curves:
             continue
-        places = [slice(None)]
+        x = np.tile(diagrams[0].x, len(diagrams))
+        curves = {
+            name: np.concatenate([one.curves[name] for one in diagrams])
+            for name in diagrams[0].curves
+        }
+        curves["normal"] = np.concatenate([one.normal for one in diagrams])
+        parts = [slice(None)]
         if segment.head_section is not None:
-            places = [slice(number, number + 1) for number in range(len(diagram.x))]
-        for part in places:
-            x = np.array(diagram.x[part])
-            yield from _walls(segment, segment.section_at(float(x[0])), diagram, part, x)
+            count = len(diagrams[0].x)
+            parts = [slice(place, None, count) for place in range(count)]
+        for part in parts:
+            section = segment.section_at(float(x[part][0]))
+            of_part = {name: values[part] for name, values in curves.items()}
+            yield from _walls(segment, section, x[part], of_part)
 
 
 def _walls(
-    segment: Segment, section: Section, diagram: Diagram, part: slice, x: Array
+    segment: Segment, section: Section, x: Array, curves: Mapping[str, Array]
 ) -> Iterator[WallStresses]:
-    """Yield the stresses of each wall of a section at x (num_places,), the places of ``part``."""
+    """Yield the stresses of each wall of a section under section forces at x (num_places,)."""
     names = ("moment", "lateral_moment", "shear", "lateral_shear", "torque")
-    moment, lateral, shear, aside, torque = (
-        np.array(diagram.curves[name][part]) if name in diagram.curves else np.zeros(x.size)
-        for name in names
-    )
-    mean = np.array(diagram.normal[part]) / section.area
+    moment, lateral, shear, aside, torque = (curves.get(name, np.zeros(x.size)) for name in names)
+    mean = curves["normal"] / section.area
     along_y = lateral / section.lateral_second_moment_of_area
     along_z = moment / section.second_moment_of_area
     forces = [(shear, dict(section.shear_plates("z"))), (aside, dict(section.shear_plates("y")))]

@@ -235,21 +235,20 @@ def _proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
 
 
 def _wall_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Iterator[Proof]:
-    for rest in beam.rests:
-        for wall in nominal_wall_stresses(beam.boom.segments, rest):
-            strength = wall.segment.material.strength(wall.plate.thickness)
-            if strength is None:
-                continue
-            equivalent = np.sqrt(np.abs(wall.fibres).max(axis=0) ** 2 + 3.0 * wall.shear**2)
-            reduced = reduced_stress(wall, strength, case.buckling.curve if case.buckling else ())
-            for kind, stress, factor in (
-                ("yield", equivalent, table.resistance.material),
-                ("plate", reduced, table.resistance.stability),
-            ):
-                most = int(stress.argmax())
-                name = wall.segment.name
-                place, x = f"{name}, {_wall_text(wall.plate.name)}", float(wall.x[most])
-                yield Proof(kind, name, place, x, float(stress[most]), strength / factor, "Pa")
+    for wall in nominal_wall_stresses(beam.boom.segments, beam.rests):
+        strength = wall.segment.material.strength(wall.plate.thickness)
+        if strength is None:
+            continue
+        equivalent = np.sqrt(np.abs(wall.fibres).max(axis=0) ** 2 + 3.0 * wall.shear**2)
+        reduced = reduced_stress(wall, strength, case.buckling.curve if case.buckling else ())
+        for kind, stress, factor in (
+            ("yield", equivalent, table.resistance.material),
+            ("plate", reduced, table.resistance.stability),
+        ):
+            most = int(stress.argmax())
+            name = wall.segment.name
+            place, x = f"{name}, {_wall_text(wall.plate.name)}", float(wall.x[most])
+            yield Proof(kind, name, place, x, float(stress[most]), strength / factor, "Pa")
 
 
 def _wall_text(name: str) -> str:
@@ -324,8 +323,7 @@ def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
         strength = segments[one.segment].yield_strength
         walls = [
             wall
-            for rest in beam.rests
-            for wall in nominal_wall_stresses(beam.boom.segments, rest)
+            for wall in nominal_wall_stresses(beam.boom.segments, beam.rests)
             if wall.segment.name == one.segment
         ]
         if strength is None or not one.factors or not walls:

@@ -7,7 +7,7 @@ moment causes tension at the top, a positive lateral moment tension at larger y.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import repeat, zip_longest
@@ -19,6 +19,7 @@ from protractile.dynamics.equilibrium import Equilibria
 from protractile.dynamics.excitation import Excitation
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.line import Line, Quantity
 from protractile.dynamics.travel import Travel
 from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.boom import Boom
@@ -221,32 +222,51 @@ def _equilibria(system: GapSystem, times: Sequence[float]) -> dict[float, Array]
     return equilibria
 
 
-def static_result(model: LoadedModel, time: float, position: Array) -> StaticResult:
-    """Return the state of a model at an equilibrium, or at an instant of its motion.
+def static_results(model: LoadedModel, times: Array, states: Array) -> list[StaticResult]:
+    """Return each state of a model, at an equilibrium or at an instant of its motion.
 
-    The time in s is that of the loads and of the extension; the position (num_modes,) has modal
-    coordinates.
+    Args:
+        times: times (num_states,) in s of the loads and of the extensions.
+        states: modal coordinates (num_states, num_modes).
     """
-    boom, diagrams = model.boom, []
-    system = model.system.at_time(time) if model.system.travels else model.system
-    for number, line in enumerate(model.lines):
-        carried = model.section_forces(number, position, np.array(time))
+    boom, system = model.boom, model.system
+    if system.travels:
+        if times.size > 1:
+            steps = (slice(step, step + 1) for step in range(times.size))
+            return [
+                one for step in steps for one in static_results(model, times[step], states[step])
+            ]
+        system = system.at_time(float(times[0]))
+    diagrams = [
+        _diagrams(boom.segments[number].name, line, model.section_forces(number, states, times))
+        for number, line in enumerate(model.lines)
+    ]
+    seen = {name: (states @ one.row).tolist() for name, one in system.observers.items()}
+    rotations = tilts(model, states, float(times[0]))
+    stations = station_loads(boom, system, states)
+    return [
+        StaticResult(
+            time=time,
+            tip=seen["tip"][step],
+            tip_lateral=seen["tip_lateral"][step] if "tip_lateral" in seen else None,
+            diagrams=[of_states[step] for of_states in diagrams],
+            tilts=[of_states[step] for of_states in rotations],
+            stations=stations[step],
+            cylinders={name: seen[name][step] for name in forces(boom)},
+        )
+        for step, time in enumerate(times.tolist())
+    ]
+
+
+def _diagrams(segment: str, line: Line, carried: Mapping[Quantity, Array]) -> list[Diagram]:
+    """Return the diagram of a segment in each state from curves (num_states, num_places)."""
+    x, diagrams = round_values(line.x), []
+    for of_state in zip(*carried.values(), strict=True):
         curves: dict[str, list[float]] = {
-            name: round_values(values) for name, values in carried.items()
+            name: round_values(values) for name, values in zip(carried, of_state, strict=True)
         }
-        name, normal = boom.segments[number].name, curves.pop("normal")
-        diagrams.append(Diagram(name, round_values(line.x), normal, curves))
-    seen = {name: float(one.row @ position) for name, one in system.observers.items()}
-    (stations,) = station_loads(boom, system, position[None])
-    return StaticResult(
-        time=time,
-        tip=seen["tip"],
-        tip_lateral=seen.get("tip_lateral"),
-        diagrams=diagrams,
-        tilts=list(tilts(model, position, time)),
-        stations=stations,
-        cylinders={name: seen[name] for name in forces(boom)},
-    )
+        diagrams.append(Diagram(segment, x, curves.pop("normal"), curves))
+    return diagrams
 
 
 def station_loads(boom: Boom, system: GapSystem, states: Array) -> list[list[StationLoad]]:
@@ -322,12 +342,12 @@ def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
     return [f"{text}{', '.join(bulges)}; beams with rigid walls do not show this"] if bulges else []
 
 
-def tilts(model: LoadedModel, position: Array, time: float = 0.0) -> Iterator[Tilt]:
-    """Yield the rotations of joints with play and several stations, from the segments' axes.
+def tilts(model: LoadedModel, states: Array, time: float = 0.0) -> list[list[Tilt]]:
+    """Return the rotation of each joint with play and several stations, in each state.
 
-    The equilibrium is (num_modes,), and the extension the one at a time in s.
+    The equilibria are (num_states, num_modes), and the extension the one at a time in s.
     """
-    boom, axes = model.boom, model.axes
+    boom, axes, rotations = model.boom, model.axes, []
     for joint in (joint for joint in boom.joints if not joint.bonded and len(joint.stations) > 1):
         before = travel(boom, joint.outer, time)
         extension = travel(boom, joint.inner, time) - before
@@ -341,8 +361,11 @@ def tilts(model: LoadedModel, position: Array, time: float = 0.0) -> Iterator[Ti
         for (x_outer, x_inner), offset in zip(places, offsets, strict=True):
             on_outer.append(x_outer + offset)
             relative = axes[joint.inner](x_inner + offset) - axes[joint.outer](x_outer + offset)
-            displacements.append(float(relative @ position[: relative.size]))
+            displacements.append(states[:, : relative.size] @ relative)
         tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
-        rotation = (displacements[-1] - displacements[0]) / (on_outer[-1] - on_outer[0])
+        angles = (displacements[-1] - displacements[0]) / (on_outer[-1] - on_outer[0])
+        tips = displacements[0] + angles * (tip - on_outer[0])
         inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
-        yield Tilt(inner, outer, rotation, displacements[0] + rotation * (tip - on_outer[0]))
+        both = zip(angles.tolist(), tips.tolist(), strict=True)
+        rotations.append([Tilt(inner, outer, *values) for values in both])
+    return rotations

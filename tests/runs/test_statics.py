@@ -31,7 +31,7 @@ from protractile.runs.pipeline.static_results import (
     extended_positions,
     instants,
     positions,
-    static_result,
+    static_results,
 )
 from studies.reference_models.statics import static_response
 from tests.modal import modal_system
@@ -192,7 +192,7 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     found = positions(system, instants(system, case.time.duration))
     assert list(found) == [0.0, 6.0]
     assert list(extended_positions(system, case.time.duration)) == [5.0]
-    rest = static_result(loaded, 6.0, found[6.0])
+    (rest,) = static_results(loaded, np.array([6.0]), found[6.0][None])
     outer = rest.diagrams[0]
     moment = np.interp(2.0, outer.x, outer.curves["moment"])
     assert abs(moment) == pytest.approx(2e3 * 17.0 + 550.7 * 12.0 + 0.5 * 83.16 * 8.0**2, rel=1e-4)
