@@ -106,19 +106,7 @@ def material_ranges(tables: Mapping[str, Material]) -> Iterator[UsualRange]:
 def section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
     name, length, section = repr(segment.name), segment.length, segment.section
     low, high = length / 500.0, length / 5.0
-    if (lateral := segment.lateral) is not None:
-        for key, what, value in (
-            (
-                "lateral_second_moment_of_area",
-                "lateral second moment of area",
-                lateral.second_moment_of_area,
-            ),
-            ("torsion_constant", "torsion constant", lateral.torsion_constant),
-        ):
-            least, most = (factor * segment.second_moment_of_area for factor in (1e-3, 1e3))
-            yield UsualRange(
-                f"{where}.{key}", f"the {what} of {name}", value, "m^4", least, most, 100.0
-            )
+    lateral = _lateral_ranges(where, segment)
     mass_key, mass_what = f"{where}.mass_per_length", f"the mass per length of {name}"
     mass_per_length = segment.mass_per_length
     if section is None:
@@ -127,6 +115,7 @@ def section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
         least, most = (area * (height / _HEIGHT_OVER_GYRATION) ** 2 for height in (low, high))
         where, what = f"{where}.second_moment_of_area", f"the second moment of area of {name}"
         yield UsualRange(where, what, segment.second_moment_of_area, "m^4", least, most, 25.0)
+        yield from lateral
         return
     directions: tuple[tuple[Direction, str], ...] = ("z", "height"), ("y", "width")
     for direction, side in directions:
@@ -145,3 +134,18 @@ def section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
         where, what = f"{where}.second_moment_of_area", "the second moment of area"
         what = f"{what} beside the plates of {name}"
         yield UsualRange(where, what, case_value, "m^4", 0.5 * plate_value, 2.0 * plate_value, 50.0)
+    yield from lateral
+
+
+def _lateral_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
+    """Yield the lateral second moment and the torsion constant, by the second moment along z."""
+    if segment.lateral is None:
+        return
+    least, most = (factor * segment.second_moment_of_area for factor in (1.0e-3, 1.0e3))
+    for key, what, value in (
+        ("lateral_second_moment_of_area", "the lateral second moment of area",
+         segment.lateral.second_moment_of_area),
+        ("torsion_constant", "the torsion constant", segment.lateral.torsion_constant),
+    ):  # fmt: skip
+        what = f"{what} of {segment.name!r}"
+        yield UsualRange(f"{where}.{key}", what, value, "m^4", least, most, 100.0)

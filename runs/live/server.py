@@ -128,6 +128,11 @@ class ShellRuns:
             self._stop()
             self._busy.release()
 
+    @property
+    def running(self) -> bool:
+        """True until a run has ended, also after its cancellation."""
+        return self._busy.locked()
+
     def file(self, name: str) -> Path | None:
         """Return the report or the viewer of the last run; None without such a file."""
         if self._folder is None or name not in (REPORT, VIEWER):

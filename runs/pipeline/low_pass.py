@@ -30,6 +30,8 @@ CUTOFF_SHARE = 0.8
 ORDER = 4
 # Minimum prominence of a peak as a fraction of the range of the signal. It excludes shoulders.
 PROMINENCE = 0.2
+# Range of the tip as a fraction of its deflection, by round-off, up to which it is at rest.
+AT_REST = 1.0e-9
 
 
 def filter_low_pass(signal: Array, output_step: float, cutoff: float) -> Array:
@@ -77,11 +79,12 @@ def slow_peaks(signal: Array, time: Array, cutoff: float) -> tuple[Array, Array]
 
 
 def mean_period(time: Array, tip: Array) -> float:
-    """Return the mean time between the main peaks of the tip in s; NaN for fewer than two peaks.
+    """Return the mean time between the main peaks of the tip in s.
 
-    Times (num_times,) are in s, tip deflections in m.
+    NaN for fewer than two peaks, and for a tip at rest. Times (num_times,) are in s, tip
+    deflections in m.
     """
-    if tip.size < 3:
+    if tip.size < 3 or np.ptp(tip) <= AT_REST * np.abs(tip).max():
         return float("nan")
     off = tip - tip[0]
     side = np.sign(off[np.abs(off).argmax()])

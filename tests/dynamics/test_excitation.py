@@ -223,7 +223,8 @@ def test_a_history_of_one_s_own() -> None:
         (PiecewiseLinear, ((0.0, 1.0), (1.0,)),
          "a history needs one value for each time, got 1 for 2"),
         (PiecewiseLinear, ((0.0, 0.0), (1.0, 2.0)), "times must rise"),
-        (PiecewiseLinear, ((0.0, 1.0), (1.0, float("nan"))), "times and values must be finite"),
+        (PiecewiseLinear, ((0.0, 1.0), (1.0, float("nan"))),
+         "times and values must be finite numbers in two sequences"),
         (Excitation, (np.ones(1), np.cos), "a history needs kinks, peak and fastest beside its "
          "values; give a Step, Ramp, Sine, PiecewiseLinear or other History, got ufunc"),
         (Excitation, (np.ones(1), Own(kinks=(1.0, 0.5))),

@@ -250,3 +250,10 @@ def test_better_beams_are_nearer_to_the_shell(here: Path) -> None:
         euler, plain, sprung, fielded, _ = worst.values
         assert euler > 1.5 * plain > 3.0 * sprung > 3.0 * fielded, worst
         assert fielded < 0.01
+
+
+def test_a_tip_at_rest_has_no_period() -> None:
+    """Reference: analytic, a sine of 0.5 s; 1e-12 of the deflection is round-off."""
+    wave = np.sin(4.0 * np.pi * TIME)
+    assert mean_period(TIME, 0.05 + 1e-3 * wave) == pytest.approx(0.5, rel=0.01)
+    assert np.isnan(mean_period(TIME, 0.05 + 0.05e-12 * wave))

@@ -80,9 +80,9 @@ class Page:
         assert "exceptionDetails" not in answer, answer
         return answer["result"].get("value")
 
-    def wait_for(self, expression: str) -> None:
-        """Wait until an expression is true."""
-        end = time.monotonic() + SECONDS
+    def wait_for(self, expression: str, seconds: float = SECONDS) -> None:
+        """Wait until an expression is true, at most for some seconds."""
+        end = time.monotonic() + seconds
         while not self.evaluate(f"!!({expression})"):
             assert time.monotonic() < end, f"{expression} stays false"
             time.sleep(0.05)

@@ -7,6 +7,7 @@ import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from time import sleep
 
 import pytest
 
@@ -37,9 +38,29 @@ ROW = (
 )
 
 
+# Words of labels, headings and first cells that stand on two lines.
+BROKEN_WORDS = """
+[...document.querySelectorAll('label span, label, h2, button, td:first-child')].flatMap(owner =>
+  [...owner.childNodes].filter(node => node.nodeType == 3).flatMap(node =>
+    [...node.textContent.matchAll(/[^\\s-]+/g)].filter(word => {
+      const range = document.createRange();
+      range.setStart(node, word.index);
+      range.setEnd(node, word.index + word[0].length);
+      return new Set([...range.getClientRects()].map(one => Math.round(one.top))).size > 1;
+    }).map(word => word[0])))
+"""
+
+
 @contextmanager
 def live_page(case: str, profile: Path) -> Iterator[Page]:
     """Yield the live page of a shipped case, with its first results."""
+    with served_page(case, profile) as (page, _):
+        yield page
+
+
+@contextmanager
+def served_page(case: str, profile: Path) -> Iterator[tuple[Page, LivePage]]:
+    """Yield the live page of a shipped case, with its first results, and what serves it."""
     browser = find_browser()
     if browser is None:
         pytest.skip("the live page is opened in chromium, and there is none on PATH")
@@ -49,7 +70,7 @@ def live_page(case: str, profile: Path) -> Iterator[Page]:
     with blank_page(browser, profile) as opened:
         opened.open(address, 1200)
         opened.wait_for(ANSWERED)
-        yield opened
+        yield opened, live
     server.shutdown()
     server.server_close()
     live.shells.end()
@@ -163,13 +184,15 @@ def test_a_shell_runs_beside_the_beam(tmp_path: Path) -> None:
     """After a cancelled run, the next one shows its results and report."""
     press = "document.getElementById('run').click()"
     progress = "document.getElementById('progress').textContent"
-    with live_page("coarse.toml", tmp_path) as page:
+    with served_page("coarse.toml", tmp_path) as (page, live):
         page.evaluate(press)
         page.wait_for(f"{progress}.includes(' s)')")
         page.evaluate(press)
         page.wait_for(f"{progress} == 'cancelled'")
+        while live.shells.running:
+            sleep(0.05)
         page.evaluate(press)
-        page.wait_for("document.getElementById('run').textContent == 'Run the shell'")
+        page.wait_for("document.getElementById('run').textContent == 'Run the shell'", 600.0)
         assert page.evaluate(progress).startswith("finished in")
         heads = "[...document.querySelectorAll('#compared th')].map(head => head.textContent)"
         assert page.evaluate(heads) == ["", "shell", "beam"]
@@ -183,6 +206,13 @@ def test_a_shell_runs_beside_the_beam(tmp_path: Path) -> None:
 def test_the_page_fits_its_window(page: Page, width: int) -> None:
     page.set_width(width)
     page.wait_for(f"document.documentElement.scrollWidth <= {width}")
+
+
+@pytest.mark.parametrize("width", [400, 800, 1200])
+def test_no_word_of_a_label_breaks(page: Page, width: int) -> None:
+    """Reference: the browser, which draws a whole word in one rectangle."""
+    page.set_width(width)
+    assert page.evaluate(BROKEN_WORDS) == []
 
 
 def test_the_browser_has_nothing_to_complain_of(page: Page) -> None:
