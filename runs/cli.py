@@ -370,7 +370,7 @@ def check(case: CaseFile, picture: Picture = None, large: Large = False) -> int:
 
     checked = load_checked(case)
     if not large:
-        estimates.refuse_large(estimates.states_cost(checked.case), case)
+        estimates.refuse_large(estimates.states_cost(checked.case, proofs=False), case)
     if picture is not None:
         import_module("protractile.runs.report.boom_drawing").save_drawing(
             checked.case, case, picture
@@ -403,7 +403,7 @@ def prove(
 
     checked = load(case)
     if not large:
-        estimates.refuse_large(estimates.states_cost(checked), case)
+        estimates.refuse_large(estimates.states_cost(checked, proofs=True), case)
     if shell is None:
         if ending.launched_rank():
             return 0

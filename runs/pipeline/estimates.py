@@ -10,14 +10,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
 
+from protractile.dynamics.excitation import is_constant
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.motion import MOST_STEPS, Motion
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import ModelTable
+from protractile.runs.case.load_tables import CombinationTable
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case, Model
@@ -36,8 +39,9 @@ _WRITE_TIME, _OF_TRAVEL = 3.0e-5, 4.0e-4
 # Numbers (of 8 bytes) per output time and member of an ensemble, and per step between two outputs.
 _OF_MEMBER, _OF_STEP = 22.0, 24.0
 
-# Time in s for the design results of a model, and for the report of a run without and with shells.
-_RESULTS, _REPORT, _SHELL_REPORT = 1.0, 5.0, 12.0
+# Time in s for the design results of a model, for the report of a run without and with shells, and
+# for the figures of a segment.
+_RESULTS, _REPORT, _SHELL_REPORT, _OF_SEGMENT = 1.0, 5.0, 12.0, 0.5
 # Time in s of a step: constant part, per coordinate, per contact.
 _STEP, _OF_MODE, _OF_ROW = 0.5e-6, 1.0e-8, 0.5e-6
 # Steps with error control: number per output interval without impacts; with impacts, fraction of
@@ -46,9 +50,15 @@ _SUBSTEPS, _OF_MOST, _TOLERANCE, _REPEATED = 4.0, 0.5, 1.0e-3, 2.5
 # Number of motions for the horizons of a model.
 _HORIZONS = 24
 
-# Time in s and memory in bytes of the states of a combination in a load case, per square of the
-# number of segments.
-_STATE, _STATE_MEMORY = 0.011, 1.5e5
+# Time in s in which check and prove start, and number of states that check computes in addition.
+_START, _OTHER_STATES = 2.0, 9
+# Time in s of the states of a combination in a load case: per segment, per instant of extreme
+# loads, and per product of both numbers.
+_STATE, _OF_INSTANT, _OF_BOTH = 0.012, 1.0e-3, 2.5e-4
+# Time in s of their proofs: per segment, per square of this number, and per product of both.
+_PROOF, _OF_BUCKLING, _PROOF_OF_BOTH = 6.0e-3, 3.5e-3, 3.0e-4
+# Memory in bytes of these states, per square of the number of segments.
+_STATE_MEMORY = 1.5e5
 
 # Number of points of a sweep whose cost is estimated; the others are extrapolated.
 _SAMPLE = 20
@@ -103,8 +113,9 @@ class Preview:
 def run_cost(case: Case, preview: Preview | None = None) -> Cost:
     """Return the cost of a run of a checked case, estimated from its preview."""
     shell = any(model.needs_shell for model in case.models)
-    report = Cost(0.0, _SHELL_REPORT if shell else _REPORT)
-    return models_cost(preview or Preview(CheckedCase(case))) + report
+    report = (_SHELL_REPORT if shell else _REPORT) + _OF_SEGMENT * len(case.segments)
+    states = _combined_time(case, proofs=True) if case.load_cases or case.combinations else 0.0
+    return models_cost(preview or Preview(CheckedCase(case))) + Cost(0.0, report + states)
 
 
 def models_cost(preview: Preview) -> Cost:
@@ -119,15 +130,47 @@ def models_cost(preview: Preview) -> Cost:
     return total
 
 
-def states_cost(case: Case) -> Cost:
-    """Return the cost of the static states of all combinations in their load cases."""
+def states_cost(case: Case, proofs: bool) -> Cost:
+    """Return the cost of ``prove`` by beams if ``proofs``, else of ``check``."""
+    memory = _LIBRARIES + _STATE_MEMORY * len(_combined(case)) * len(case.segments) ** 2
+    others = 0.0 if proofs else _OTHER_STATES * _state_time(case, proofs)
+    return Cost(memory, _START + others + _combined_time(case, proofs))
+
+
+def _combined(case: Case) -> list[CombinationTable | None]:
+    """Return the combination of each state; None without combinations."""
     names = [one.name for one in case.load_cases] or [""]
-    count = sum(
-        len(names) if one.load_cases is None else len({*names} & {*one.load_cases})
-        for one in case.combinations
-    ) or len(names)
-    size = count * len(case.segments) ** 2
-    return Cost(_LIBRARIES + _STATE_MEMORY * size, _STATE * size)
+    combined: list[CombinationTable | None] = []
+    for one in case.combinations:
+        used = names if one.load_cases is None else {*names} & {*one.load_cases}
+        combined += [one] * len(used)
+    return combined or [None] * len(names)
+
+
+def _state_time(case: Case, proofs: bool) -> float:
+    """Return the time in s of the states of a combination in a load case, and of their proofs."""
+    segments = len(case.segments)
+    loads = build_boom(case).loads
+    instants = 1 + sum(not is_constant(load.history) for load in loads)
+    time = _STATE * segments + _OF_INSTANT * instants + _OF_BOTH * instants * segments
+    if proofs:
+        time += _PROOF * segments + _OF_BUCKLING * segments**2
+        time += _PROOF_OF_BOTH * instants * segments
+    return time
+
+
+def _combined_time(case: Case, proofs: bool) -> float:
+    """Return the time in s of all combinations in their load cases, with their motions."""
+    combined = _combined(case)
+    time = len(combined) * _state_time(case, proofs)
+    moving = sum(one is not None and one.motion for one in combined) if proofs else 0
+    if moving:
+        preview, model = Preview(CheckedCase(case)), case.models[0]
+        with suppress(*NUMERICAL_ERRORS):
+            motion = preview.motion(model)
+            modes = motion.system.num_modes
+            time += moving * motion_cost(preview.checked, model, motion, modes).seconds
+    return time
 
 
 def sweep_cost(cases: Sequence[Case]) -> Cost:

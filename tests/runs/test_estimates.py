@@ -3,6 +3,7 @@
 
 import os
 import re
+from functools import partial
 from pathlib import Path
 from time import process_time
 
@@ -26,7 +27,15 @@ from protractile.runs.pipeline.estimates import (
     sweep_cost,
 )
 from protractile.runs.sweep import points as sweep_points
-from tests.runs.case_texts import COARSE, edited, refused, shipped, table
+from tests.runs.case_texts import (
+    COARSE,
+    edited,
+    long_boom,
+    read_case,
+    refused,
+    shipped,
+    table,
+)
 from tests.runs.summaries import printed
 from tests.system.run_folder import protractile, python
 
@@ -212,9 +221,37 @@ def test_many_combined_states_need_a_confirmation() -> None:
     Path("case.toml").write_text(text, "utf-8")
     many = case_file.load("case.toml")
     with refused(
-        "case.toml: --large: missing, and it may take 7.3 GB and 7 min; give it to start anyway, "
+        "case.toml: --large: missing, and it may take 7.3 GB and 4 min; give it to start anyway, "
         "or ask for fewer outputs, members, points, states or steps, or for coarser meshes"
     ):
-        refuse_large(states_cost(many), "case.toml")
+        refuse_large(states_cost(many, proofs=False), "case.toml")
     few = many.model_copy(update={"combinations": many.combinations[:9]})
-    assert not states_cost(few).large
+    assert not states_cost(few, proofs=False).large
+
+
+@pytest.mark.parametrize(
+    ("name", "check", "prove"),
+    [
+        ("8, 40, 10", 6.84, 8.62), ("8, 8, 10", 3.9, 4.6), ("2, 30, 10", 2.92, 3.0),
+        ("crane-proof", 4.70, 4.78), ("inspection-arm", 3.44, 3.27), ("lift", 3.31, 2.88),
+    ],
+)  # fmt: skip
+def test_times_of_states_are_within_a_factor_of_two(name: str, check: float, prove: float) -> None:
+    """Reference: external, processor times in s of `check` and `prove`."""
+    if name in ("crane-proof", "inspection-arm", "lift"):
+        case = shipped(name)
+    else:
+        case = read_case(Path(), long_boom(*map(int, name.split(","))))
+    for proofs, taken in ((False, check), (True, prove)):
+        assert 0.5 * taken <= states_cost(case, proofs).seconds <= 2.0 * taken
+
+
+def test_the_time_of_a_run_includes_its_states(tmp_path: Path) -> None:
+    """Reference: analytic. Times are proportional to the number of combinations in load cases."""
+    more = table("[[load_case]]", name="heavy", payload=300.0)
+    cases = [read_case(tmp_path, long_boom(combinations=k) + more) for k in (10, 40)]
+    for of in (run_cost, partial(states_cost, proofs=True)):
+        few, many = (of(case).seconds for case in cases)
+        alone = cases[0].model_copy(update={"combinations": cases[0].combinations[:1]})
+        assert many - few == pytest.approx(30.0 / 9.0 * (few - of(alone).seconds), rel=1e-9)
+        assert many - few > 20.0
