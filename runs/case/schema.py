@@ -206,7 +206,8 @@ class BucklingTable(CaseTable):
         rising("slendernesses", falling="reduction factors", least=2),
     ] = ()
     """pairs of a slenderness and the reduction of the strength there, for proofs; unless given,
-    Winter's curve, and for shear the curve of EN 1993-1-5"""
+    Winter's curve, and for shear the curve of EN 1993-1-5; beyond the last pair the factor falls
+    with the square of the slenderness"""
 
 
 class LimitsTable(CaseTable):

@@ -211,7 +211,7 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
         governing["fatigue", name] = fatigue
     proofs = sorted(governing.values(), key=lambda one: -one.utilisation)
     of = " of the load cases" if case.load_cases else ""
-    notes = [*_missing_data_notes(case, states)]
+    notes = [*_missing_data_notes(case, states), *_curve_note(case, states)]
     return Proofs(proofs, notes, " of the combinations" if case.combinations else of)
 
 
@@ -271,21 +271,33 @@ def reduced_stress(
             :func:`shear_reduction` apply.
     """
     largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
+    slenderness = _slenderness(wall, strength)
+    along, across = _reductions(slenderness, stress_ratio(wall.edges), curve)
+    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * wall.shear / across))
+
+
+def _slenderness(wall: WallStresses, strength: float) -> Array:
+    """Return the slenderness λ̄ (num_places,) of a wall with a yield strength in Pa."""
+    largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
     equivalent = np.sqrt(largest_compression**2 + 3.0 * wall.shear**2)
     critical = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
     with np.errstate(divide="ignore"):
         # Without stress the factor is infinite, and the slenderness zero.
-        slenderness = np.sqrt(np.where(equivalent > 0.0, strength / equivalent, 0.0) / critical)
-    along, across = _reductions(slenderness, stress_ratio(wall.edges), curve)
-    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * wall.shear / across))
+        relative = np.where(equivalent > 0.0, strength / equivalent, 0.0) / critical
+    return np.asarray(np.sqrt(relative))
 
 
 def _reductions(
     slenderness: float | Array, ratio: float | Array, curve: Sequence[tuple[float, float]]
 ) -> tuple[Array, Array]:
-    """Return the reduction factors ρ and χ, both by the curve if it is not empty."""
+    """Return the reduction factors ρ and χ, both by the curve if it is not empty.
+
+    Beyond the curve they fall as the stress of elastic buckling, with 1/λ̄². Postbuckling strength
+    falls less steeply, so that this is safe.
+    """
     if curve:
-        both = np.asarray(np.interp(slenderness, *np.transpose(curve)))
+        beyond = np.maximum(slenderness, curve[-1][0]) / curve[-1][0]
+        both = np.asarray(np.interp(slenderness, *np.transpose(curve)) / beyond**2)
         return both, both
     return winter(slenderness, ratio), shear_reduction(slenderness)
 
@@ -390,6 +402,32 @@ def _foot_proofs(beam: BeamStates, table: CombinationTable, case: Case) -> Itera
             name = f"foot, {segment.name}"
             resistance = segment.foot.pin.resistance / table.resistance.pin
             yield Proof("pin", name, name, segment.foot.x, force, resistance, "N")
+
+
+def _curve_note(case: Case, states: Sequence[CombinationState]) -> Iterator[str]:
+    """Yield a note if a wall is more slender than the buckling curve of the case."""
+    if case.buckling is None or not case.buckling.curve:
+        return
+    walls = [
+        wall
+        for state in states
+        if state.beam is not None and "plate" in state.combined.combination.proofs
+        for rest in state.beam.rests
+        for wall in nominal_wall_stresses(state.beam.boom.segments, rest)
+    ]
+    slender = [
+        (float(_slenderness(wall, strength).max()), wall)
+        for wall in walls
+        if (strength := wall.segment.material.strength(wall.plate.thickness)) is not None
+    ]
+    most, wall = max(slender, key=lambda one: one[0], default=(0.0, None))
+    end = case.buckling.curve[-1][0]
+    if wall is not None and most > end:
+        yield (
+            f"`buckling.curve` ends at a slenderness of {end:g}, and the "
+            f"{_wall_text(wall.plate.name)} of {wall.segment.name} has {most:.3g}: beyond its end "
+            "the factor falls with the square of the slenderness. Give further pairs."
+        )
 
 
 def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Iterator[str]:

@@ -66,6 +66,9 @@ MANY_PERIODS = 1000.0
 MATERIALS = {"steel": (2.1e11, 7850.0), "aluminium": (7.0e10, 2700.0)}
 SAME_MODULUS, LEAST_DENSITY, MOST_DENSITY = 0.06, 0.9, 2.0
 
+# Fraction of the peak of a ground acceleration up to which it has ended.
+ENDED = 0.01
+
 # Relative difference up to which a force equals a weight, also with 10 m/s² for gravity; relative
 # difference up to which the number of a force in N equals that of a mass in kg.
 SAME_LOAD, SAME_WEIGHT = 0.025, 0.05
@@ -82,6 +85,7 @@ def proportion_cautions(case: Case, boom: Boom) -> list[str]:
         *_missing_loads(case, boom),
         *_ineffective_inputs(case),
         *_materials(case),
+        *_table_ends(case, boom),
         *_cylinders(boom),
         *_joints(case),
         *_gaps(boom),
@@ -146,6 +150,29 @@ def _materials(case: Case) -> Iterator[str]:
                     f"{where}.density: {table.density:g} kg/m³ is {weight} for {name}, whose "
                     f"Young's modulus is given; {name} has {density:g} kg/m³"
                 )
+
+
+def _table_ends(case: Case, boom: Boom) -> Iterator[str]:
+    """Yield cautions on tables whose last pair acts where it is unsafe."""
+    for number, segment in enumerate(boom.segments, start=1):
+        pairs = segment.material.yield_by_thickness
+        if not pairs or segment.section is None:
+            continue
+        plates = [plate for x in segment.ends for plate in segment.section_at(x).plates]
+        if (most := max(plate.thickness for plate in plates)) > pairs[-1][0]:
+            yield (
+                f"segment[{number}].section: a plate of {most:g} m is thicker than the last pair "
+                f"of yield_by_thickness, {pairs[-1][0]:g} m, and takes its strength; add a pair"
+            )
+    for number, base in enumerate(case.base, start=1):
+        if base.table is None:
+            continue
+        (end, last), most = base.table[-1], max(abs(factor) for _, factor in base.table)
+        if end < case.time.duration and abs(last) > ENDED * most:
+            yield (
+                f"base[{number}]: its table ends at {end:g} s with {100.0 * abs(last) / most:.3g} "
+                "% of its peak, which acts until the run ends; end it with 0"
+            )
 
 
 def _cylinders(boom: Boom) -> Iterator[str]:

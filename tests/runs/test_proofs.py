@@ -29,6 +29,8 @@ from tests.runs.test_combinations import CASES, LIFT, by_hand
 from tests.system.run_folder import protractile
 
 G = 9.80665
+# Slendernesses of a curve that ends beyond all walls.
+LONG = np.linspace(0.2, 4.0, 400)
 HEIGHT, WIDTH, FLANGE, WEB, LENGTH = 0.40, 0.30, 0.016, 0.008, 6.0
 # A cantilever without weight, with a load across its tip and a force along it.
 ARM = f"""
@@ -102,6 +104,21 @@ def test_reduced_stress_of_a_wall() -> None:
     assert shear_reduction(slenderness) == pytest.approx(chi)
     (own,) = reduced_stress(wall, 460e6, [(0.0, 1.0), (slenderness, 0.5), (3.0, 0.1)])
     assert own == pytest.approx(equivalent / 0.5, rel=1e-9)
+
+
+def test_the_factor_falls_beyond_the_end_of_a_curve(tmp_path: Path) -> None:
+    """Reference: a longer curve that falls with the square of the slenderness from its end on."""
+    slender = "buckling = {{ curve = [[0.0, 1.0], {}] }}\n{}"
+    found = []
+    for pairs in ("[0.2, 0.9]", ", ".join(f"[{s:.4f}, {0.036 / s**2:.9f}]" for s in LONG)):
+        title, rest = ARM.split("\n", 2)[1:]
+        proofs, whole = proofs_of(tmp_path, f"{title}\n" + slender.format(pairs, rest))
+        found.append((proofs["plate", "arm"].utilisation, whole.notes))
+    (short, notes), (longer, none) = found
+    assert short == pytest.approx(longer, rel=1e-4)
+    (note,) = [note for note in notes if note.startswith("`buckling.curve` ends at a slenderness")]
+    assert "of 0.2, and the " in note
+    assert not any("buckling.curve" in note for note in none)
 
 
 def test_yield_plate_and_deflection_of_a_cantilever(tmp_path: Path) -> None:

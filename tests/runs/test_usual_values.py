@@ -20,6 +20,12 @@ from tests.runs.case_texts import (
     table,
 )
 
+PUSH = """[[base]]
+acceleration = 0.5
+group = "wind"
+table = [[0.0, 0.0], [1.0, 0.5]]
+
+"""
 PIN = {"diameter": 0.04, "strength": 8e8}
 PAD = {"length": 0.12, "width": 0.05, "thickness": 0.012, "allowable_pressure": 2e7}
 LIFT = f"""
@@ -119,6 +125,11 @@ def test_senseless_values_are_refused(tmp_path: Path, old: str, new: str, line: 
          "combination[1].factors: all are 0, so that no load acts"),
         ("magnitude = -30.0", "magnitude = -110000.0",
          "load_case[1].load[1].magnitude: -1.1e+05 N/m is "),
+        ("[[joint]]", PUSH + "[[joint]]",
+         "base[1]: its table ends at 1 s with 100 % of its peak, which acts until the run ends; "),
+        ("density = 7850.0", "density = 7850.0\nyield_by_thickness = [[0.005, 3.55e8]]",
+         "segment[1].section: a plate of 0.006 m is thicker than the last pair of "
+         "yield_by_thickness, 0.005 m, and takes its strength; add a pair"),
         ("flange = 0.006, web = 0.005", "flange = 0.005, web = 0.006",
          "segment[1].section: the flanges of 0.005 m are thinner than the webs of 0.006 m; "),
         ("gravity = { angle = 45.0 }", "gravity = { acceleration = 9.81 }",
