@@ -165,6 +165,19 @@ def test_the_slider_moves_the_boom(page: Page, folder: Path) -> None:
     page.complaints.clear()
 
 
+@pytest.mark.parametrize(("loaded", "width"), [(400, 400), (1000, 400), (1000, 1000)])
+def test_the_colour_bar_is_within_the_window(
+    page: Page, folder: Path, loaded: int, width: int
+) -> None:
+    """Reference: the width of the window, also of one that has become narrower."""
+    page.open(folder / "viewer.html", loaded)
+    page.wait_for(f"{BOOM}.dataset.frame == '0'")
+    page.set_width(width)
+    bar = "[...document.querySelectorAll('[class^=cb] text')].map(e => e.getBoundingClientRect())"
+    page.wait_for(f"{bar}.length > 2 && {bar}.every(e => e.left >= 0 && e.right <= {width})")
+    page.complaints.clear()
+
+
 def test_the_browser_would_notice(page: Page, tmp_path: Path) -> None:
     """Reference: a page with every fault, all of which are found."""
     path = tmp_path / "faulty.html"
