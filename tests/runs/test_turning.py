@@ -173,8 +173,9 @@ def test_luffing_cylinder() -> None:
     assert (jack.length, jack.arm(foot)) == pytest.approx((5.0, 12.0 / 5.0))
     raised = jack.luffed(np.deg2rad(90.0), foot)
     assert (raised.length, raised.arm(foot)) == pytest.approx((7.0, 0.0), abs=1e-12)
-    deep = replace(jack, depth=0.5, ground=(0.0, -4.5)).luffed(0.3, replace(foot, depth=0.5))
-    assert deep.length == pytest.approx(jack.luffed(0.3, foot).length)
+    pin, turned = replace(foot, depth=0.5), jack.luffed(0.3, foot)
+    deep = replace(jack, depth=0.5, ground=(0.0, -4.5)).luffed(0.3, pin)
+    assert (deep.length, deep.arm(pin)) == pytest.approx((turned.length, turned.arm(foot)))
 
 
 def test_table_of_luffing() -> None:
