@@ -96,7 +96,7 @@ def panel_factor(
     """
     young, nu, edges = material.youngs_modulus, material.poissons_ratio, np.asarray(edges)
     unit = np.pi**2 * young / (12.0 * (1.0 - nu**2) * slenderness**2)
-    shear_ratio = np.abs(shear) / (SHEAR * unit)
+    shear_ratio = shear / (SHEAR * unit)
     ratio = stress_ratio(edges)
     compression = np.maximum(-edges.min(axis=0), 0.0) / (normal_coefficient(ratio) * unit)
     mean = 0.25 * (1.0 + ratio) * compression

@@ -66,13 +66,15 @@ def test_shear_interacts() -> None:
 
 
 def test_the_weakest_wall_of_a_segment() -> None:
-    """Reference: analytic. Moments compress the bottom flange; torque shears all walls."""
+    """Reference: analytic. Moments compress the bottom flange; torque shears all walls, and axial
+    forces compress them.
+    """
     box = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
     segment = Segment.of_section("outer", 0.0, 2.0, STEEL, box)
 
-    def weakest(**curves: list[float]) -> tuple[str, float, float]:
+    def weakest(normal: float = 0.0, **curves: list[float]) -> tuple[str, float, float]:
         nothing = {"deflection": [0.0, 0.0], "moment": [0.0, 0.0]}
-        diagram = Diagram("outer", [0.0, 2.0], [0.0, 0.0], nothing | curves)
+        diagram = Diagram("outer", [0.0, 2.0], [0.5 * normal, normal], nothing | curves)
         rest = StaticResult(0.0, 0.0, None, [diagram], [], [], {})
         (found,) = weakest_panels((segment,), rest)
         return found.wall, found.x, found.factor
@@ -80,6 +82,8 @@ def test_the_weakest_wall_of_a_segment() -> None:
     flange = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.006 / 0.4) ** 2
     stress = 1.0e5 * 0.25 / box.second_moment_of_area
     assert weakest(moment=[0.0, 1.0e5]) == ("bottom", 2.0, pytest.approx(4.0 * flange / stress))
+    pressed = pytest.approx(4.0 * flange * box.area / 1.0e6)
+    assert weakest(-1.0e6) == ("bottom", 2.0, pressed)
     shear = 1.0e5 / (2.0 * 0.2 * 0.006)
     wall, x, factor = weakest(torque=[1.0e5, 1.0e4])
     assert (wall, x) == ("bottom", 0.0)

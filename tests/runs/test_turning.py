@@ -25,7 +25,7 @@ from protractile.geometry.support import Support
 from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
-from protractile.runs.case.motion_tables import HoistTable, LuffTable
+from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
 from protractile.runs.case.motions import turning_changes, turning_loads
 from protractile.runs.case.reading import CheckedCase, load
 from protractile.runs.case.schema import Case
@@ -164,6 +164,30 @@ def test_moment_and_work_of_slewing(tmp_path: Path) -> None:
     assert moment[500] == pytest.approx(inertia * rate, rel=1e-3)
     assert work[2000] == pytest.approx(0.5 * inertia * rate**2, rel=2e-3)
     assert work[-1] == pytest.approx(0.0, abs=2e-3 * work[2000])
+
+
+def test_moments_of_a_swinging_load() -> None:
+    """Reference: by hand. A load off the tip by s pulls it by W s/l horizontally: on the way of the
+    slewing drive, and down about the foot. At rest at 60 degrees, 1 m in front of the axis.
+    """
+    weight, length = 5000.0 * 9.80665, 2.0
+    hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, pendulum=length)
+    boom = build_boom(shipped("hoist"))
+    turning = {
+        "slew": SlewTable(travel=60.0, time=5.0, radius=1.0),
+        "luff": LuffTable(travel=10.0, time=5.0),
+    }
+    case = shipped("hoist").model_copy(update={"hoist": hung, **turning})
+
+    def moments(aside: float, out: float) -> list[float]:
+        data = motion(rope_force=[weight] * 3, swing_aside=[aside] * 3, swing_out=[out] * 3)
+        data["rope_force"].attrs["weight"] = weight
+        return [float(moment[0]) for moment, _ in drive_moments(case, boom, data).values()]
+
+    still, swung = np.array(moments(0.0, 0.0)), np.array(moments(0.3, 0.2))
+    reach, up = 1.0 + 0.5 * boom.tip, np.sqrt(0.75) * boom.tip
+    added = weight / length * np.array([-0.3 * reach, 0.2 * up])
+    assert swung - still == pytest.approx(added, rel=1e-9)
 
 
 def test_luffing_cylinder() -> None:
