@@ -84,6 +84,11 @@ def test_the_weakest_wall_of_a_segment() -> None:
     assert weakest(moment=[0.0, 1.0e5]) == ("bottom", 2.0, pytest.approx(4.0 * flange / stress))
     pressed = pytest.approx(4.0 * flange * box.area / 1.0e6)
     assert weakest(-1.0e6) == ("bottom", 2.0, pressed)
+    # A positive moment presses the fibres with y < 0, on the left.
+    web = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.008 / 0.5) ** 2
+    stress = 1.0e5 * 0.2 / box.lateral_second_moment_of_area
+    found = weakest(lateral_moment=[0.0, 1.0e5])
+    assert found == ("left", 2.0, pytest.approx(4.0 * web / stress))
     shear = 1.0e5 / (2.0 * 0.2 * 0.006)
     wall, x, factor = weakest(torque=[1.0e5, 1.0e4])
     assert (wall, x) == ("bottom", 0.0)
