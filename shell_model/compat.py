@@ -6,6 +6,7 @@ All other modules of this package use the current interface.
 
 from __future__ import annotations
 
+import errno
 import fcntl
 import inspect
 import os
@@ -39,6 +40,11 @@ _JIT_DEFAULTS = getattr(jit, "DOLFINX_DEFAULT_JIT_OPTIONS", None) or (
 _FORMS, *_MEANING = _JIT_DEFAULTS["cache_dir"]
 _JIT_DEFAULTS["cache_dir"] = (Path(_FORMS) / "protractile", *_MEANING)
 
+_NO_COMPILER = (
+    "the forms of a shell are compiled once, which needs a C compiler and Python's headers: "
+    "apt install gcc python3-dev, or dnf install gcc python3-devel"
+)
+
 
 def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., Any]:
     """Return a compiler that waits until no other process compiles. Collective.
@@ -47,6 +53,9 @@ def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., An
     seconds, and then fails, for example if the first process was killed. So the forms of this
     program have their own folder, in which only one process compiles at a time. An unfinished form
     there belongs to a killed process and is removed.
+
+    Raises:
+        OSError: a form is not in the folder, and cannot be compiled.
     """
 
     @wraps(compile_form)
@@ -65,7 +74,14 @@ def _compile_one_at_a_time(compile_form: Callable[..., Any]) -> Callable[..., An
             for source in folder.glob("*.c"):
                 if not source.with_suffix(".c.cached").exists():
                     source.unlink()
-            return compile_form(comm, *arguments, **options)
+            try:
+                return compile_form(comm, *arguments, **options)
+            except Exception as error:
+                # The class of the error depends on the number of ranks.
+                if "CompileError: " not in str(error):
+                    raise
+                reason = str(error).partition("CompileError: ")[2]
+                raise OSError(errno.ENOENT, f"{reason}; {_NO_COMPILER}", "CC") from None
 
     return compiled
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -24,6 +25,7 @@ from protractile.runs.case.kinds.model import BuildContext, BuiltModel, ModelBoo
 from protractile.runs.case.motions import hanging_load, with_elastic_drives, with_hanging_load
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.static_results import instants
+from protractile.runs.process.terminal import NOTICES, shorten
 
 if TYPE_CHECKING:
     from protractile.dynamics.integrator import AdaptiveStep, FixedStep
@@ -175,6 +177,12 @@ class MotionPlan:
 
         with compilation_lock():
             if not march.signatures:
+                folder = march.stats.cache_path
+                if not any(Path(folder).glob("march.march-*.nbc")):
+                    NOTICES.warning(
+                        "compiling the time loop (half a minute), for later runs too, into %s",
+                        shorten(folder),
+                    )
                 self.integrator(replace(self.motion, duration=self.motion.output_step))
 
     def trajectory(self, progress: Callable[[float], None] | None = None) -> Trajectory:

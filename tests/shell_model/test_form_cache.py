@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Compilation after a process was killed while it compiled the same form."""
+"""Compilation of forms without a compiler, and after a process was killed while it compiled."""
 
 import os
 import signal
@@ -30,12 +30,14 @@ print(fem.assemble_scalar(fem.form(one * ufl.dx(domain=domain))))
 """
 
 
-def compile_form(folder: Path, killed: bool) -> subprocess.CompletedProcess[str]:
+def compile_form(
+    folder: Path, killed: bool, **environment: str
+) -> subprocess.CompletedProcess[str]:
     """Compile and evaluate a form. Reference: analytic, the integral of 3 over a unit."""
     outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
     return subprocess.run(
         [sys.executable, "-c", COMPILE.format(killed=killed)],
-        env=outside | {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder)},
+        env=outside | {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder)} | environment,
         capture_output=True,
         text=True,
         check=False,
@@ -46,3 +48,15 @@ def test_next_process_completes_a_killed_compilation(tmp_path: Path) -> None:
     assert compile_form(tmp_path, True).returncode == -signal.SIGKILL
     assert list((tmp_path / "fenics" / "protractile").glob("*.c"))
     assert compile_form(tmp_path, False).stdout == "3.0\n"
+
+
+def test_only_the_first_compilation_needs_a_compiler(tmp_path: Path) -> None:
+    """Reference: by construction. The last line names the compiler and the packages."""
+    missing = compile_form(tmp_path, False, CC="/no/cc").stderr.splitlines()[-1]
+    assert "/no/cc" in missing
+    assert missing.endswith(
+        "; the forms of a shell are compiled once, which needs a C compiler and Python's headers: "
+        "apt install gcc python3-dev, or dnf install gcc python3-devel: 'CC'"
+    )
+    assert compile_form(tmp_path, False).stdout == "3.0\n"
+    assert compile_form(tmp_path, False, CC="/no/cc").stdout == "3.0\n"
