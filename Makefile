@@ -45,6 +45,10 @@ BIN := .venv/bin
 READY := .venv/ready-$(DOLFINX)
 SPHINX := .venv/sphinx-$(DOLFINX)
 endif
+# Pip makes environments, and FFCx compiles the forms of shells.
+FIND_TOOLS := import ensurepip, os, shutil, sys, venv; from sysconfig import get_config_var, get_path; \
+    compiler = (os.environ.get("CC") or get_config_var("CC")).split()[0]; \
+    sys.exit(not (shutil.which(compiler) and os.path.exists(get_path("include") + "/Python.h")))
 VENV_debian := /usr/bin/python3 -m venv --system-site-packages
 VENV_pip := $(PYTHON) -m venv
 NEEDS_debian := .[report,test,mesh]
@@ -166,7 +170,8 @@ packages-debian:
 	@.ci/debian-packages
 
 packages-pip:
-	@$(PYTHON) -c 'import ensurepip, venv' || { echo "$(PYTHON) has no venv; install it (Debian: python3-venv)" >&2; exit 1; }
+	@$(PYTHON) -c '$(FIND_TOOLS)' 2>/dev/null || { echo "no venv, C compiler or headers of $(PYTHON); install them \
+	(apt install gcc python3-dev python3-venv, or dnf install gcc python3-devel)" >&2; exit 1; }
 
 .ci/constraints-%.txt:
 	@echo "$*: neither Debian 12 nor 13; give a Python of 3.12 or later by PYTHON=python3.13" >&2; exit 1

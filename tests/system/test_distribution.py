@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Content of an installation, and equal versions in all files."""
 
+import os
 import re
+import subprocess
+import sys
 import tomllib
 from pathlib import Path
 
@@ -29,3 +32,18 @@ def test_version_equals_changelog_and_citation() -> None:
     newest = re.search(r"^## \[(.+?)\]", read("CHANGELOG.md"), re.MULTILINE)
     cited = re.search(r"^version: (.+)$", read("CITATION.cff"), re.MULTILINE)
     assert newest[1] == cited[1] == version
+
+
+@pytest.mark.parametrize(("compiler", "status"), [("/no/cc", 2), (sys.executable, 0)])
+def test_make_names_what_pip_cannot_install(compiler: str, status: int) -> None:
+    """Reference: by construction. Any program stands for a compiler."""
+    command = ["make", "--no-print-directory", "packages-pip", f"PYTHON={sys.executable}"]
+    made = subprocess.run(
+        command, cwd=ROOT, env=os.environ | {"CC": compiler}, capture_output=True, text=True
+    )
+    assert made.returncode == status
+    if status:
+        assert made.stderr.splitlines()[0] == (
+            f"no venv, C compiler or headers of {sys.executable}; install them "
+            "(apt install gcc python3-dev python3-venv, or dnf install gcc python3-devel)"
+        )
