@@ -3,9 +3,12 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 import tomllib
+import venv
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -18,13 +21,54 @@ def read(name: str) -> str:
     return (ROOT / name).read_text(encoding="utf-8")
 
 
-def test_wheel_contains_one_package() -> None:
-    setuptools = pytest.importorskip("setuptools", reason="setuptools finds what a wheel brings")
-    options = PYPROJECT["tool"]["setuptools"]["packages"]["find"]
-    assert options.pop("namespaces") is False
-    found = setuptools.find_packages(str(ROOT), **options)
-    assert {name.split(".")[0] for name in found} == {"protractile"}
-    assert {"protractile.runs.report", "protractile.shell_model.contact"} <= {*found}
+def output(*command: str | Path, cwd: Path) -> str:
+    """Run a program that does not find the checkout, and return its output."""
+    outside = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
+    return subprocess.run(
+        command, cwd=cwd, env=outside, check=True, capture_output=True, text=True
+    ).stdout
+
+
+def build(kind: str, sources: Path, into: Path) -> Path:
+    """Build a wheel or an sdist without the network, and return its file."""
+    code = f"from setuptools import build_meta; print(build_meta.build_{kind}({str(into)!r}))"
+    into.mkdir()
+    return into / output(sys.executable, "-c", code, cwd=sources).splitlines()[-1]
+
+
+@pytest.mark.slow
+def test_wheel_of_the_sdist_brings_all_files_and_the_command(tmp_path: Path) -> None:
+    """Reference: by construction, the files under version control."""
+    pytest.importorskip("setuptools", minversion="77", reason="setuptools builds wheels")
+    tracked = output("git", "ls-files", "-z", cwd=ROOT).split("\0")[:-1]
+    for name in tracked:
+        copy = tmp_path / "clone" / name
+        copy.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy2(ROOT / name, copy, follow_symlinks=False)
+    sdist = build("sdist", tmp_path / "clone", tmp_path / "sdist")
+    shutil.unpack_archive(sdist, tmp_path / "unpacked")
+    (sources,) = (tmp_path / "unpacked").iterdir()
+    wheel = build("wheel", sources, tmp_path / "wheel")
+    links = {path.name for path in (ROOT / "protractile").iterdir() if path.is_symlink()}
+    of_links = {f"protractile/{name}" for name in tracked if name.split("/")[0] in links}
+    own = {name for name in tracked if name.startswith("protractile/")}
+    with zipfile.ZipFile(wheel) as archive:
+        brought = {name for name in archive.namelist() if ".dist-info/" not in name}
+    assert brought == of_links | own - {f"protractile/{name}" for name in links}
+
+    home = tmp_path / "environment"
+    venv.create(home)
+    program = home / "bin" / "python"
+    pip = sys.executable, "-m", "pip", "--python", program, "install", "--no-deps", "--no-index"
+    output(*pip, wheel, cwd=tmp_path)
+    (site,) = (home / "lib").glob("python*/site-packages")
+    assert (site / "protractile" / "geometry" / "boom.py").exists()
+    # Dependencies are those of this environment, whose own protractile is no folder in it.
+    (site / "others.pth").write_text("\n".join(path for path in sys.path if "-packages" in path))
+    assert output(program, "-c", "import protractile as p; print(p.__file__)", cwd=tmp_path) == (
+        f"{site}/protractile/__init__.py\n"
+    )
+    assert "sweep" in output(home / "bin" / "protractile", "--help", cwd=tmp_path)
 
 
 def test_version_equals_changelog_and_citation() -> None:
