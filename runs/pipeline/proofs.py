@@ -412,8 +412,7 @@ def _curve_note(case: Case, states: Sequence[CombinationState]) -> Iterator[str]
         wall
         for state in states
         if state.beam is not None and "plate" in state.combined.combination.proofs
-        for rest in state.beam.rests
-        for wall in nominal_wall_stresses(state.beam.boom.segments, rest)
+        for wall in nominal_wall_stresses(state.beam.boom.segments, state.beam.rests)
     ]
     slender = [
         (float(_slenderness(wall, strength).max()), wall)
