@@ -34,6 +34,7 @@ from protractile.runs.pipeline.models import axial_travels
 from protractile.runs.pipeline.turning import (
     drive_moments,
     shaper_lines,
+    swing_cautions,
     turning_cautions,
     turning_lines,
 )
@@ -188,6 +189,18 @@ def test_moments_of_a_swinging_load() -> None:
     reach, up = 1.0 + 0.5 * boom.tip, np.sqrt(0.75) * boom.tip
     added = weight / length * np.array([-0.3 * reach, 0.2 * up])
     assert swung - still == pytest.approx(added, rel=1e-9)
+
+
+def test_large_swings_are_cautioned() -> None:
+    """Reference: by hand, arctan of 0.8 m over 2 m; 0.39 m are just small."""
+    hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, pendulum=2.0)
+    case = shipped("hoist").model_copy(update={"hoist": hung})
+    swings = ("model", "time"), [[0.0, -0.8], [0.0, 0.39]]
+    data = xr.Dataset({"swing_aside": swings}, {"model": ["far", "near"]})
+    assert [*swing_cautions(case, data)] == [
+        "caution: hoist.pendulum: in far the load swings by 21.8 degrees; its model is for small "
+        "angles"
+    ]
 
 
 def test_luffing_cylinder() -> None:
