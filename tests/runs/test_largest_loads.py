@@ -32,7 +32,16 @@ from protractile.runs.pipeline.section_forces import section_forces
 from protractile.runs.pipeline.statics import boom_with_play, reactions, statics
 from protractile.runs.pipeline.strength import Fibres, outer_corners
 from studies.reference_models.statics import static_response
-from tests.runs.case_texts import CLAMPED, STEEL, box, elements, joint, read_case, table
+from tests.runs.case_texts import (
+    CLAMPED,
+    STEEL,
+    box,
+    elements,
+    joint,
+    read_case,
+    shipped,
+    table,
+)
 from tests.runs.summaries import answers_of, printed_check
 
 # Depth of outer fibres and second moment of area of the boxes below.
@@ -102,6 +111,16 @@ def test_largest_values_of_a_sine_and_a_ramp(tmp_path: Path) -> None:
     assert arm.time == pytest.approx(0.375)
     moment = 2000.0 * 14.0 + 500.0 * 6.0
     assert arm.largest == pytest.approx(moment * 0.204 / inertia, rel=1e-6)
+
+
+def test_of_equal_extremes_the_first_counts() -> None:
+    """Reference: analytic. Lateral loads after t = 0 change no vertical force of this arm."""
+    case = shipped("inspection-arm")
+    states = BeamStates.of(case, boom_with_play(case, build_boom(case)))
+    found = [one for one in states.extremes(case.system) if one.kind == "pad"]
+    upright = [one for one in found if "lateral" not in one.part]
+    assert states.time.size > 2
+    assert [one.time for one in upright] == [0.0] * 4
 
 
 def test_overloads_are_cautions(tmp_path: Path) -> None:

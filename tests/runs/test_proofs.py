@@ -24,7 +24,18 @@ from protractile.runs.pipeline.proofs import (
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.report.document import render
 from protractile.runs.report.pages import Addition
-from tests.runs.case_texts import CLAMPED, STEEL, box, read_case, refusal, shipped, table
+from tests.runs.case_texts import (
+    CLAMPED,
+    HINGED,
+    STEEL,
+    box,
+    elements,
+    joint,
+    read_case,
+    refusal,
+    shipped,
+    table,
+)
 from tests.runs.test_combinations import CASES, LIFT, by_hand
 from tests.system.run_folder import protractile
 
@@ -327,3 +338,30 @@ def test_shipped_cases_are_proved() -> None:
 )  # fmt: skip
 def test_bad_proofs(tmp_path: Path, change: tuple[str, str], message: str) -> None:
     assert refusal(tmp_path, ARM.replace(*change)) == message
+
+
+def test_a_cylinder_after_a_pair_is_judged_by_its_own_force(tmp_path: Path) -> None:
+    """Reference: other code path, the static result by the name of the cylinder. A pair in a boom
+    in space has the difference of its forces, too.
+    """
+    jack = {"segment": "base", "depth": 0.2, "stiffness": 5e8}
+    text = f"""
+title = "Two cylinders"
+time = {{ duration = 1.0 }}
+gravity = {{ angle = 0.0 }}
+start = {{ state = "equilibrium" }}
+{STEEL}{elements("beam")}
+{box("base", 6.0, (0.3, 0.2, 0.006, 0.005), HINGED)}
+{box("fly", (4.5, 9.0), (0.25, 0.15, 0.005, 0.004))}
+{joint("fly", "base", 0.002, (4.6, 5.9), "lateral_play = 0.002")}
+{table("[[cylinder]]", x=2.0, ground=[0.7, -1.6], spread=0.5, **jack)}
+{table("[[cylinder]]", x=4.0, ground=[2.5, -1.6], capacity=1e5, **jack)}
+{table("[[load]]", segment="fly", x=9.0, magnitude=500.0, direction="y")}
+{table("[[load]]", segment="fly", x=9.0, magnitude=-1000.0)}
+"""
+    found, _ = proofs_of(tmp_path, text)
+    (state,) = combination_states(read_case(tmp_path, text))
+    assert state.beam is not None
+    forces = state.beam.rests[0].cylinders
+    assert found["cylinder", "cylinder 2"].demand == pytest.approx(forces["cylinder_force-2"])
+    assert abs(forces["cylinder_force_difference"]) < 0.8 * forces["cylinder_force-2"]
