@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from math import prod, sqrt
+from math import inf, prod, sqrt
 from typing import Any, NamedTuple
 
 from protractile.geometry.boom import Boom
@@ -135,7 +135,8 @@ def usual_of_tables(case: Case, boom: Boom) -> Mapping[type, Mapping[str, UsualO
     speed = Usual("the speed at t = 0", 0.0, 20.0, 20.0)
     turn = Usual("the rate of rotation at t = 0", 0.0, 20.0, 20.0)
     moving = Usual("the speed of telescoping", 1.0e-4, 5.0, 200.0)
-    travel = Usual("the length of telescoping", 1.0e-3 * length, length, 1.0e3)
+    # The overlap refuses long ones, and a length of almost 0 is a constant extension.
+    travel = Usual("the length of telescoping", 1.0e-3 * length, length, inf)
     hoisting = Usual("the length of hoisting", 2.0e-3 * length, 200.0, 1.0e3)
     turning = Usual("the angle of turning", 0.0, 720.0, 10.0)
     # Twice the square root of the largest usual stiffness and the mass of the boom, for dashpots.
