@@ -90,5 +90,6 @@ def test_make_names_what_pip_cannot_install(compiler: str, status: int) -> None:
         assert made.stderr.splitlines()[0] == (
             f"no venv, C compiler, headers of {sys.executable} or libraries of gmsh; install them "
             "(apt install gcc python3-dev python3-venv libglu1-mesa libxft2 libxcursor1 "
-            "libxinerama1, or dnf install gcc python3-devel mesa-libGLU libXft libXcursor libXinerama)"
+            "libxinerama1, or dnf install gcc python3-devel mesa-libGLU libXft libXcursor "
+            "libXinerama)"
         )
