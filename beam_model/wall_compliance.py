@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -209,7 +210,12 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     # Collars over a whole wall end at the folds of the wall, except for round-off.
     at_fold = np.abs(np.subtract.outer(edges, folds)).min(axis=1) < section.near
     edges = np.unique(np.concatenate([folds, edges[~at_fold]]))
-    around = HermiteAxis(_graded_nodes(edges, length, (0.0, folds[-1])), closed=True)
+    # Each wall has elements that mirror each other, so that a symmetric section remains symmetric.
+    divided = [
+        np.linspace(*wall, int(np.ceil(round((wall[1] - wall[0]) / length, 9))) + 1)
+        for wall in pairwise(folds)
+    ]
+    around = HermiteAxis(_with_cuts(edges, length, np.concatenate(divided)), closed=True)
     plates = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
 
     closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
@@ -268,6 +274,11 @@ def _graded_nodes(cuts: Array, length: float, fine: tuple[float, float]) -> Arra
     count = int(np.ceil((fine[1] - fine[0]) / length))
     beyond = length * np.cumsum(_GROWTH ** np.arange(1, 30))
     nodes = np.concatenate([fine[0] - beyond, np.linspace(*fine, count + 1), fine[1] + beyond])
+    return _with_cuts(cuts, length, nodes)
+
+
+def _with_cuts(cuts: Array, length: float, nodes: Array) -> Array:
+    """Return ``cuts`` and the nodes (num_nodes,) in m between them that are not near a cut."""
     inside = nodes[(cuts[0] < nodes) & (nodes < cuts[-1])]
     apart = np.abs(np.subtract.outer(inside, cuts)).min(axis=1) > 0.3 * length
     return np.sort(np.concatenate([cuts, inside[apart]]))

@@ -87,3 +87,16 @@ def test_pad_flush_with_the_segment_end_tolerates_round_off() -> None:
         for end in (LENGTH, np.nextafter(LENGTH, 0.0))
     )
     assert rounded == pytest.approx(exact, rel=1e-9)
+
+
+def test_a_symmetric_section_has_a_symmetric_compliance() -> None:
+    """Reference: analytic, by the symmetry of a box; one pad is on one side of the middle."""
+    width = 0.211
+    box = Segment.of_section("box", 0.0, LENGTH, STEEL, BoxSection(0.29, width, WALL, WALL))
+    near, far = 0.5 * width - 0.007, 0.5 * width - 0.057
+    left, right = (
+        PressedArea(0.0, 0.1, "z", 1, (tuple(sorted((side * near, side * far))),))
+        for side in (-1.0, 1.0)
+    )
+    one, other = np.diag(wall_compliance.wall_compliance(box, (left, right)))
+    assert one == pytest.approx(other, rel=1e-10)

@@ -42,7 +42,7 @@ def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
     case = shipped("lift")
     share, *remedies = pad_wall_sentences(case)
     assert share == (
-        "Walls bend under pads, which moves the tip by -60.64 of -378.5 mm, 16 %, under the loads "
+        "Walls bend under pads, which moves the tip by -60.66 of -378.5 mm, 16 %, under the loads "
         "at t = 0.1 s (estimate from plates)."
     )
     assert remedies == [
