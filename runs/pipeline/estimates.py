@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from protractile.dynamics.excitation import is_constant
+from protractile.dynamics.excitation import History, is_constant
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.motion import MOST_STEPS, Motion
 from protractile.runs.case.build import build_boom
@@ -150,8 +150,9 @@ def _combined(case: Case) -> list[CombinationTable | None]:
 def _state_time(case: Case, proofs: bool) -> float:
     """Return the time in s of the states of a combination in a load case, and of their proofs."""
     segments = len(case.segments)
-    loads = build_boom(case).loads
-    instants = 1 + sum(not is_constant(load.history) for load in loads)
+    # An impulse or a released load changes at t = 0 only.
+    histories = [load.history for load in build_boom(case).loads]
+    instants = 1 + sum(isinstance(one, History) and not is_constant(one) for one in histories)
     time = _STATE * segments + _OF_INSTANT * instants + _OF_BOTH * instants * segments
     if proofs:
         time += _PROOF * segments + _OF_BUCKLING * segments**2
