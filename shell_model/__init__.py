@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shells as gap systems: FEniCSx forms, contact rows, reduction, stresses."""
 
+import os
 from contextlib import suppress
 
-# The wheels of DOLFINx need MPI before every other library of theirs, which this module loads.
-with suppress(ModuleNotFoundError):
-    import dolfinx_solver  # noqa: F401 # its import alone does it
+# The wheels of DOLFINx need MPI before every other library of theirs, which this module loads. It
+# aborts under the launcher of Open MPI, which `runs.process.ranks` refuses.
+if "PMIX_RANK" not in os.environ:
+    with suppress(ImportError):
+        import dolfinx_solver  # noqa: F401 # its import alone does it
