@@ -216,16 +216,6 @@ def test_imports_without_memory_are_one_line(tmp_path: Path) -> None:
         assert ended.stderr.startswith("protractile: out of memory (")
 
 
-def test_a_contact_without_digits_is_one_line(protractile: Protractile) -> None:
-    edit("stiffness = 1e13", "stiffness = 1e100")
-    status, out, err = protractile(f"run case.toml {SERIES} --out out")
-    assert (status, out, err.count("\n")) == (3, "", 1)
-    assert err.startswith(
-        "protractile: case.toml: model[1]: contact and friction forces do not converge even in "
-    )
-    assert err.endswith(" s; make the contact softer\n")
-
-
 @pytest.mark.usefixtures("unprinted")
 def test_failed_demand_is_printed_and_sets_the_exit_status(protractile: Protractile) -> None:
     edit("[time]", 'demand = ["S1", "S11"]\n\n[time]')

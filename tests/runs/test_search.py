@@ -102,7 +102,7 @@ def test_search_with_governing_walls_gives_a_caution() -> None:
         (("--vary", LENGTHS, "--vary", "segment.load=1,2", "--until", "tip<0.9"),
          "--until: 2 keys vary; give one --vary"),
         # At 5 m the tip is 5.0625 mm, whose fourth digit depends on round-off.
-        (("--vary", "segment.length=3,4", "--until", "tip_at_rest<0.5"),
+        (("--vary", "segment[1].length=3,4", "--until", "tip_at_rest<0.5"),
          "--until: static tip deflection (maximum load) does not pass 500 mm over "
          f"segment[1].length, where it is {1e3 * static_tip(3.0):.4g} mm to "
          f"{1e3 * static_tip(4.0):.4g} mm; give values of segment[1].length around one place "
