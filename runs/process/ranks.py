@@ -35,7 +35,7 @@ def enter_mpi(
     """Return the communicator of the ranks that share the shells; None for a case without shells.
 
     Raises:
-        BadInput: the case has a shell, and FEniCSx is not installed.
+        BadInput: the case has a shell, and FEniCSx or a library of gmsh is not installed.
     """
     from protractile.runs.case.messages import BadInput
 
@@ -53,6 +53,15 @@ def enter_mpi(
                     f"model[{number}].kind",
                     f"a shell needs FEniCSx, which cannot be imported ({error}); install it (pip "
                     f"install 'protractile[shell]', or Debian's python3-dolfinx), or {without}",
+                ) from None
+            except OSError as error:
+                # The wheel of gmsh brings no library of X and OpenGL, which it loads.
+                raise BadInput(
+                    file,
+                    f"model[{number}].kind",
+                    f"a shell needs gmsh, which misses a library ({error}); install it (apt "
+                    "install libglu1-mesa libxft2 libxcursor1 libxinerama1, or dnf install "
+                    f"mesa-libGLU libXft libXcursor libXinerama), or {without}",
                 ) from None
             return world
     return None

@@ -262,6 +262,31 @@ def test_a_shell_without_fenicsx_is_one_line(protractile: Protractile) -> None:
     assert not Path("out").exists()
 
 
+def test_a_missing_library_of_gmsh_is_one_line(tmp_path: Path) -> None:
+    """Reference: the error of the loader without the library."""
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+    missing = "libGLU.so.1: cannot open shared object file: No such file or directory"
+    program = f"""
+import sys
+class Loader:
+    def find_spec(self, name, path=None, target=None):
+        if name == "gmsh":
+            raise OSError("{missing}")
+sys.meta_path.insert(0, Loader())
+from protractile.__main__ import main
+sys.argv = ["protractile", "run", "case.toml", "--models", "shell"]
+main()
+"""
+    ended = in_a_process(tmp_path, "-c", program)
+    assert (ended.returncode, ended.stderr) == (
+        2,
+        "protractile: case.toml: model[1].kind: a shell needs gmsh, which misses a library "
+        f"({missing}); install it (apt install libglu1-mesa libxft2 libxcursor1 libxinerama1, or "
+        "dnf install mesa-libGLU libXft libXcursor libXinerama), or run the other models with "
+        "--models\n",
+    )
+
+
 @pytest.mark.usefixtures("without_fenicsx")
 def test_a_beam_is_exported_without_fenicsx(protractile: Protractile) -> None:
     """Reference: by hand, the last model of beam elements with play; a shell calibrates another."""
