@@ -59,9 +59,9 @@ def enter_mpi(
                 raise BadInput(
                     file,
                     f"model[{number}].kind",
-                    f"a shell needs gmsh, which misses a library ({error}); install it (apt "
-                    "install libglu1-mesa libxft2 libxcursor1 libxinerama1, or dnf install "
-                    f"mesa-libGLU libXft libXcursor libXinerama), or {without}",
+                    f"a shell needs gmsh, which misses {str(error).partition(':')[0]}; install "
+                    "libglu1-mesa libxft2 libxcursor1 libxinerama1 (Fedora: mesa-libGLU libXft "
+                    f"libXcursor libXinerama), or {without}",
                 ) from None
             return world
     return None

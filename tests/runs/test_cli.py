@@ -280,10 +280,9 @@ main()
     ended = in_a_process(tmp_path, "-c", program)
     assert (ended.returncode, ended.stderr) == (
         2,
-        "protractile: case.toml: model[1].kind: a shell needs gmsh, which misses a library "
-        f"({missing}); install it (apt install libglu1-mesa libxft2 libxcursor1 libxinerama1, or "
-        "dnf install mesa-libGLU libXft libXcursor libXinerama), or run the other models with "
-        "--models\n",
+        "protractile: case.toml: model[1].kind: a shell needs gmsh, which misses libGLU.so.1; "
+        "install libglu1-mesa libxft2 libxcursor1 libxinerama1 (Fedora: mesa-libGLU libXft "
+        "libXcursor libXinerama), or run the other models with --models\n",
     )
 
 
