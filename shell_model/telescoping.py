@@ -374,7 +374,9 @@ def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
         np.einsum("wij,wj,wkj->wik", patterns, one, patterns) for one in (np.sqrt(values), inverse)
     )
     slowness, turn = np.linalg.eigh((back @ (inertia / scale) @ back).mean(axis=0))
-    shifted = 1.0 / np.maximum(slowness, 1.0 / squared(_FASTEST))
+    # No residual mode is below the slowest frequency. Round-off may say so of a small compliance.
+    slowest = squared(_SLOWEST) + squared(SLOW)
+    shifted = 1.0 / np.clip(slowness, 1.0 / squared(_FASTEST), 1.0 / slowest)
     pulls = root @ turn
     kept = np.abs(pulls).max(axis=(0, 1)) > _NEGLIGIBLE
     rows = sizes[:, None] * pulls * np.sqrt(shifted)

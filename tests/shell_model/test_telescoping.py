@@ -90,6 +90,16 @@ def test_springs_keep_stiffness_and_mass_of_the_residual_modes() -> None:
     assert np.sort(found) == pytest.approx(omega2, rel=1e-9)
 
 
+def test_round_off_makes_no_spring_unstable() -> None:
+    """Reference: analytic, a mass of 900 Hz; the difference of both rows has round-off alone."""
+    (shifted,) = omega2 = np.array([squared(900.0) + squared(SLOW)])
+    same, other = np.ones((2, 2)), np.array([[1.0, -1.0], [-1.0, 1.0]])
+    residual, inertia = same + 2e-4 * other, same / shifted + 2e-8 * other
+    found, pulls = springs(residual[None], inertia[None])
+    assert np.sort(found) == pytest.approx([squared(100.0), *(omega2 - squared(SLOW))], rel=1e-9)
+    assert pulls[0] / (found + squared(SLOW)) @ pulls[0].T == pytest.approx(residual, rel=1e-9)
+
+
 @pytest.mark.slow
 def test_shell_at_an_extension_equals_a_shell_built_there() -> None:
     """Reference: other code path, the shell reduced at this extension with the same mesh lines."""
