@@ -21,7 +21,7 @@ import protractile as pt
 from protractile.runs import cli
 from protractile.runs.case import reading as case_file
 from protractile.runs.pipeline import estimates
-from protractile.runs.process.terminal import LONGEST
+from protractile.runs.process.terminal import LONGEST, message
 
 # What commands import when they are given, which each process would do by itself.
 for name in ("check", "pipeline.run", "report.output", "paper.rules", "sweep.run"):
@@ -123,7 +123,7 @@ def _call(action: Callable[[], object]) -> None:
         *_, (frame, _) = traceback.walk_tb(error.__traceback__)
         if not frame.f_globals["__name__"].startswith("protractile."):
             raise
-        print(f"protractile: {error}", file=sys.stderr)
+        print(message(str(error)), file=sys.stderr)
         sys.exit(2)
 
 
