@@ -47,10 +47,10 @@ from protractile.runs.pipeline.largest_loads import (
 from protractile.runs.pipeline.load_table import load_table
 from protractile.runs.pipeline.pad_walls import deflection_advice, pad_wall_lines, rigid_wall_note
 from protractile.runs.pipeline.panels import panel_cautions, panel_table, weakest_panels
-from protractile.runs.pipeline.proportions import (
+from protractile.runs.pipeline.proportions import proportion_cautions
+from protractile.runs.pipeline.response_cautions import (
     buckling_cautions,
     period_cautions,
-    proportion_cautions,
     tip_cautions,
 )
 from protractile.runs.pipeline.static_results import bulge_cautions

@@ -28,7 +28,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.case.units import System
 from protractile.runs.pipeline.load_table import release_note
 from protractile.runs.pipeline.models import MotionPlan, build_on
-from protractile.runs.pipeline.proportions import CHECK_UNITS, tip_cautions
+from protractile.runs.pipeline.response_cautions import CHECK_UNITS, tip_cautions
 from protractile.runs.pipeline.section_forces import LoadedModel
 from protractile.runs.pipeline.static_results import (
     StaticResult,

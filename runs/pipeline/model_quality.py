@@ -29,12 +29,12 @@ from protractile.runs.pipeline.drives import lag_cautions, stick_slip_cautions, 
 from protractile.runs.pipeline.hoisting_error import hoisting_cautions
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.pad_walls import deflection_advice
-from protractile.runs.pipeline.proportions import (
+from protractile.runs.pipeline.proportions import proportion_cautions
+from protractile.runs.pipeline.response_cautions import (
     CHECK_UNITS,
     buckling_cautions,
     deflection_errors,
     period_cautions,
-    proportion_cautions,
     tip_cautions,
 )
 from protractile.runs.pipeline.static_results import bulge_cautions

@@ -13,7 +13,7 @@ from protractile.geometry.joint import PadSize
 from protractile.geometry.typography import join_words
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.largest_loads import BeamStates
-from protractile.runs.pipeline.proportions import CHECK_UNITS
+from protractile.runs.pipeline.response_cautions import CHECK_UNITS
 from protractile.runs.pipeline.statics import state_at_rest
 from protractile.runs.report.formatting import milli, percent
 
