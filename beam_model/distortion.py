@@ -121,7 +121,8 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
 
     around = [collars_at(x) for x in 0.5 * (axis.nodes[:-1] + axis.nodes[1:])]
     frames = {
-        collars: _frame(segment.material, section, collars)  # type: ignore[arg-type]  # hashable
+        # Sections are frozen, which the protocol does not say.
+        collars: _frame(segment.material, section, collars)  # type: ignore[arg-type]
         for collars in dict.fromkeys((*around, *map(collars_at, places)))
     }
     rows = [np.kron(axis.at(press.x), frames[collars_at(press.x)].row(press)) for press in presses]

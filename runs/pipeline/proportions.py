@@ -144,8 +144,9 @@ def _table_ends(case: Case, boom: Boom) -> Iterator[str]:
         plates = [plate for x in segment.ends for plate in segment.section_at(x).plates]
         if (most := max(plate.thickness for plate in plates)) > pairs[-1][0]:
             yield (
-                f"segment[{number}].section: a plate of {most:g} m is thicker than the last pair "
-                f"of yield_by_thickness, {pairs[-1][0]:g} m, and takes its strength; add a pair"
+                f"segment[{number}].section: a plate of {TO_MILLI * most:.4g} mm is thicker than "
+                f"the last pair of yield_by_thickness, {TO_MILLI * pairs[-1][0]:.4g} mm, and takes "
+                "its strength; add a pair"
             )
     for number, base in enumerate(case.base, start=1):
         if base.table is None:

@@ -128,8 +128,8 @@ def test_senseless_values_are_refused(tmp_path: Path, old: str, new: str, line: 
         ("[[joint]]", PUSH + "[[joint]]",
          "base[1]: its table ends at 1 s with 100 % of its peak, which acts until the run ends; "),
         ("density = 7850.0", "density = 7850.0\nyield_by_thickness = [[0.005, 3.55e8]]",
-         "segment[1].section: a plate of 0.006 m is thicker than the last pair of "
-         "yield_by_thickness, 0.005 m, and takes its strength; add a pair"),
+         "segment[1].section: a plate of 6 mm is thicker than the last pair of "
+         "yield_by_thickness, 5 mm, and takes its strength; add a pair"),
         ("flange = 0.006, web = 0.005", "flange = 0.005, web = 0.006",
          "segment[1].section: the flanges of 0.005 m are thinner than the webs of 0.006 m; "),
         ("gravity = { angle = 45.0 }", "gravity = { acceleration = 9.81 }",
