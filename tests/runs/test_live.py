@@ -114,17 +114,16 @@ def test_a_boom_without_loads_has_a_chart() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("empty_cache")
 @pytest.mark.parametrize("path", [COARSE, CASES / "slew.toml"], ids=lambda path: path.stem)
-def test_the_beam_has_the_numbers_of_a_run(
-    path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_beam_has_the_numbers_of_a_run(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Reference: a run of the same beam at the tolerance of the page."""
-    monkeypatch.setenv("PROTRACTILE_CACHE", str(tmp_path))
     draft = Draft.load(str(path))
     check_results(draft, {}, draft.beam(draft.changed({})).case, RunContext(), monkeypatch)
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("empty_cache")
 def test_beam_is_calibrated_by_a_shell_of_the_cache(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -132,7 +131,6 @@ def test_beam_is_calibrated_by_a_shell_of_the_cache(
     pytest.importorskip("dolfinx", reason="shells need FEniCSx")
     from mpi4py import MPI
 
-    monkeypatch.setenv("PROTRACTILE_CACHE", str(tmp_path / "cache"))
     shell = (
         '[[model]]\nname = "shell"\nkind = "shell"\nmesh_size = 0.3\ncontact_tolerance = "any"\n'
     )

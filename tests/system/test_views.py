@@ -242,6 +242,7 @@ def of_sweep(case: pt.Case, shown: dict[str, list[View]]) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("empty_cache")
 @pytest.mark.parametrize("name", [*SHIPPED, *OWN])
 def test_views_show_the_same_numbers(name: str) -> None:
     """Reference: each other, up to the digits that they show.
