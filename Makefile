@@ -173,8 +173,8 @@ packages-debian:
 
 packages-pip:
 	@$(PYTHON) -c '$(FIND_TOOLS)' 2>/dev/null || { echo "no venv, C compiler, headers of $(PYTHON) or libraries \
-	of gmsh; install them (apt install gcc python3-dev python3-venv libglu1-mesa libxft2 libxcursor1 libxinerama1, or \
-	dnf install gcc python3-devel mesa-libGLU libXft libXcursor libXinerama)" >&2; exit 1; }
+	of gmsh; install them (apt install gcc python3-dev python3-venv libgl1 libglu1-mesa libxft2 libxcursor1 \
+	libxinerama1, or dnf install gcc python3-devel libglvnd-glx mesa-libGLU libXft libXcursor libXinerama)" >&2; exit 1; }
 
 .ci/constraints-%.txt:
 	@echo "$*: neither Debian 12 nor 13; give a Python of 3.12 or later by PYTHON=python3.13" >&2; exit 1

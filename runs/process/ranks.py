@@ -60,8 +60,8 @@ def enter_mpi(
                     file,
                     f"model[{number}].kind",
                     f"a shell needs gmsh, which misses {str(error).partition(':')[0]}; install "
-                    "libglu1-mesa libxft2 libxcursor1 libxinerama1 (Fedora: mesa-libGLU libXft "
-                    f"libXcursor libXinerama), or {without}",
+                    "libgl1 libglu1-mesa libxft2 libxcursor1 libxinerama1 (Fedora: libglvnd-glx "
+                    f"mesa-libGLU libXft libXcursor libXinerama), or {without}",
                 ) from None
             return world
     return None

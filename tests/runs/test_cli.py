@@ -281,8 +281,8 @@ main()
     assert (ended.returncode, ended.stderr) == (
         2,
         "protractile: case.toml: model[1].kind: a shell needs gmsh, which misses libGLU.so.1; "
-        "install libglu1-mesa libxft2 libxcursor1 libxinerama1 (Fedora: mesa-libGLU libXft "
-        "libXcursor libXinerama), or run the other models with --models\n",
+        "install libgl1 libglu1-mesa libxft2 libxcursor1 libxinerama1 (Fedora: libglvnd-glx "
+        "mesa-libGLU libXft libXcursor libXinerama), or run the other models with --models\n",
     )
 
 

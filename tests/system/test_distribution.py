@@ -89,7 +89,7 @@ def test_make_names_what_pip_cannot_install(compiler: str, status: int) -> None:
     if status:
         assert made.stderr.splitlines()[0] == (
             f"no venv, C compiler, headers of {sys.executable} or libraries of gmsh; install them "
-            "(apt install gcc python3-dev python3-venv libglu1-mesa libxft2 libxcursor1 "
-            "libxinerama1, or dnf install gcc python3-devel mesa-libGLU libXft libXcursor "
-            "libXinerama)"
+            "(apt install gcc python3-dev python3-venv libgl1 libglu1-mesa libxft2 libxcursor1 "
+            "libxinerama1, or dnf install gcc python3-devel libglvnd-glx mesa-libGLU libXft "
+            "libXcursor libXinerama)"
         )
