@@ -45,9 +45,11 @@ BIN := .venv/bin
 READY := .venv/ready-$(DOLFINX)
 SPHINX := .venv/sphinx-$(DOLFINX)
 endif
-# Pip makes environments, FFCx compiles the forms of shells, and gmsh's wheel loads these libraries.
-GMSH_NEEDS := libgomp.so.1 libGL.so.1 libGLU.so.1 libXft.so.2 libXcursor.so.1 libXinerama.so.1
-FIND_TOOLS := import ctypes, ensurepip, os, shutil, sys, venv; from sysconfig import get_config_var, get_path; \
+# Pip makes environments, FFCx compiles the forms of shells, and gmsh's wheel loads these libraries,
+# unless it is one without X.
+GMSH_NEEDS = $(shell $(BIN)/python -c 'import gmsh' 2>/dev/null || \
+    echo libgomp.so.1 libGL.so.1 libGLU.so.1 libXft.so.2 libXcursor.so.1 libXinerama.so.1)
+FIND_TOOLS = import ctypes, ensurepip, os, shutil, sys, venv; from sysconfig import get_config_var, get_path; \
     [*map(ctypes.CDLL, "$(GMSH_NEEDS)".split())]; \
     compiler = (os.environ.get("CC") or get_config_var("CC")).split()[0]; \
     sys.exit(not (shutil.which(compiler) and os.path.exists(get_path("include") + "/Python.h")))
@@ -174,7 +176,9 @@ packages-debian:
 packages-pip:
 	@$(PYTHON) -c '$(FIND_TOOLS)' 2>/dev/null || { echo "no venv, C compiler, headers of $(PYTHON) or libraries \
 	of gmsh; install them (apt install gcc python3-dev python3-venv libgl1 libglu1-mesa libxft2 libxcursor1 \
-	libxinerama1, or dnf install gcc python3-devel libglvnd-glx mesa-libGLU libXft libXcursor libXinerama)" >&2; exit 1; }
+	libxinerama1, or dnf install gcc python3-devel libglvnd-glx mesa-libGLU libXft libXcursor libXinerama); \
+	without root, a gmsh without X: make install GMSH_NEEDS= && $(BIN)/pip install --force-reinstall \
+	-i https://gmsh.info/python-packages-dev-nox gmsh" >&2; exit 1; }
 
 .ci/constraints-%.txt:
 	@echo "$*: neither Debian 12 nor 13; give a Python of 3.12 or later by PYTHON=python3.13" >&2; exit 1

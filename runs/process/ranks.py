@@ -60,8 +60,9 @@ def enter_mpi(
                     file,
                     f"model[{number}].kind",
                     f"a shell needs gmsh, which misses {str(error).partition(':')[0]}; install "
-                    "libgl1 libglu1-mesa libxft2 libxcursor1 libxinerama1 (Fedora: libglvnd-glx "
-                    f"mesa-libGLU libXft libXcursor libXinerama), or {without}",
+                    "libgl1 libglu1-mesa libxft2 libxcursor1 libxinerama1, or a gmsh without X "
+                    "(pip install --force-reinstall -i https://gmsh.info/python-packages-dev-nox "
+                    f"gmsh), or {without}",
                 ) from None
             return world
     return None

@@ -281,8 +281,9 @@ main()
     assert (ended.returncode, ended.stderr) == (
         2,
         "protractile: case.toml: model[1].kind: a shell needs gmsh, which misses libGLU.so.1; "
-        "install libgl1 libglu1-mesa libxft2 libxcursor1 libxinerama1 (Fedora: libglvnd-glx "
-        "mesa-libGLU libXft libXcursor libXinerama), or run the other models with --models\n",
+        "install libgl1 libglu1-mesa libxft2 libxcursor1 libxinerama1, or a gmsh without X (pip "
+        "install --force-reinstall -i https://gmsh.info/python-packages-dev-nox gmsh), or run the "
+        "other models with --models\n",
     )
 
 

@@ -78,10 +78,14 @@ def test_version_equals_changelog_and_citation() -> None:
     assert newest[1] == cited[1] == version
 
 
-@pytest.mark.parametrize(("compiler", "status"), [("/no/cc", 2), (sys.executable, 0)])
-def test_make_names_what_pip_cannot_install(compiler: str, status: int) -> None:
+@pytest.mark.parametrize(
+    ("compiler", "libraries", "status"),
+    [("/no/cc", "", 2), (sys.executable, "libnone.so.1", 2), (sys.executable, "", 0)],
+)
+def test_make_names_what_pip_cannot_install(compiler: str, libraries: str, status: int) -> None:
     """Reference: by construction. Any program stands for a compiler."""
-    command = ["make", "--no-print-directory", "packages-pip", f"PYTHON={sys.executable}"]
+    command = ["make", "--no-print-directory", "packages-pip", "DOLFINX=pip"]
+    command += [f"PYTHON={sys.executable}", f"GMSH_NEEDS={libraries}"]
     made = subprocess.run(
         command, cwd=ROOT, env=os.environ | {"CC": compiler}, capture_output=True, text=True
     )
@@ -91,5 +95,7 @@ def test_make_names_what_pip_cannot_install(compiler: str, status: int) -> None:
             f"no venv, C compiler, headers of {sys.executable} or libraries of gmsh; install them "
             "(apt install gcc python3-dev python3-venv libgl1 libglu1-mesa libxft2 libxcursor1 "
             "libxinerama1, or dnf install gcc python3-devel libglvnd-glx mesa-libGLU libXft "
-            "libXcursor libXinerama)"
+            "libXcursor libXinerama); without root, a gmsh without X: make install GMSH_NEEDS= && "
+            ".venv/bin/pip install --force-reinstall -i https://gmsh.info/python-packages-dev-nox "
+            "gmsh"
         )
