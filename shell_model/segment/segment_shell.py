@@ -15,6 +15,7 @@ from protractile.geometry.boom import Direction, Segment
 from protractile.geometry.plating import PlatedMesh
 from protractile.geometry.section import COMPONENT
 from protractile.shell_model import compat
+from protractile.shell_model.reduction.mirror import match_points
 from protractile.shell_model.segment.cross_section import Row, SectionNodes
 from protractile.shell_model.segment.shell import (
     Attachments,
@@ -93,25 +94,42 @@ class SegmentShell(ShellMatrices):
     def inertia(self, direction: Direction, force: float) -> Array:
         """Return the load vector (num_owned,) of a uniform acceleration. Collective."""
         acceleration = force / self.segment.mass_per_length
-        of_stiffeners = self._loads_on(lambda mesh: mesh.thickness - mesh.plain)[direction]
+        # Collars and diaphragms are separate, since two walls and a diaphragm meet on an edge.
+        collars = self._loads_on(lambda mesh: (mesh.thickness - mesh.plain) * (mesh.plain > 0.0))
+        diaphragms = self._loads_on(lambda mesh: mesh.thickness * (mesh.plain == 0.0))
+        of_stiffeners = collars[direction] + diaphragms[direction]
         whole = force * self.plain_loads[direction]
         return whole + acceleration * (self.segment.material.density * of_stiffeners)
 
     def rotation_load(self, direction: Direction) -> Array:
-        """Return the load vector (num_owned,) of 1 rad/s² about x = 0. Collective."""
-        axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
-        # The mass couples free degrees of freedom with constrained ones.
-        mass = compat.assemble_matrix(self.plates.forms.mass, [], 0.0)
-        inertia = times(mass, self.turn(axis, 0.0)[:, None])[:, 0] * self.free
-        mass.destroy()
-        return np.asarray(inertia)
+        """Return the load vector (num_owned,) of 1 rad/s² about x = 0. Collective.
+
+        Rank 0 assembles it on the whole mesh, so that the order of summation is the same on any
+        number of ranks.
+        """
+        of_nodes: list[tuple[Array, Array]] = []
+        if self.mesh is not None:
+            whole = assemble_segment(MPI.COMM_SELF, self.segment, self.mesh)
+            axis = np.cross([1.0, 0.0, 0.0], np.eye(3)[COMPONENT[direction]])
+            # The mass couples free degrees of freedom with constrained ones.
+            mass = compat.assemble_matrix(whole.plates.forms.mass, [], 0.0)
+            inertia = times(mass, whole.turn(axis, 0.0)[:, None])[:, 0] * whole.free
+            mass.destroy()
+            of_nodes = [(places, inertia[rows]) for places, rows in whole.plates.nodes]
+        first, _ = self.owned
+        load = np.empty(self.free.size)
+        for (nodes, dofs), (places, loads) in zip(
+            self.plates.nodes, self.comm.bcast(of_nodes), strict=True
+        ):
+            load[dofs - first] = loads[match_points(nodes, places)]
+        return load
 
     def _loads_on(self, thickness: Callable[[PlatedMesh], Array]) -> dict[Direction, Array]:
         """Return load vectors (num_owned,) of a body force of 1 N/m³. Collective.
 
         ``thickness`` returns thicknesses (num_triangles,) in m. Loads are zero in fixed rows, and
         at vertices, where the integrals of quadratic shape functions vanish. Elsewhere at most two
-        cells of a plain box contribute, so that the order of summation has no effect.
+        cells of walls, or of a diaphragm, contribute: the order of summation has no effect.
         """
         of_cells = self.comm.bcast(None if self.mesh is None else thickness(self.mesh))
         forms = self.plates.forms

@@ -10,7 +10,7 @@ import pytest
 from mpi4py import MPI
 
 from protractile.dynamics.failure import NumericsError
-from protractile.geometry.boom import Boom
+from protractile.geometry.boom import Boom, Direction
 from protractile.shell_model.boom_shell import ShellOptions, assemble_boom
 from protractile.shell_model.buckling import ShellState, buckle_segments
 from protractile.shell_model.reduced_shell import reduce_boom
@@ -46,7 +46,7 @@ def everything(comm: MPI.Comm) -> dict[str, Any]:
     """Return the results of several ranks, computed in one start."""
     return {
         "frequencies": frequencies(comm), "spatial": spatial(comm), "rubbing": rubbing(comm),
-        "pressed": compliances(comm), "moved": moved(comm),
+        "pressed": compliances(comm), "moved": moved(comm), "accelerated": accelerated(comm),
         "buckled": buckled(comm), "dofs": [short_box(comm, size).num_dofs for size in SHORT_SIZES],
         "failed": failure(comm),
     }  # fmt: skip
@@ -108,6 +108,19 @@ def buckled(comm: MPI.Comm) -> list[float]:
     return [float(factor) for factor in found.factors]
 
 
+def accelerated(comm: MPI.Comm) -> list[list[float]] | None:
+    """Return the positions and inertia loads of the nodes of boxes, in order, on rank 0."""
+    rows = []
+    directions: tuple[Direction, ...] = ("y", "z")
+    for shell in (short_box(comm, size) for size in SHORT_SIZES):
+        loads = [f for d in directions for f in (shell.inertia(d, 1.0), shell.rotation_load(d))]
+        first, _ = shell.owned
+        for places, dofs in shell.plates.nodes:
+            rows.append(np.hstack([places.round(9), *(load[dofs - first] for load in loads)]))
+    gathered = comm.gather(np.concatenate(rows))
+    return None if gathered is None else sorted(np.concatenate(gathered).tolist())
+
+
 def failure(comm: MPI.Comm) -> list[str] | None:
     """Return the message of each rank after a failure of the second one."""
 
@@ -167,6 +180,11 @@ def test_ranks_give_the_serial_motion(three_ranks: dict[str, Any]) -> None:
     assert found == serial
     assert np.abs(expected).max() > 1.0e4
     assert (stresses == expected).all()
+
+
+def test_ranks_give_the_serial_inertia_loads(three_ranks: dict[str, Any]) -> None:
+    """Reference: one rank, to the last bit, also on edges of three walls."""
+    assert three_ranks["accelerated"] == accelerated(MPI.COMM_SELF)
 
 
 def test_ranks_find_the_same_points(three_ranks: dict[str, Any]) -> None:

@@ -232,9 +232,10 @@ def test_a_diaphragm_stops_the_breathing_of_the_section(x: float) -> None:
 
 
 def short_box(comm: MPI.Comm, size: float) -> SegmentShell:
-    """Return a box so short that the partition divides its diaphragms."""
+    """Return a box in a collar, so short that the partition divides its diaphragms."""
     plates = tuple(Diaphragm(x, 0.008) for x in (0.0, 0.1, 0.2, 0.3))
-    segment = replace(box_segment("box", 0.0, 0.3, BOX), diaphragms=plates)
+    collar = Collar((0.0, 0.3), 0.007)
+    segment = replace(box_segment("box", 0.0, 0.3, BOX), diaphragms=plates, collars=(collar,))
     return assemble_segment(comm, segment, meshed(segment, size) if comm.rank == 0 else None)
 
 
