@@ -60,6 +60,7 @@ class BoomModes:
     Segments connected by bonded joints, or by cylinders, have common modes.
 
     Attributes:
+        models: models of the segments.
         beams: rows and load vectors of each segment in all modal coordinates.
         omega2: ω² (num_modes,) in rad²/s², exactly 0 for rigid modes; negative if an axial force
             makes a segment unstable.
@@ -69,7 +70,7 @@ class BoomModes:
     """
 
     def __init__(self, boom: Boom, models: Sequence[SegmentModel]) -> None:
-        self._models = models
+        self.models = models
         self._shapes: dict[_Part, tuple[slice, Array]] = {}
         # ω², load and damping of each group.
         of_groups: list[tuple[Array, Array, Array]] = []
@@ -112,7 +113,7 @@ class BoomModes:
         def read(motion: Motion, rule: Rule) -> Array:
             columns, shapes = self._shapes[segment, motion]
             whole = np.zeros(self.omega2.size)
-            whole[columns] = rule(self._models[segment].components[motion]) @ shapes
+            whole[columns] = rule(self.models[segment].components[motion]) @ shapes
             return whole
 
         return BeamSegment(read)

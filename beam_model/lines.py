@@ -38,12 +38,16 @@ _NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
 
 def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
     """Return the line of each segment; rigid segments have no section forces."""
-    modes = BoomModes(boom, models)
-    return [_line(boom, number, modes, model) for number, model in enumerate(models)]
+    return lines_of_modes(boom, BoomModes(boom, models))
 
 
-def _line(boom: Boom, number: int, modes: BoomModes, model: SegmentModel) -> Line:
-    segment = boom.segments[number]
+def lines_of_modes(boom: Boom, modes: BoomModes) -> list[Line]:
+    """Return the line of each segment, as :func:`lines`, from the modes of the boom."""
+    return [_line(boom, number, modes) for number in range(len(boom.segments))]
+
+
+def _line(boom: Boom, number: int, modes: BoomModes) -> Line:
+    segment, model = boom.segments[number], modes.models[number]
     # Ends of the segment, and positions of forces.
     places = {*segment.ends, *load_places(boom, number), *segment.compression.places}
     places |= {one.x for one in segment.supports} | {one.x for one in segment.all_masses}

@@ -19,7 +19,7 @@ from protractile.beam_model.boom_modes import BoomModes, critical_factor
 from protractile.beam_model.component import Component, SegmentModel
 from protractile.beam_model.elements import Theory
 from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
-from protractile.beam_model.lines import lines
+from protractile.beam_model.lines import lines_of_modes
 from protractile.beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
 from protractile.beam_model.wall_compliance import station_compliance, with_wall_springs
 from protractile.dynamics.damping import closed_stiffness
@@ -146,14 +146,24 @@ def static_state(
     """
     elements = elements or Elements(boom)
     modes = BoomModes(boom, elements.segments)
+    system = loaded_system(boom, modes, walls, complete)
+    position = equilibrium_at(system, time)
+    return StaticState(boom, system, position, modes, elements, hung, time)
+
+
+def loaded_system(
+    boom: Boom, modes: BoomModes, walls: float = 1.0, complete: Completion | None = None
+) -> GapSystem:
+    """Return the gap system of a boom of beams with wall compliance at pads and all loads.
+
+    ``modes`` are those of the boom's segments; the other arguments are as in :func:`static_state`.
+    """
     system = with_wall_springs(system_without_drives(boom, modes, EACH_SIDE), boom, walls)
     if complete is not None:
         # The coordinates of wall springs come after those of the segments.
-        along = lines(boom, elements.segments) if boom.axial_changes else ()
+        along = lines_of_modes(boom, modes) if boom.axial_changes else ()
         system = complete(system, [line.extend(system.num_modes) for line in along])
-    system = system.gather_loads()
-    position = equilibrium_at(system, time)
-    return StaticState(boom, system, position, modes, elements, hung, time)
+    return system.gather_loads()
 
 
 def estimate_critical_factor(boom: Boom) -> float | None:
@@ -185,8 +195,7 @@ def _closed_stiffness(boom: Boom) -> Iterator[Array]:
     segments = [replace(segment, compression=NO_COMPRESSION) for segment in boom.segments]
     unloaded = replace(boom, segments=segments, axial_changes=())
     modes = BoomModes(unloaded, Elements(unloaded).segments)
-    system = with_wall_springs(system_without_drives(unloaded, modes, EACH_SIDE), unloaded)
-    system = system.gather_loads().at_time(0.0)
+    system = loaded_system(unloaded, modes).at_time(0.0)
     for load in closing_loads(system, system.load_at(0.0)):
         yield closed_stiffness(system, equilibrium(system, load))
 

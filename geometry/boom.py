@@ -150,6 +150,8 @@ class Boom:
     @property
     def without_drives(self) -> Boom:
         """The boom with all joints at their initial extension."""
+        if not self.telescopes:
+            return self
         return replace(self, joints=tuple(replace(joint, drive=None) for joint in self.joints))
 
     @property

@@ -14,8 +14,9 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from protractile.beam_model.lines import lines
-from protractile.beam_model.statics import Elements, static_theory
+from protractile.beam_model.boom_modes import BoomModes
+from protractile.beam_model.lines import lines_of_modes
+from protractile.beam_model.statics import Elements, loaded_system, static_theory
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import foot_thrust
@@ -27,7 +28,7 @@ from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.schema import Case
 from protractile.runs.case.units import System
 from protractile.runs.pipeline.load_table import release_note
-from protractile.runs.pipeline.models import MotionPlan, build_on
+from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
 from protractile.runs.pipeline.response_cautions import CHECK_UNITS, tip_cautions
 from protractile.runs.pipeline.section_forces import LoadedModel
 from protractile.runs.pipeline.static_results import (
@@ -38,7 +39,6 @@ from protractile.runs.pipeline.static_results import (
     static_results,
     station_loads,
 )
-from protractile.runs.pipeline.statics import state_at_rest
 from protractile.runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
 from protractile.runs.report.formatting import amount, without_round_off
 from protractile.runs.report.tables import Column, Table
@@ -123,10 +123,14 @@ class BeamStates:
             NumericsError: there is no equilibrium at t = 0.
         """
         boom = boom.without_drives
-        elements = Elements(boom, _ELEMENTS)
-        system = state_at_rest(case, boom, elements).system
+        modes = BoomModes(boom, Elements(boom, _ELEMENTS).segments)
+        system = loaded_system(
+            boom,
+            modes,
+            complete=lambda system, lines: complete_system(system, case, boom, lines),
+        )
         # The coordinates of wall springs come after the coordinates of the segments.
-        along = [line.extend(system.num_modes) for line in lines(boom, elements.segments)]
+        along = [line.extend(system.num_modes) for line in lines_of_modes(boom, modes)]
         return cls.at_rest(LoadedModel.of(boom, system, along), case.time.duration)
 
     @classmethod
