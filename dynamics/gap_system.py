@@ -196,10 +196,14 @@ class GapSystem:
         excited = [np.abs(x.load) * x.history.peak for x in self.excitations]
         return np.asarray(np.sum([np.abs(self.load), *excited], axis=0))
 
-    def load_at(self, time: float) -> Array:
-        """Return the modal load (num_modes,) in N/√kg at a time in s; 0 is before the release."""
-        changing = (x.load * x.history(np.array([time]))[0] for x in self.excitations)
-        return sum(changing, self.load + (time <= 0.0) * self.released_load)
+    def load_at(self, time: float | Array) -> Array:
+        """Return the modal load (..., num_modes) in N/√kg at times (...) in s.
+
+        The time 0 is before the release.
+        """
+        time = np.asarray(time)
+        changing = (np.multiply.outer(x.history(time), x.load) for x in self.excitations)
+        return sum(changing, self.load + np.multiply.outer(time <= 0.0, self.released_load))
 
     def gather_loads(self) -> GapSystem:
         """Return the system with all constant loads added to ``load``."""

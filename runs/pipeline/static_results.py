@@ -214,11 +214,11 @@ def extended_positions(system: GapSystem, duration: float) -> dict[float, Array]
 def _equilibria(system: GapSystem, times: Sequence[float]) -> dict[float, Array]:
     equilibria: dict[float, Array] = {}
     fixed = None if system.travels else Equilibria(system)
-    for time in times:
+    for time, load in zip(times, system.load_at(np.array(times)), strict=True):
         with suppress(*NUMERICAL_ERRORS), np.errstate(all="ignore"):
             near = next(reversed(equilibria.values()), None)
             there = fixed or Equilibria(system.at_time(time))
-            equilibria[time] = there.under(system.load_at(time), near)
+            equilibria[time] = there.under(load, near)
     return equilibria
 
 
