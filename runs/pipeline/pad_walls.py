@@ -50,7 +50,9 @@ def pad_wall_lines(case: Case, beam: BeamStates) -> Iterator[str]:
     if part < LARGE_SHARE:
         return
     remedies = (
-        (state_at_rest(case, changed, time=time).tip, what) for what, changed in _remedies(boom)
+        (state_at_rest(case, changed, time=time).tip, what)
+        for what, changed in _remedies(boom)
+        if changed != boom
     )
     better = sorted((there / tip, there, what) for there, what in remedies)
     better = [one for one in better if one[0] < HELPFUL]
@@ -93,7 +95,7 @@ def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
 
 
 def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
-    """Yield changes that stiffen walls or sections: a description and the changed boom."""
+    """Yield changes that may stiffen walls or sections: a description and the changed boom."""
 
     def longer(pad: PadSize, longest: float) -> dict[str, Any]:
         return {"length": max(min(2.0 * pad.length, longest), pad.length)}
@@ -119,8 +121,7 @@ def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
         f"collars around both segments at each {place}, as thick as the walls and one section "
         "height long (the boom can then not telescope)"
     )
-    if (changed := _with_collars(boom)) != boom:
-        yield collars, changed
+    yield collars, _with_collars(boom)
 
 
 def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) -> Boom:
