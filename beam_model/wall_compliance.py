@@ -190,17 +190,18 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     length = _LENGTH * min(section.size("y"), section.size("z"))
 
     # The axis around the section has nodes at folds and edges of pads.
-    folds = np.concatenate([[0.0], np.cumsum([plate.length for plate in section.plates])])
+    plates = section.plates
+    folds = np.concatenate([[0.0], np.cumsum([plate.length for plate in plates])])
     spans = []
     for area in areas:
         face = section.face(area.direction, area.side)
-        plate, across = section.plates[face.plate], 0 if area.direction == "z" else 1
+        plate, across = plates[face.plate], 0 if area.direction == "z" else 1
         along = np.sign(plate.end[across] - plate.start[across])
         places = folds[face.plate] + along * (np.array(area.spans) - plate.start[across])
         spans.append(np.sort(places, axis=1))
     # Collars with the intervals around the section that they cover.
     strips = [
-        (collar, folds[k] + 0.5 * section.plates[k].length + np.array(ends))
+        (collar, folds[k] + 0.5 * plates[k].length + np.array(ends))
         for collar in segment.collars
         for k, near, far in collar.strips(section)
         for ends in ((-far, -near), (near, far))
@@ -216,7 +217,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
         for wall in pairwise(folds)
     ]
     around = HermiteAxis(_with_cuts(edges, length, np.concatenate(divided)), closed=True)
-    plates = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
+    plate_of_element = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
 
     closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
     pad_ends = [x for area in areas for x in (area.start, area.end)]
@@ -234,7 +235,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
         doubled += collar.thickness * np.outer(within, covered)
 
     modulus, ratio = segment.material.youngs_modulus, segment.material.poissons_ratio
-    walls = np.array([section.plates[number].thickness for number in plates])
+    walls = np.array([plates[number].thickness for number in plate_of_element])
     lefts, rights = list[Array](), list[Array]()
     kinds, kind = np.unique(doubled, axis=0, return_inverse=True)
     for number, more in enumerate(kinds):

@@ -14,7 +14,6 @@ from collections.abc import Iterator
 from typing import NamedTuple, Self
 
 import numpy as np
-from scipy.integrate import solve_ivp
 
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
@@ -129,6 +128,9 @@ def straight_path_error(case: Case, beam: BeamStates) -> float:
             upwards = np.where(lifted > 0.0, upwards, np.maximum(upwards, 0.0))
         force -= stiffness * tip + mode.damping * speed
         return np.concatenate([speed, force / mode.mass, lifting, upwards])
+
+    # Imported late, since few cases hoist, and it loads slowly.
+    from scipy.integrate import solve_ivp
 
     initial = np.concatenate([start, np.zeros(6)])
     tips = solve_ivp(rate, times[[0, -1]], initial, "LSODA", times, rtol=1e-5, atol=1e-7).y[:2]

@@ -7,7 +7,7 @@ their lugs and the foot of the boom.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Self
@@ -35,9 +35,9 @@ _ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
 _DIGITS = 5
 
 
-def round_values(values: Array | Iterable[float]) -> list[float]:
+def round_values(values: Array | Sequence[float]) -> list[float]:
     """Return values rounded to the number of digits of stored curves."""
-    return [float(f"{value:.{_DIGITS}g}") for value in values]
+    return [float(f"{value:.{_DIGITS}g}") for value in np.asarray(values).tolist()]
 
 
 @dataclass(frozen=True)
