@@ -13,7 +13,7 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from scipy.linalg import LinAlgError, cho_solve, cholesky, eigh, solve_triangular
+from scipy.linalg import LinAlgError, cho_solve, cholesky, solve_triangular
 
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.contact import OfTerm, Term, Terms, contact_terms, force_of, slope_of
@@ -58,11 +58,18 @@ def equilibrium(system: GapSystem, load: Array, near: Array | None = None) -> Ar
 
 
 class _Scaling(NamedTuple):
-    """Cholesky factor of the stiffness with closed contacts, and the rows in scaled unknowns."""
+    """Scaled unknowns, in which the stiffness with closed contacts is the unit matrix.
+
+    They are Lᵀ a with the Cholesky factor L of this stiffness. A force that presses no contact
+    displaces the boom as if the contacts were closed. So the search has the unknowns that the rows
+    span, which are far fewer than those of a shell.
+    """
 
     spring: Array  #: stiffness (num_rows,) in N/m of the closed contacts
-    factor: Array  #: lower factor (num_modes, num_modes)
-    rows: Array  #: the rows (num_modes, num_rows) over the factor
+    factor: Array  #: L (num_modes, num_modes), the lower factor
+    span: Array  #: orthonormal basis (num_modes, num_unknowns) of the rows in scaled unknowns
+    rows: Array  #: the rows (num_rows, num_unknowns) in this basis
+    stiffness: Array  #: the stiffness without contacts (num_unknowns, num_unknowns) in this basis
 
 
 class Equilibria:
@@ -86,30 +93,23 @@ class Equilibria:
         if not unbalanced_load.any():
             return np.zeros(system.num_modes)
         whole = max(float(np.linalg.norm(load)), float(np.linalg.norm(unbalanced_load)))
-        _, factor, scaled_rows = self._scaling(whole)
+        scaling = self._scaling(whole)
+        factor, span = scaling.factor, scaling.span
         if not system.laws:
             return np.asarray(cho_solve((factor, True), load))
         scaled_load, scaled_push = solve_triangular(
             factor, np.column_stack([load, unbalanced_load]), lower=True
         ).T
         unit = max(float(np.linalg.norm(scaled_load)), float(np.linalg.norm(scaled_push)))
-        scaled_load = scaled_load / unit
-        # In scaled unknowns, the stiffness with springs is the unit matrix. So all iterates are in
-        # the span of load and rows, which has far fewer unknowns than a shell.
-        span, _ = np.linalg.qr(np.column_stack([scaled_load, scaled_rows]))
-        scaled_load = span.T @ scaled_load
-        unscaled = solve_triangular(factor, span, lower=True, trans=1)
-        rows = system.rows @ unscaled
-        stiffness = (unscaled.T * system.omega2) @ unscaled
-        if system.geometric_stiffness.size:
-            stiffness -= unscaled.T @ system.geometric_stiffness @ unscaled
-        start = np.zeros(scaled_load.size) if near is None else span.T @ (factor.T @ near) / unit
-        minimum = _minimum(stiffness, scaled_load, rows, laws, unit, start)
+        pressing = span.T @ scaled_load / unit
+        start = np.zeros(pressing.size) if near is None else span.T @ (factor.T @ near) / unit
+        minimum = _minimum(scaling.stiffness, pressing, scaling.rows, laws, unit, start)
         if minimum is None:
             raise NumericsError(
                 "no static equilibrium is found: look for a segment that nothing holds"
             )
-        return np.asarray(unit * unscaled @ minimum)
+        displaced = scaled_load + unit * span @ (minimum - pressing)
+        return np.asarray(solve_triangular(factor, displaced, lower=True, trans=1))
 
     def _scaling(self, whole: float) -> _Scaling:
         """Return the scaling of unknowns by which all directions have a similar stiffness.
@@ -129,8 +129,13 @@ class Equilibria:
                     "nothing holds the boom, or axial forces buckle it: it has no static "
                     "equilibrium"
                 ) from None
-            rows = solve_triangular(factor, system.rows.T, lower=True)
-            self._last = _Scaling(spring, factor, rows)
+            span, _ = np.linalg.qr(solve_triangular(factor, system.rows.T, lower=True))
+            unscaled = solve_triangular(factor, span, lower=True, trans=1)
+            stiffness = (unscaled.T * system.omega2) @ unscaled
+            if system.geometric_stiffness.size:
+                stiffness -= unscaled.T @ system.geometric_stiffness @ unscaled
+            rows = system.rows @ unscaled
+            self._last = _Scaling(spring, factor, span, rows, stiffness)
         return self._last
 
 
@@ -175,7 +180,7 @@ def _minimum(
             break
         # With the magnitudes of the curvatures the energy falls along the step, even where axial
         # forces make a segment unstable within its play.
-        curvatures, axes = eigh(stiffness + (rows.T * sum_terms(slope_of, x)) @ rows)
+        curvatures, axes = np.linalg.eigh(stiffness + (rows.T * sum_terms(slope_of, x)) @ rows)
         step = -axes @ (axes.T @ force / np.maximum(np.abs(curvatures), _FLAT))
         small, low, high = _EXACT * abs(float(force @ step)), 0.0, 1.0
         while (end := slope(high, x, step)) < -small and high < _FARTHEST:
