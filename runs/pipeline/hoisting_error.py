@@ -134,7 +134,7 @@ def straight_path_error(case: Case, beam: BeamStates) -> float:
 
     initial = np.concatenate([start, np.zeros(6)])
     # Multistep methods do not converge across the kinks of lift-off.
-    tips = solve_ivp(rate, times[[0, -1]], initial, t_eval=times, rtol=1e-6, atol=1e-8).y[:2]
+    tips = solve_ivp(rate, times[[0, -1]], initial, t_eval=times, rtol=1e-8, atol=1e-10).y[:2]
     motion = np.ptp(tips[0])
     if motion < _SMALL * load.weight * load.cosine / mode.stiffness:
         return 0.0
