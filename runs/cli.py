@@ -20,6 +20,7 @@ from typing import Annotated
 import typer
 
 # Each command imports its own libraries, since all libraries together take seconds to load.
+from protractile.runs import options
 from protractile.runs.process import ending, ranks, terminal
 from protractile.runs.process.terminal import Terminal, printable
 
@@ -27,45 +28,6 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-
-CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
-ModelNames = Annotated[str | None, typer.Option(metavar="NAME,...", help="Run only these models.")]
-MeshSize = Annotated[
-    float | None, typer.Option(metavar="M", help="Edge length of uniform shell meshes in m.")
-]
-Modes = Annotated[
-    str | None,
-    typer.Option(
-        metavar="N|auto",
-        help="Maximum number of coordinates of each shell segment; auto: as many as the "
-        "tolerance requires.",
-    ),
-]
-NoCache = Annotated[
-    bool,
-    typer.Option(
-        "--no-cache", help="Repeat the model reduction of shells, without the user's cache."
-    ),
-]
-Large = Annotated[
-    bool, typer.Option("--large", help="Start a run that may take more than 4 GB or an hour.")
-]
-Vary = Annotated[
-    list[str],
-    typer.Option(
-        metavar="KEY=VALUES",
-        help="A key and its values: joint.play=0:0.02:11 (start, stop, count), "
-        "segment[2].load=20,40,60. May be repeated; all combinations are run.",
-    ),
-]
-SweepFolder = Annotated[
-    str | None,
-    typer.Option(metavar="DIR", help="Output folder.  \\[default: runs/out/CASE-sweep]"),
-]
-Picture = Annotated[
-    str | None, typer.Option(metavar="FILE.png", help="Draw the boom into this file.")
-]
-Folder = Annotated[str, typer.Argument(metavar="DIR", help="The folder of a run.")]
 
 # Commands that one rank executes; the other commands share their work among ranks.
 _OF_ONE_RANK = ("report", "snapshot", "check", "live", "schema")
@@ -96,24 +58,26 @@ def protractile(
 
 @app.command()
 def run(
-    case: CaseFile,
+    case: options.CaseFile,
     out: Annotated[
         str | None, typer.Option(metavar="DIR", help="Output folder.  \\[default: runs/out/CASE]")
     ] = None,
-    models: ModelNames = None,
-    mesh_size: MeshSize = None,
-    modes: Modes = None,
+    models: options.ModelNames = None,
+    mesh_size: options.MeshSize = None,
+    modes: options.Modes = None,
     members: Annotated[
         int | None, typer.Option(metavar="N", help="Runs in each model's ensemble, 0 for none.")
     ] = None,
-    no_cache: NoCache = False,
-    large: Large = False,
+    no_cache: options.NoCache = False,
+    large: options.Large = False,
     no_pictures: Annotated[bool, typer.Option("--no-pictures", help="Draw no snapshots.")] = False,
 ) -> int:
     """Run the models of a case, compare them, and write the results to a folder."""
     from protractile.runs.case import reading
 
-    effective = reading.select(reading.load(case), case, _names(models), mesh_size, members, modes)
+    effective = reading.select(
+        reading.load(case), case, options.split_names(models), mesh_size, members, modes
+    )
     # These imports are slow, and follow the check of the case, so that its errors appear at once.
     from protractile.runs.process import workers
     from protractile.runs.report import opengl
@@ -186,7 +150,7 @@ def report(
 
 @app.command()
 def snapshot(
-    folder: Folder,
+    folder: options.Folder,
     time: Annotated[
         list[float] | None, typer.Option(metavar="T", help="Time in s; may be repeated.")
     ] = None,
@@ -218,43 +182,17 @@ def snapshot(
 
 @app.command()
 def sweep(
-    case: CaseFile,
-    vary: Vary = [],  # noqa: B006 # typer takes the default of a repeated option as a list
-    out: SweepFolder = None,
-    models: ModelNames = None,
-    mesh_size: MeshSize = None,
-    no_cache: NoCache = False,
-    large: Large = False,
-    against: Annotated[
-        str | None,
-        typer.Option(
-            metavar="MODEL", help="Print the differences of the other models from this one."
-        ),
-    ] = None,
-    until: Annotated[
-        str | None,
-        typer.Option(
-            metavar="QUANTITY<NUMBER",
-            help="Find by bisection the value of the key, to 0.1 %, at which a quantity of "
-            "sweep.csv reaches a limit in the unit of the case: 'tip<0.9', 'first_frequency>1.2'.",
-        ),
-    ] = None,
-    sensitivity: Annotated[
-        bool,
-        typer.Option(
-            "--sensitivity",
-            help="Change each number of the case by 1 %, in place of --vary, and print how much "
-            "results of a beam change.",
-        ),
-    ] = False,
-    samples: Annotated[
-        int | None,
-        typer.Option(
-            metavar="N",
-            help="Sample the numbers of the case that have a mean and an sd at N quasi-random "
-            "points, and print mean, deviation and quantiles of the results of a beam.",
-        ),
-    ] = None,
+    case: options.CaseFile,
+    vary: options.Vary = [],  # noqa: B006 # typer takes the default of a repeated option as a list
+    out: options.SweepFolder = None,
+    models: options.ModelNames = None,
+    mesh_size: options.MeshSize = None,
+    no_cache: options.NoCache = False,
+    large: options.Large = False,
+    against: options.Against = None,
+    until: options.Until = None,
+    sensitivity: options.Sensitivity = False,
+    samples: options.Samples = None,
 ) -> int:
     """Run a parameter study of a case, and chart the results of its models.
 
@@ -275,13 +213,15 @@ def sweep(
         what = f"does not go with {' and '.join(other_options)}" if other_options else "missing"
         raise BadInput(case, "--vary", f"{what}; give one of --vary, --sensitivity and --samples")
 
-    plan_of = partial(
-        points.plan, case, models=_names(models), mesh_size=mesh_size, reference=against
-    )
+    names = options.split_names(models)
+    plan_of = partial(points.plan, case, models=names, mesh_size=mesh_size, reference=against)
+    conclude: sweep_runs.Conclude = charts.conclude
     if sensitivity:
-        plan, changed_numbers = sampling.plan_changes(case, _names(models), mesh_size)
+        plan, changed_numbers = sampling.plan_changes(case, names, mesh_size)
+        conclude = partial(sampling.conclude_changes, changed_numbers)
     elif samples is not None:
-        plan, samples_table = sampling.plan_samples(case, _names(models), mesh_size, samples)
+        plan, samples_table = sampling.plan_samples(case, names, mesh_size, samples)
+        conclude = partial(sampling.conclude_samples, samples_table)
     else:
         plan = plan_of(vary)
     bound = None if until is None else search.parse_bound(until, plan)
@@ -300,35 +240,21 @@ def sweep(
                 cache = None if no_cache else Cache.of_user()
                 tools = folder, pool, report_progress, cache
                 plan, outcomes = search.run_until(plan, bound, plan_of, *tools)
-        if sensitivity:
-            table = sampling.changes(plan, changed_numbers, outcomes)
-            sampling.write_changes(table, folder)
-            print(printable(str(folder / sampling.CHANGES_CSV)))
-            the_case = plan.points[0].case
-            sampling.print_influences(table, the_case, changed_numbers, Terminal())
-        elif samples is not None:
-            results = sampling.results_of(plan, outcomes)
-            sampling.write(results, samples_table, folder)
-            print(printable(str(folder / sampling.CSV)))
-            sampling.show(results, plan, Terminal())
-        else:
-            data = charts.write(plan, outcomes, folder)
-            print(printable(str(folder / charts.CSV)))
-            charts.print_ranges(data, plan, Terminal())
-            if bound is not None:
-                search.print_bracket(plan, outcomes, bound, Terminal())
+        conclude(plan, outcomes, folder, Terminal())
+        if bound is not None:
+            search.print_bracket(plan, outcomes, bound, Terminal())
         return sweep_runs.print_failures(plan, outcomes)
 
 
 @app.command()
 def frequencies(
-    case: CaseFile,
-    vary: Vary,
-    out: SweepFolder = None,
-    models: ModelNames = None,
-    mesh_size: MeshSize = None,
-    no_cache: NoCache = False,
-    large: Large = False,
+    case: options.CaseFile,
+    vary: options.Vary,
+    out: options.SweepFolder = None,
+    models: options.ModelNames = None,
+    mesh_size: options.MeshSize = None,
+    no_cache: options.NoCache = False,
+    large: options.Large = False,
 ) -> int:
     """Chart the first natural frequencies over the values of keys.
 
@@ -340,7 +266,7 @@ def frequencies(
     from protractile.runs.sweep import points
     from protractile.runs.sweep import run as sweep_runs
 
-    plan = points.plan(case, vary, _names(models), mesh_size)
+    plan = points.plan(case, vary, options.split_names(models), mesh_size)
     cases = [point.case for point in plan.points]
     if not large:
         estimates.refuse_large(estimates.frequencies_cost(cases), case)
@@ -362,7 +288,9 @@ def frequencies(
 
 
 @app.command()
-def check(case: CaseFile, picture: Picture = None, large: Large = False) -> int:
+def check(
+    case: options.CaseFile, picture: options.Picture = None, large: options.Large = False
+) -> int:
     """Check a case file, and print its loads, static state, stresses and first frequency."""
     from protractile.runs.case.reading import load_checked
     from protractile.runs.check import check_case
@@ -383,13 +311,13 @@ def check(case: CaseFile, picture: Picture = None, large: Large = False) -> int:
 
 @app.command()
 def prove(
-    case: CaseFile,
+    case: options.CaseFile,
     shell: Annotated[
         str | None,
         typer.Option(metavar="NAME", help="A shell of the case, in place of beam elements."),
     ] = None,
-    no_cache: NoCache = False,
-    large: Large = False,
+    no_cache: options.NoCache = False,
+    large: options.Large = False,
 ) -> int:
     """Prove strength, stability, deflection and fatigue for all combinations of a case.
 
@@ -426,7 +354,7 @@ def prove(
 
 @app.command()
 def live(
-    case: CaseFile,
+    case: options.CaseFile,
     no_browser: Annotated[
         bool, typer.Option("--no-browser", help="Print the address of the page without opening it.")
     ] = False,
@@ -439,7 +367,7 @@ def live(
 
 @app.command()
 def export(
-    case: CaseFile,
+    case: options.CaseFile,
     to: Annotated[str, typer.Option(metavar="opensees|calculix", help="The other program.")],
     model: Annotated[
         str | None,
@@ -504,7 +432,3 @@ def main(arguments: Sequence[str] | None = None) -> None:
             raise
         ending.fail(*explanation, None)
     sys.exit(status or 0)
-
-
-def _names(models: str | None) -> list[str] | None:
-    return None if models is None else [name.strip() for name in models.split(",")]

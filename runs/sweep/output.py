@@ -18,6 +18,7 @@ from protractile.runs.pipeline.metrics import Metric, metrics
 from protractile.runs.pipeline.quantities import QUANTITIES
 from protractile.runs.pipeline.results import CONVENTIONS
 from protractile.runs.pipeline.summary import ModelSummary
+from protractile.runs.process.terminal import printable
 from protractile.runs.report.formatting import NONE, number
 from protractile.runs.report.tables import Table
 from protractile.runs.sweep.distances import DISTANCES, UNTIL
@@ -91,6 +92,13 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         if plan.reference is not None:
             draw_distances(data.drop_sel(model=plan.reference), plan.reference, figures)
     return data
+
+
+def conclude(plan: Plan, outcomes: Sequence[Outcome], folder: Path, console: Console) -> None:
+    """Write the files of :func:`write`, and print the table of :func:`print_ranges`."""
+    data = write(plan, outcomes, folder)
+    print(printable(str(folder / CSV)))
+    print_ranges(data, plan, console)
 
 
 def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:

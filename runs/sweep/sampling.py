@@ -28,6 +28,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
 from protractile.runs.pipeline.metrics import Metric
 from protractile.runs.pipeline.quantities import QUANTITIES
+from protractile.runs.process.terminal import printable
 from protractile.runs.report import theme
 from protractile.runs.report.figure_context import new_sheet
 from protractile.runs.report.tables import Column, Table
@@ -151,7 +152,17 @@ def scatter(results: pd.DataFrame) -> pd.DataFrame:
     return table[table["sd"] > NONE * table["mean"].abs()]
 
 
-def write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path) -> None:
+def conclude_samples(
+    samples: pd.DataFrame, plan: Plan, outcomes: Sequence[Outcome], folder: Path, console: Console
+) -> None:
+    """Write the files of the samples of a plan into its folder, and print the scatter."""
+    results = results_of(plan, outcomes)
+    _write(results, samples, folder)
+    print(printable(str(folder / CSV)))
+    _show(results, plan, console)
+
+
+def _write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path) -> None:
     """Write ``samples.csv``, ``sampling.csv`` and the chart into the folder of a sweep."""
     several = {
         "sample": {name: pd.concat([samples, frame], axis=1) for name, frame in results.items()},
@@ -170,7 +181,7 @@ def write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path)
         _draw(results, chart)
 
 
-def show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None:
+def _show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None:
     """Print mean, standard deviation and quantiles of the main results of each model."""
     for model, frame in results.items():
         rows = [
@@ -290,8 +301,15 @@ def changes(
     return table.loc[order.index[order > 0.0]].dropna(axis=1, how="all")
 
 
-def write_changes(data: pd.DataFrame, folder: Path) -> None:
-    """Write the relative changes in % to ``sensitivity.csv`` in the folder of a sweep."""
+def conclude_changes(
+    changed_numbers: Sequence[Change],
+    plan: Plan,
+    outcomes: Sequence[Outcome],
+    folder: Path,
+    console: Console,
+) -> None:
+    """Write the relative changes in % to ``sensitivity.csv``, and print the largest ones."""
+    data = changes(plan, changed_numbers, outcomes)
     with (
         folder_lock(folder),
         modified_folder(folder) as part,
@@ -299,9 +317,11 @@ def write_changes(data: pd.DataFrame, folder: Path) -> None:
     ):
         percent = (TO_PERCENT * data).rename_axis("key").reset_index()
         percent.to_csv(path, index=False, float_format="%.6g", lineterminator="\r\n")
+    print(printable(str(folder / CHANGES_CSV)))
+    _print_influences(data, plan.points[0].case, changed_numbers, console)
 
 
-def print_influences(
+def _print_influences(
     data: pd.DataFrame, case: Case, changed_numbers: Sequence[Change], console: Console
 ) -> None:
     """Print the table of the keys with the largest influence."""
