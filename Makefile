@@ -8,7 +8,7 @@ SHELL_CASES := paper paper-friction three-segments spatial
 VERIFY_CASES := $(SHELL_CASES) drawn-out crane-telescopes hoist slew
 
 ROOMS := $(patsubst %/__init__.py,%,$(wildcard */__init__.py))
-SOURCES := pyproject.toml $(wildcard runs/report/templates/*) \
+SOURCES := pyproject.toml $(wildcard runs/*/templates/*) \
     $(shell find $(ROOMS) -path runs/out -prune -o -name '*.py' -print)
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
 VARY_drawn-out := joint.drive.time=0.5,0.7,1,1.2,1.4,1.7,2,3,5

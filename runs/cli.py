@@ -390,7 +390,7 @@ def export(
     suffixes = {"opensees": "py", "calculix": "inp"}
     if to not in suffixes:
         raise BadInput(case, "--to", f"must be {choices([*suffixes])}, got {to!r}")
-    program = import_module(f"protractile.runs.report.{to}")
+    program = import_module(f"protractile.runs.export.{to}")
     checked = reading.load(case)
     selected = reading.select(checked, case, [program.select_model(checked, case, model).name])
     path = Path(out or f"{Path(case).stem}.{suffixes[to]}")

@@ -188,7 +188,7 @@ class LivePage:
 
         draft = self.draft
         html = page(
-            "live.html",
+            Path(__file__).parent / "templates" / "live.html",
             title=draft.case.title,
             controls=[asdict(control) for control in draft.controls()],
             keys=draft.keys,

@@ -23,7 +23,7 @@ pytest.importorskip("dolfinx", reason="shells need FEniCSx")
 
 from mpi4py import MPI
 
-from protractile.runs.report.calculix import SpringRow, deck, write
+from protractile.runs.export.calculix import SpringRow, deck, write
 from protractile.shell_model.boom_shell import ShellOptions, segment_mesh
 from protractile.shell_model.buckling import buckling_modes
 from protractile.shell_model.reduced_shell import reduce_boom

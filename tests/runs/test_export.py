@@ -20,8 +20,8 @@ from protractile.runs import CASES
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
+from protractile.runs.export.opensees import _points, write
 from protractile.runs.pipeline.models import build
-from protractile.runs.report.opensees import _points, write
 from studies.motions import friction_case, model_of, move, with_pads
 from tests.other_codes import INSTALLED, run_elsewhere
 from tests.runs.case_texts import elements, read_case, refused, shipped, table

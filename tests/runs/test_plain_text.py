@@ -26,7 +26,7 @@ def test_a_title_is_no_formula(tmp_path: Path) -> None:
 def test_a_title_is_no_card() -> None:
     """Reference: CalculiX manual: a line that begins with one asterisk is a card."""
     pytest.importorskip("dolfinx", reason="shells need FEniCSx")
-    from protractile.runs.report.calculix import deck
+    from protractile.runs.export.calculix import deck
 
     lines = deck("*INCLUDE, INPUT=other.inp", [], [], []).splitlines()
     assert lines[:2] == ["*HEADING", "Boom: *INCLUDE, INPUT=other.inp"]

@@ -21,12 +21,12 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.check import Check
+from protractile.runs.export import opensees
 from protractile.runs.live.beam import beam_results
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.models import build, initial_motion
 from protractile.runs.pipeline.proofs import prove
-from protractile.runs.report import opensees
 from protractile.runs.sweep.frequencies import first_frequencies
 from tests.runs.case_texts import REST, STEEL, elements, joint, table
 
