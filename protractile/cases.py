@@ -19,7 +19,6 @@ from protractile.runs.case.build import hold_ground
 from protractile.runs.case.messages import BadInput, refusing
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
-from protractile.runs.client import judge
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import atomic_folder
 from protractile.runs.pipeline.model_run import RunContext
@@ -28,6 +27,7 @@ from protractile.runs.pipeline.run import run_case as run_models
 from protractile.runs.process import workers
 from protractile.runs.process.ranks import single_rank
 from protractile.runs.process.terminal import ignore_progress
+from protractile.runs.report.additions import judge
 from protractile.runs.sweep import points
 from protractile.runs.sweep.variation import InvalidVariation, find
 

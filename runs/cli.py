@@ -20,7 +20,7 @@ from typing import Annotated
 import typer
 
 # Each command imports its own libraries, since all libraries together take seconds to load.
-from protractile.runs import options
+from protractile.runs import clients, options
 from protractile.runs.process import ending, ranks, terminal
 from protractile.runs.process.terminal import Terminal, printable
 
@@ -30,7 +30,7 @@ app = typer.Typer(
 )
 
 # Commands that one rank executes; the other commands share their work among ranks.
-_OF_ONE_RANK = ("report", "snapshot", "check", "live", "schema")
+_OF_ONE_RANK = ("report", "snapshot", "check", "schema")
 
 
 def _print_version(requested: bool) -> None:
@@ -86,7 +86,6 @@ def run(
         if helper and not ending.launched_rank() and any(m.needs_shell for m in effective.models):
             # The helper imports FEniCSx while this process imports other modules.
             helper.submit(import_module, "protractile.shell_model.reduced_shell")
-        from protractile.runs.client import judge
         from protractile.runs.folder.cache import Cache
         from protractile.runs.folder.files import atomic_folder
         from protractile.runs.pipeline import estimates
@@ -94,6 +93,7 @@ def run(
         from protractile.runs.pipeline.results import prepare
         from protractile.runs.pipeline.run import run_case
         from protractile.runs.report import output
+        from protractile.runs.report.additions import judge
         from protractile.runs.report.terminal_tables import print_failures, print_runs
 
         if not large:
@@ -352,54 +352,9 @@ def prove(
         return print_proofs(checked, case, Terminal(), (shells[shell], context))
 
 
-@app.command()
-def live(
-    case: options.CaseFile,
-    no_browser: Annotated[
-        bool, typer.Option("--no-browser", help="Print the address of the page without opening it.")
-    ] = False,
-) -> None:
-    """Serve a page of a case: change its numbers, and see the results of its beam at once."""
-    from protractile.runs.live.server import serve
-
-    serve(case, browser=not no_browser)
-
-
-@app.command()
-def export(
-    case: options.CaseFile,
-    to: Annotated[str, typer.Option(metavar="opensees|calculix", help="The other program.")],
-    model: Annotated[
-        str | None,
-        typer.Option(
-            metavar="NAME",
-            help="A model of beam elements, or a shell for CalculiX.  \\[default: the last one]",
-        ),
-    ] = None,
-    out: Annotated[
-        str | None,
-        typer.Option(metavar="FILE", help="Output file.  \\[default: CASE.py, CASE.inp]"),
-    ] = None,
-) -> int:
-    """Write beam elements as a script for OpenSees, or a shell at rest as a deck for CalculiX."""
-    from protractile.geometry.typography import choices
-    from protractile.runs.case import reading
-    from protractile.runs.case.messages import BadInput
-    from protractile.runs.folder.cache import Cache
-
-    suffixes = {"opensees": "py", "calculix": "inp"}
-    if to not in suffixes:
-        raise BadInput(case, "--to", f"must be {choices([*suffixes])}, got {to!r}")
-    program = import_module(f"protractile.runs.export.{to}")
-    checked = reading.load(case)
-    selected = reading.select(checked, case, [program.select_model(checked, case, model).name])
-    path = Path(out or f"{Path(case).stem}.{suffixes[to]}")
-    comm = ranks.enter_mpi(selected, case, "export another one with --model")
-    if comm is None and ending.launched_rank():
-        return 0
-    program.write(selected, case, comm, path, Cache.of_user())
-    print(printable(str(path)))
-    return 0
+for client in clients.modules("commands"):
+    for command in client.COMMANDS:
+        app.command()(command)
 
 
 @app.command()

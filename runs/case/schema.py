@@ -10,7 +10,7 @@ from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import BeforeValidator, Field, model_validator
+from pydantic import BeforeValidator, Field, create_model, model_validator
 from pydantic.dataclasses import dataclass
 from pydantic.json_schema import GenerateJsonSchema
 from scipy.special import cosdg, sindg
@@ -32,6 +32,7 @@ from protractile.geometry.joint import BareStop
 from protractile.geometry.material import Material
 from protractile.geometry.observation import Observation, Recorded
 from protractile.geometry.support import Support
+from protractile.runs import clients
 from protractile.runs.case.contact import JointTable
 from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.kinds.calibration import CalibratedTable
@@ -59,7 +60,6 @@ from protractile.runs.case.load_tables import (
 from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
 from protractile.runs.case.sections import SegmentTable
 from protractile.runs.case.units import System, SystemName
-from protractile.runs.paper.statements import CaseKeys
 
 
 class TimeTable(CaseTable):
@@ -238,8 +238,13 @@ class LimitsTable(CaseTable):
 
 if TYPE_CHECKING:
     Model = ModelTable
+
+    class ClientKeys(CaseTable):
+        """The keys of all clients."""
 else:
     Model = Annotated[reduce(or_, KINDS.values()), Field(discriminator="kind")]
+    _KEYS = [client.Keys for client in clients.modules("keys")]
+    ClientKeys = create_model("ClientKeys", __base__=(*_KEYS, CaseTable))
 
 
 class CaseHeading(CaseTable):
@@ -253,7 +258,7 @@ class CaseHeading(CaseTable):
     """the units in tables of check and in sweeps; the units of the case unless given"""
 
 
-class Case(CaseKeys, CaseHeading):
+class Case(ClientKeys, CaseHeading):
     """A boom, and the models to run on it."""
 
     time: TimeTable
@@ -360,6 +365,13 @@ class Case(CaseKeys, CaseHeading):
         return not self.stops and all(
             joint.bonded or (joint.friction > 0.0 and min(joint.normal_forces, default=0.0) > 0.0)
             for joint in self.joints
+        )
+
+    def without_client_keys(self) -> Self:
+        """Return the case with defaults for the keys of clients, on which no result depends."""
+        fields = ClientKeys.model_fields.items()
+        return self.model_copy(
+            update={name: field.get_default(call_default_factory=True) for name, field in fields}
         )
 
     @property

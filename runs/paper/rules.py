@@ -20,6 +20,7 @@ from protractile.runs.case.kinds.kantorovich import Kantorovich
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.schema import Model
 from protractile.runs.paper.decision import DECISIVE, Excess, decide
+from protractile.runs.paper.keys import Keys
 from protractile.runs.paper.run_query import (
     MissingData,
     RunQuery,
@@ -80,6 +81,7 @@ class Finding:
 def judge(results: Results) -> list[Verdict]:
     """Return the verdicts on all statements that the case of a run names."""
     case = results.case
+    assert isinstance(case, Keys)
     run = RunQuery(results)
     return [
         Verdict(

@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Statements of the paper, and the keys of a case that request their verdicts."""
+"""Statements of the paper."""
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
-
-from protractile.geometry.fields import Few
-from protractile.runs.case.limits import CaseTable
+from typing import Literal
 
 StatementId = Literal["S1", "S2", "S3", "S4", "S5", "S6", "S7", "S8", "S9", "S10", "S11"]
 STATEMENTS: dict[StatementId, str] = {
@@ -26,16 +23,3 @@ STATEMENTS: dict[StatementId, str] = {
     "S11": "The description extends to more than two segments, with two more equations per segment "
     "and plane.",
 }
-
-
-class CaseKeys(CaseTable):
-    """Keys of a case for the statements of the paper."""
-
-    statements: Annotated[tuple[StatementId, ...], Few] = ()
-    """the statements of the paper that are judged on the run"""
-    demand: Annotated[tuple[StatementId, ...], Few] = ()
-    """the statements of the paper that the run must reproduce"""
-
-    def without_judgements(self) -> Self:
-        """Return the case without ``statements`` and ``demand``."""
-        return self.model_copy(update={"statements": (), "demand": ()})

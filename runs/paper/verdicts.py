@@ -12,10 +12,11 @@ from rich.console import Console
 from rich.text import Text
 
 from protractile.runs.case.schema import Case
+from protractile.runs.paper.keys import Keys
 from protractile.runs.paper.statements import STATEMENTS
 from protractile.runs.process.terminal import message, say, shorten
+from protractile.runs.report.additions import Addition
 from protractile.runs.report.formatting import NONE, number
-from protractile.runs.report.pages import Addition
 from protractile.runs.report.tables import as_json
 
 Judgement = Literal["reproduced", "contradicted", "undecided"]
@@ -58,6 +59,7 @@ class Verdict:
 
 def addition(case: Case, verdicts: Sequence[Verdict]) -> Addition:
     """Return the additions to the report of a run: its verdicts, and notes under figures."""
+    assert isinstance(case, Keys)
     judgements = [verdict.verdict for verdict in verdicts]
     anchors = evidence(case)
     figures = {"tip": 8, "head": 9} if case.regular else {"tip": 6, "head": 7}

@@ -160,7 +160,9 @@ def run_model(
     with members.rank_executor(comm if case.ensemble else None) as executor:
         if not context.first_rank:
             return None
-        single_case = case.without_judgements().model_copy(update={"models": (model,), "title": ""})
+        single_case = case.without_client_keys().model_copy(
+            update={"models": (model,), "title": ""}
+        )
         system, store = built.system, context.motions
         content = toml.digest(single_case), system.omega2, system.load, system.rows, cutoff
         name = key([*content])

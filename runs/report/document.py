@@ -10,11 +10,12 @@ from itertools import chain
 from protractile.runs.case import toml
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report import theme
+from protractile.runs.report.additions import Addition
 from protractile.runs.report.charts import pack_charts, pack_plotly
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.formatting import number, percent
 from protractile.runs.report.model_tables import model_tables
-from protractile.runs.report.pages import Addition, page
+from protractile.runs.report.pages import page
 from protractile.runs.report.predictability import comparison_tables, predictability_tables
 from protractile.runs.report.result_tables import result_tables
 from protractile.runs.report.summary_table import (

@@ -14,7 +14,6 @@ import xarray as xr
 
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.user_files import check_not_working_folder
-from protractile.runs.client import judge
 from protractile.runs.folder.files import (
     atomic_path,
     folder_lock,
@@ -25,11 +24,11 @@ from protractile.runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Res
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.summary import Snapshots
 from protractile.runs.report import snapshots
+from protractile.runs.report.additions import Addition, judge
 from protractile.runs.report.document import render, tables_by_part
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.figures import draw_in_folder
 from protractile.runs.report.opengl import RenderingUnavailable
-from protractile.runs.report.pages import Addition
 from protractile.runs.report.tables import as_json
 from protractile.runs.report.viewer import VIEWER, viewer
 

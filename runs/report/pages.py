@@ -4,9 +4,8 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -21,19 +20,6 @@ WIDEST = 1240
 _WEBP: dict[str, Any] = {"format": "WEBP", "quality": 85, "method": 1}
 # CSS class of cells with each mark.
 TONES = {"✓": "yes", "✗": "no", "?": "open"}
-
-
-@dataclass(frozen=True, slots=True)
-class Addition:
-    """Content that a calling program adds to the report of a run."""
-
-    #: path of a template that extends ``report.html`` and fills its blocks ``added_…``
-    template: Path = TEMPLATES / "report.html"
-    content: Mapping[str, Any] = field(default_factory=dict)  #: further variables of the template
-    #: sentences below tables and figures, by anchor
-    remarks: Mapping[str, str] = field(default_factory=dict)
-    #: contents of further files in the folder of the run, by name
-    files: Mapping[str, str] = field(default_factory=dict)
 
 
 def page(template: str | Path, pictures: Sequence[Path] = (), **content: Any) -> str:

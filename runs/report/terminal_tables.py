@@ -11,7 +11,6 @@ from protractile.geometry.typography import TO_PERCENT
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
-from protractile.runs.client import show
 from protractile.runs.pipeline.combinations import combination_states, combination_tables
 from protractile.runs.pipeline.combined_shells import shell_states
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
@@ -25,10 +24,10 @@ from protractile.runs.process.terminal import (
     say,
     shorten,
 )
+from protractile.runs.report.additions import Addition, show
 from protractile.runs.report.figure_context import farthest
 from protractile.runs.report.formatting import number, percent
 from protractile.runs.report.model_tables import model_table
-from protractile.runs.report.pages import Addition
 from protractile.runs.report.result_tables import record_tables
 from protractile.runs.report.summary_table import (
     governing_pads,

@@ -25,8 +25,8 @@ from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.run import run_case as run_models
+from protractile.runs.report.additions import Addition
 from protractile.runs.report.output import write
-from protractile.runs.report.pages import Addition
 from studies.motions import move
 from studies.working_load import Point, set_point
 from tests.runs.case_texts import COARSE, elements, read_case, table

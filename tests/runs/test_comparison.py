@@ -21,9 +21,9 @@ from protractile.runs.pipeline.comparison import Distributions, PeakDifferences,
 from protractile.runs.pipeline.low_pass import SlowPeaks, filter_low_pass, slow_peaks
 from protractile.runs.pipeline.model_quality import compare_models, reference_of
 from protractile.runs.pipeline.results import Results
+from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
 from protractile.runs.report.model_tables import law_table, model_table, step_table
-from protractile.runs.report.pages import Addition
 from protractile.runs.report.predictability import comparison_tables, predictability_tables
 from tests.dynamics.two_stops import CHAOTIC
 from tests.runs.case_texts import shipped

@@ -24,9 +24,9 @@ from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.summary import EnsembleSummary
+from protractile.runs.report.additions import Addition
 from protractile.runs.report.figures import draw
 from protractile.runs.report.output import write
-from protractile.runs.report.pages import Addition
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import finished
 

@@ -14,15 +14,14 @@ from pydantic import ValidationError
 
 from protractile.cases import change
 from protractile.runs.case import reading as case_file
-from protractile.runs.client import judge
 from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.static_results import place_names
 from protractile.runs.pipeline.summary import Summary
+from protractile.runs.report.additions import Addition, judge
 from protractile.runs.report.output import write, write_csv, write_report
-from protractile.runs.report.pages import Addition
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import finished, model_summary, summary_of
 

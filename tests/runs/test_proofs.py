@@ -22,8 +22,8 @@ from protractile.runs.pipeline.proofs import (
     winter,
 )
 from protractile.runs.pipeline.summary import Summary
+from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
-from protractile.runs.report.pages import Addition
 from tests.runs.case_texts import (
     CLAMPED,
     HINGED,

@@ -25,9 +25,9 @@ from protractile.runs.paper.verdicts import Verdict, addition, print_verdicts
 from protractile.runs.pipeline.model_quality import cautions, stress_cautions
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import Snapshots, Summary
+from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
 from protractile.runs.report.figure_context import Figure
-from protractile.runs.report.pages import Addition
 from protractile.runs.report.terminal_tables import print_models
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import changed, model_summary, printed, summary_of

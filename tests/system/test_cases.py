@@ -13,9 +13,9 @@ from protractile.runs.case import reading as case_file
 from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.run import run_case
+from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
 from protractile.runs.report.figures import draw
-from protractile.runs.report.pages import Addition
 
 pytestmark = pytest.mark.slow
 

@@ -11,9 +11,9 @@ import pytest
 
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.schema import EnsembleTable
-from protractile.runs.client import judge
 from protractile.runs.pipeline.results import prepare, read_netcdf
 from protractile.runs.report import output
+from protractile.runs.report.additions import judge
 from tests.runs.summaries import finished
 from tests.system.browser import Page, blank_page, find_browser
 from tests.system.run_folder import COARSE

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Registry of clients: folders of ``runs`` that nothing else imports.
+
+A client adds to cases, reports and the command line by its modules with these names:
+
+* ``keys``: the class ``Keys``, a table of keys at the top of every case file.
+* ``additions``: functions ``judge`` and ``show``, see :mod:`.runs.report.additions`.
+* ``commands``: the functions ``COMMANDS``, each a command.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from importlib.util import find_spec
+from types import ModuleType
+
+CLIENTS = "paper", "live", "export"
+
+
+def modules(name: str) -> list[ModuleType]:
+    """Return the modules with this name of all clients that have one."""
+    paths = [f"protractile.runs.{client}.{name}" for client in CLIENTS]
+    return [import_module(path) for path in paths if find_spec(path)]
