@@ -31,7 +31,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.folder.cache import Cache, key
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
-from protractile.runs.pipeline.estimates import motion_cost
+from protractile.runs.pipeline.estimates import Cost, motion_cost
 from protractile.runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
 from protractile.runs.pipeline.model_run import summarise_motion
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
@@ -108,8 +108,8 @@ def beam_results(
         BadInput: the motion exceeds :data:`MAX_MEMORY` or :data:`MAX_TIME`.
         NumericsError: the beam has no equilibrium, or its motion cannot be computed.
     """
-    checked, built, stiffness = build_beam(checked, draft.case, draft.shells)
-    case, boom, (model,) = checked.case, checked.boom, checked.case.models
+    case, built, stiffness = build_beam(checked, draft.case, draft.shells)
+    boom, (model,) = checked.boom, case.models
     loaded = loaded_model(boom, model, built)
     duration = case.time.duration
     check_current()
@@ -118,14 +118,7 @@ def beam_results(
         raise NumericsError("the beam has no static equilibrium under the loads at t = 0")
     check_current()
     plan = MotionPlan.of(built.system, case, model)
-    cost = motion_cost(checked, model, plan.motion, built.system.num_modes)
-    if cost.memory > MAX_MEMORY or cost.seconds > MAX_TIME:
-        raise BadInput(
-            draft.file,
-            "time.duration",
-            f"{number(case.time.duration)} s are too long for this page, since the motion may take "
-            f"{cost}; make it shorter or time.output_step longer, or use `protractile run`",
-        )
+    _check_cost(motion_cost(checked, model, plan.motion, built.system.num_modes), case, draft.file)
     extended = extended_positions(loaded.system, duration)
     design = results_at_rest(loaded, equilibria, extended)
     forces = [[station.force for station in rest.stations] for rest in design.static]
@@ -134,7 +127,7 @@ def beam_results(
         coords={"model": [model.name]},
     )
     fibres = MotionResult([], [], list(_fibres(loaded, [*equilibria.values()])), [])
-    results = _results(checked, replace(design, motion=fibres), station_forces)
+    results = _results(case, replace(design, motion=fibres), station_forces)
     results.summary.pads = list(pad_loads(case, boom, station_forces))
     farthest, table = design.farthest_static, summary_table(results)
     assert farthest is not None
@@ -159,7 +152,7 @@ def beam_results(
         trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
         complete = with_motion(design, loaded, equilibria | extended, trajectory, case, model)
-        results = _results(checked, complete, label(boom, {model.name: trajectory}))
+        results = _results(case, complete, label(boom, {model.name: trajectory}))
         summary = summarise_motion(
             model, plan.motion.system, trajectory, built.num_dofs, design.static[0].tip
         )
@@ -191,17 +184,23 @@ def _tip_chart(trajectory: Trajectory) -> Any:
     return _plotly_figure(Chart(trajectory.time, "tip deflection (mm)", curves))
 
 
-def _results(
-    checked: CheckedCase, results_of_model: ModelDesignResults, data: xr.Dataset
-) -> Results:
+def _check_cost(cost: Cost, case: Case, file: str) -> None:
+    """Check that the motion of a case is short enough for the page."""
+    if cost.memory > MAX_MEMORY or cost.seconds > MAX_TIME:
+        raise BadInput(
+            file,
+            "time.duration",
+            f"{number(case.time.duration)} s are too long for this page, since the motion may take "
+            f"{cost}; make it shorter or time.output_step longer, or use `protractile run`",
+        )
+
+
+def _results(case: Case, results_of_model: ModelDesignResults, data: xr.Dataset) -> Results:
     """Return the results of a run with one model."""
-    case, design = checked.case, DesignResults({checked.case.models[0].name: results_of_model})
-    results = Results(case, data, Summary(
-        title=case.title, case_hash="", versions={}, models={}, failures={}, design=design
+    return Results(case, data, Summary(
+        title=case.title, case_hash="", versions={}, models={}, failures={},
+        design=DesignResults({case.models[0].name: results_of_model}),
     ))  # fmt: skip
-    # The properties would build the same boom again, and find no model before its motion.
-    vars(results).update(boom=checked.boom, main_models=[checked.case.models[0].name])
-    return results
 
 
 def _fibres(loaded: LoadedModel, equilibria: Sequence[Any]) -> Iterator[FibreStress]:
@@ -225,7 +224,7 @@ def _plotly_figure(chart: Chart) -> Any:
 
 def build_beam(
     checked: CheckedCase, original: Case, shells: Sequence[Shell]
-) -> tuple[CheckedCase, BuiltModel, str]:
+) -> tuple[Case, BuiltModel, str]:
     """Return the case, its built beam, and a text that says how its stiffness is determined.
 
     If the cache has one of the shells with the geometry of the case or of the ``original``, the
@@ -244,16 +243,12 @@ def build_beam(
         with suppress(ImportError):
             for geometry in (boom, build_boom(with_loads)):
                 if calibration := _calibration(beam, by_shell, beam.model_boom(geometry).boom):
-                    calibrated = CheckedCase(case.model_copy(update={"models": (beam,)}))
-                    # The property would build the same boom again.
-                    vars(calibrated)["boom"] = boom
-                    built = beam.build_calibrated(calibrated.model_boom(beam), calibration)
-                    built = replace(
-                        built, system=complete_system(built.system, case, boom, built.lines)
-                    )
-                    return calibrated, built, f"calibrated by {shell.name}"
+                    built = beam.build_calibrated(beam.model_boom(boom), calibration)
+                    system = complete_system(built.system, case, boom, built.lines)
+                    calibrated = case.model_copy(update={"models": (beam,)})
+                    return calibrated, replace(built, system=system), f"calibrated by {shell.name}"
     plain = build_on(checked.model_boom(model), case, model)
-    return checked, plain, "of its sections;\nrun the shell to calibrate it"
+    return case, plain, "of its sections;\nrun the shell to calibrate it"
 
 
 def _calibration(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration | None:

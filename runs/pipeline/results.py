@@ -154,8 +154,9 @@ class Results:
 
     @property
     def completed_models(self) -> list[Model]:
-        """The models that did not fail."""
-        return [model for model in self.case.models if model.name in self.summary.models]
+        """The models with results, which on the live page may be without a motion."""
+        names = {*self.summary.models, *self.summary.design.models}
+        return [model for model in self.case.models if model.name in names]
 
     @cached_property
     def boom(self) -> Boom:
@@ -176,7 +177,7 @@ class Results:
     @cached_property
     def main_models(self) -> list[str]:
         """The names of the main models, starting with the reference."""
-        names = list(self.summary.models)
+        names = [model.name for model in self.completed_models]
         first = main_models(self.case, names)
         return sorted(first, key=lambda name: (name != self.reference, names.index(name)))
 
