@@ -1,4 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
+"""Public names of the package."""
+
 # ruff: isort: skip_file
 
 # What a boom is made of
