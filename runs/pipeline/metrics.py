@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import KW_ONLY, dataclass, replace
 from types import UnionType
 from typing import ClassVar, get_args, get_type_hints
 
@@ -25,7 +25,8 @@ class Metric:
     name: str  #: name in files of sweeps; "." for the name of the field; empty to omit the result
     unit: str  #: SI unit in files
     title: str  #: a lower-case phrase for display
-    shown_unit: str  #: displayed unit
+    _: KW_ONLY
+    shown: str = ""  #: displayed unit; the SI unit unless given
     heading: str = ""  #: heading in tables of reports; empty to omit the result there
     form: str = ".4g"  #: number format in tables of reports
     charted: bool = True  #: True if the result is smooth enough for a chart
@@ -34,7 +35,12 @@ class Metric:
     @property
     def factor(self) -> float:
         """The conversion factor from the SI unit to the displayed unit."""
-        return 1.0 if self.shown_unit in (self.unit, "–") else _PREFIXES[self.shown_unit[0]]
+        return _PREFIXES[self.shown[0]] if self.shown else 1.0
+
+    @property
+    def shown_unit(self) -> str:
+        """The displayed unit, which is "–" for dimensionless numbers."""
+        return self.shown or ("–" if self.unit == "1" else self.unit)
 
     @property
     def unit_of_heading(self) -> str:

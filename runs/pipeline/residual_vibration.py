@@ -31,7 +31,7 @@ _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 _TIP = ("tip", "tip_lateral")
 
 # Metric of a vibration at constant extension.
-_level = partial(Metric, unit="m", shown_unit="mm", charted=False)
+_level = partial(Metric, unit="m", shown="mm", charted=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,14 +48,17 @@ class ResidualVibration(Record):
     #: largest distance of the tip from its static position in m
     tip: Annotated[
         float,
-        Metric("residual_vibration", "m", "residual vibration", "mm", "residual\nvibration"),
-    ]
+        Metric(
+            "residual_vibration", "m", "residual vibration",
+            shown="mm", heading="residual\nvibration",
+        ),
+    ]  # fmt: skip
     #: time of this distance in s
-    time: Annotated[float, Metric("", "s", "time of the residual vibration", "s", "at", ".3f")]
-    #: mean speed in m/s of the fastest drive while it moves
-    speed: Annotated[
-        float, Metric("drive_speed", "m/s", "mean speed of the drive", "m/s", charted=False)
+    time: Annotated[
+        float, Metric("", "s", "time of the residual vibration", heading="at", form=".3f")
     ]
+    #: mean speed in m/s of the fastest drive while it moves
+    speed: Annotated[float, Metric("drive_speed", "m/s", "mean speed of the drive", charted=False)]
     #: largest distance in m at constant initial extension, under the same loads; None if it cannot
     #: be computed
     initial: Annotated[

@@ -174,31 +174,26 @@ class ModelSummary(SummaryTable):
     seconds: dict[str, float]
     step: float
     steps: int
-    first_contact: Annotated[FiniteNumber, Metric("first_contact", "s", "first contact", "s")]
+    first_contact: Annotated[FiniteNumber, Metric("first_contact", "s", "first contact")]
     contact_changes: int
     energy_residual: Annotated[
         float,
         Metric(
-            "energy_residual",
-            "1",
-            "energy residual",
-            "–",
-            "energy residual\n/ largest work",
-            ".1g",
-            charted=False,
+            "energy_residual", "1", "energy residual",
+            heading="energy residual\n/ largest work", form=".1g", charted=False,
         ),
-    ]
+    ]  # fmt: skip
     first_peak: dict[str, FirstPeak]
     peak_contact_force: Annotated[
         FiniteNumber,
-        Metric("peak_contact_force", "N", "peak force of an impact", "kN", charted=False),
+        Metric("peak_contact_force", "N", "peak force of an impact", shown="kN", charted=False),
     ]
     wall_time: Annotated[
-        float | None, Metric("", "s", "computing time", "s", "computing time", ".1f")
+        float | None, Metric("", "s", "computing time", heading="computing time", form=".1f")
     ] = None
     step_error: Annotated[
         FiniteNumber,
-        Metric("step_error", "1", "time-step error of deflections", "%", charted=False),
+        Metric("step_error", "1", "time-step error of deflections", shown="%", charted=False),
     ] = None
     resolving_step: FiniteNumber = None
     ensemble: EnsembleSummary | None = None
@@ -209,7 +204,7 @@ class ModelSummary(SummaryTable):
     reduction_errors: dict[str, FiniteNumber] = {}
     reduction_error: Annotated[
         FiniteNumber,
-        Metric("reduction_error", "1", "reduction error of the tip", "%", charted=False),
+        Metric("reduction_error", "1", "reduction error of the tip", shown="%", charted=False),
     ] = None
     local_compliance: list[FiniteNumber] = []
     mesh_error: FiniteNumber = None

@@ -37,7 +37,7 @@ _SHAPED, _SHARE = 2, 0.05
 
 def _kilo(unit: str, title: str, heading: str) -> Metric:
     """Return the metric of a result that is displayed in thousands of its SI unit."""
-    return Metric(".", unit, title, f"k{unit}", heading, ".3g")
+    return Metric(".", unit, title, shown=f"k{unit}", heading=heading, form=".3g")
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,28 +85,34 @@ class Hoisting(Record):
 
     lift_off: Annotated[
         float | None,
-        Metric("lift_off", "s", "lift-off", "s", "lift-off", ".3f", charted=False),
+        Metric("lift_off", "s", "lift-off", heading="lift-off", form=".3f", charted=False),
     ]
     force: Annotated[
         float,
-        Metric("rope_force", "N", "force of the rope", "kN", "rope force,\nmaximum", ".3g"),
-    ]
+        Metric(
+            "rope_force", "N", "force of the rope",
+            shown="kN", heading="rope force,\nmaximum", form=".3g",
+        ),
+    ]  # fmt: skip
     factor: Annotated[
-        float, Metric("rope_factor", "1", "factor φ₂ of the rope", "–", "factor φ₂", ".3f")
+        float, Metric("rope_factor", "1", "factor φ₂ of the rope", heading="factor φ₂", form=".3f")
     ]
     by_class: Annotated[
         float | None,
         Metric(
-            "rope_factor_by_class", "1", "factor φ₂ of the hoisting class", "–",
-            "φ₂ of the\nclass", ".3f",
+            "rope_factor_by_class", "1", "factor φ₂ of the hoisting class",
+            heading="φ₂ of the\nclass", form=".3f",
         ),
     ]  # fmt: skip
     swing_out: Annotated[
         float | None,
-        Metric("swing_out", "m", "swing in the plane of the boom", "m", "swing\nin plane", ".3g"),
-    ]
+        Metric(
+            "swing_out", "m", "swing in the plane of the boom",
+            heading="swing\nin plane", form=".3g",
+        ),
+    ]  # fmt: skip
     swing_aside: Annotated[
-        float | None, Metric("swing_aside", "m", "swing aside", "m", "swing\naside", ".3g")
+        float | None, Metric("swing_aside", "m", "swing aside", heading="swing\naside", form=".3g")
     ]
 
 

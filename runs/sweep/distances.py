@@ -37,11 +37,11 @@ AVERAGING_TIME = 0.02
 TIP_DEVIATION = "tip_off"
 # Relative differences from the reference.
 DISTANCES = (
-    Metric("first_peak_off", "1", "first peak deviation", "%"),
-    Metric("slow_period_off", "1", "slow period deviation", "%"),
-    Metric("pad_force_off", "1", "pad force deviation", "%"),
-    Metric("stress_off", "1", "stress deviation", "%"),
-    Metric(TIP_DEVIATION, "1", "tip deviation", "%"),
+    Metric("first_peak_off", "1", "first peak deviation", shown="%"),
+    Metric("slow_period_off", "1", "slow period deviation", shown="%"),
+    Metric("pad_force_off", "1", "pad force deviation", shown="%"),
+    Metric("stress_off", "1", "stress deviation", shown="%"),
+    Metric(TIP_DEVIATION, "1", "tip deviation", shown="%"),
 )
 # Name of the variable with the time in s up to which tips are compared.
 UNTIL = "compared_until"

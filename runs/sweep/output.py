@@ -146,7 +146,7 @@ def _print_distances(data: xr.Dataset, reference: str, console: Console) -> None
     headings = [f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES]
     title = f"Distances from {reference}"
     Table.of_rows("distances", title, ("model", *headings), rows).show(console)
-    until = _range(data[UNTIL], Metric(UNTIL, "s", "", "s"))
+    until = _range(data[UNTIL], Metric(UNTIL, "s", ""))
     step_error = data["step_error"].sel(model=reference).round(DIGITS)
     difference = _range(step_error, metrics(ModelSummary)["step_error"])
     if until != NONE:
