@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import partial
 from importlib import import_module
@@ -215,7 +215,7 @@ def sweep(
 
     names = options.split_names(models)
     plan_of = partial(points.plan, case, models=names, mesh_size=mesh_size, reference=against)
-    conclude: sweep_runs.Conclude = charts.conclude
+    conclude: Callable[..., None] = charts.conclude
     if sensitivity:
         plan, changed_numbers = sampling.plan_changes(case, names, mesh_size)
         conclude = partial(sampling.conclude_changes, changed_numbers)

@@ -7,13 +7,11 @@ and of the libraries. A later sweep in this folder does not repeat finished poin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
 from pathlib import Path
-
-from rich.console import Console
 
 from protractile.dynamics.failure import NumericsError
 from protractile.runs.case import toml
@@ -33,9 +31,6 @@ from protractile.runs.sweep.distances import Features, comparison_end
 from protractile.runs.sweep.points import Plan
 
 POINTS = "points"
-
-# Function that writes the files of a finished sweep into its folder, and prints its tables.
-Conclude = Callable[[Plan, Sequence["Outcome"], Path, Console], object]
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,6 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.typography import TO_PERCENT, join_words
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.messages import BadInput
-from protractile.runs.case.schema import Case
 from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
 from protractile.runs.pipeline.metrics import Metric
 from protractile.runs.pipeline.quantities import QUANTITIES
@@ -155,15 +154,8 @@ def scatter(results: pd.DataFrame) -> pd.DataFrame:
 def conclude_samples(
     samples: pd.DataFrame, plan: Plan, outcomes: Sequence[Outcome], folder: Path, console: Console
 ) -> None:
-    """Write the files of the samples of a plan into its folder, and print the scatter."""
+    """Write ``samples.csv``, ``sampling.csv`` and the chart, and print the main statistics."""
     results = results_of(plan, outcomes)
-    _write(results, samples, folder)
-    print(printable(str(folder / CSV)))
-    _show(results, plan, console)
-
-
-def _write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path) -> None:
-    """Write ``samples.csv``, ``sampling.csv`` and the chart into the folder of a sweep."""
     several = {
         "sample": {name: pd.concat([samples, frame], axis=1) for name, frame in results.items()},
         "result": {name: scatter(frame) for name, frame in results.items()},
@@ -175,14 +167,11 @@ def _write(results: dict[str, pd.DataFrame], samples: pd.DataFrame, folder: Path
         atomic_path(part / CSV) as table,
         atomic_path(part / CHART) as chart,
     ):
-        for (rows, frames), path in zip(several.items(), (points, table), strict=True):
-            whole_table = pd.concat(frames, names=["model", rows])
+        for (of_row, frames), path in zip(several.items(), (points, table), strict=True):
+            whole_table = pd.concat(frames, names=["model", of_row])
             whole_table.to_csv(path, float_format="%.9g", lineterminator="\r\n")
         _draw(results, chart)
-
-
-def _show(results: dict[str, pd.DataFrame], plan: Plan, console: Console) -> None:
-    """Print mean, standard deviation and quantiles of the main results of each model."""
+    print(printable(str(folder / CSV)))
     for model, frame in results.items():
         rows = [
             (f"{one.title} ({one.shown_unit})", *(one.factor * row).tolist())
@@ -318,13 +307,6 @@ def conclude_changes(
         percent = (TO_PERCENT * data).rename_axis("key").reset_index()
         percent.to_csv(path, index=False, float_format="%.6g", lineterminator="\r\n")
     print(printable(str(folder / CHANGES_CSV)))
-    _print_influences(data, plan.points[0].case, changed_numbers, console)
-
-
-def _print_influences(
-    data: pd.DataFrame, case: Case, changed_numbers: Sequence[Change], console: Console
-) -> None:
-    """Print the table of the keys with the largest influence."""
     top = data.head(MOST_ROWS)
     columns = [Column("1 % more of", list(top.index))]
     columns += [
@@ -338,5 +320,5 @@ def _print_influences(
             notes.append(words.format(join_words(keys)))
     if len(data) > len(top):
         notes.append(f"{len(data) - len(top)} more numbers are in {CHANGES_CSV}.")
-    title = f"Change of results in % by 1 % of each number: {case.models[0].name}"
+    title = f"Change of results in % by 1 % of each number: {plan.points[0].case.models[0].name}"
     Table(title, columns, notes, "sensitivity").show(console)
