@@ -6,10 +6,9 @@ Beams replace shells here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from functools import partial
 from html import escape
 from io import StringIO
 from typing import TYPE_CHECKING
@@ -25,35 +24,17 @@ from protractile.dynamics.motion import constant_load_equilibrium
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import axial_force, moving_force_places
 from protractile.geometry.boom import Boom
-from protractile.runs.case import actions
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.case.units import System
+from protractile.runs.cautions.context import Context, State
+from protractile.runs.cautions.rules import cautions
 from protractile.runs.pipeline.combinations import combination_results, combination_tables
-from protractile.runs.pipeline.drives import (
-    drive_lines,
-    stick_slip_cautions,
-    stick_slip_estimates,
-    stick_slip_lines,
-)
+from protractile.runs.pipeline.drives import drive_lines, stick_slip_lines
 from protractile.runs.pipeline.estimates import Preview, run_cost
-from protractile.runs.pipeline.hoisting_error import hoisting_cautions
-from protractile.runs.pipeline.largest_loads import (
-    BeamStates,
-    beam_note,
-    overload_cautions,
-    static_table,
-)
+from protractile.runs.pipeline.largest_loads import BeamStates, beam_note, static_table
 from protractile.runs.pipeline.load_table import load_table
-from protractile.runs.pipeline.pad_walls import deflection_advice, pad_wall_lines, rigid_wall_note
-from protractile.runs.pipeline.panels import panel_cautions, panel_table, weakest_panels
-from protractile.runs.pipeline.proportions import proportion_cautions
-from protractile.runs.pipeline.response_cautions import (
-    buckling_cautions,
-    period_cautions,
-    tip_cautions,
-)
-from protractile.runs.pipeline.static_results import bulge_cautions
+from protractile.runs.pipeline.panels import panel_table, weakest_panels
 from protractile.runs.pipeline.statics import (
     Statics,
     contact_and_support_reactions,
@@ -123,12 +104,14 @@ class Check:
 def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Check:
     """Return the tables and sentences that ``check`` prints."""
     case, boom, preview = checked.case, checked.boom, Preview(checked)
-    static = statics(case, boom)
-    boom_with_laws = boom if static is None else static.with_play.boom
-    beam = None if static is None else BeamStates.of(case, boom_with_laws)
+    static, context = statics(case, boom), Context(case, boom)
+    beam = None if static is None else context.beam
     extremes = [] if beam is None else beam.extremes(case.system)
-    advise = partial(deflection_advice, case, beam)
     panels = [] if beam is None else weakest_panels(beam.boom.segments, *beam.rests)
+    factors = {
+        _beam_name(model): model.coarsen(boom).critical_factor(checked.model_boom(model))
+        for model in (case.models if boom.compressed else ())
+    }
     tables = [
         segment_table(case, boom),
         stiffener_table(boom, case.system),
@@ -137,35 +120,26 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
         mass_table(boom, case.system),
         load_table(case, boom),
         axial_forces(boom, static),
-        *([_buckling(checked)] if boom.compressed else []),
+        _buckling(case, boom, factors),
         _damping_ratios(preview),
         *([_reactions(static.with_play, case.system)] if static else []),
         *([_cylinders(static.with_play, case.system)] if static else []),
-        static_table(case, boom_with_laws, extremes),
+        static_table(case, boom if static is None else static.with_play.boom, extremes),
         panel_table(panels, case.system),
         *combination_tables(combination_results(case, progress), case),
     ]
-    drives = list(stick_slip_estimates(case, boom))
-    lines = [*drive_lines(boom, case.system), *stick_slip_lines(drives, case.system)]
+    lines = [*drive_lines(boom, case.system), *stick_slip_lines(context.drives, case.system)]
     lines += [*turning_lines(case), *_shaper_lines(preview)]
-    lines += [*_static_lines(case, boom, static, beam, advise)]
-    if boom.compressed:
-        for model in case.models:
-            lines += buckling_cautions(_beam_name(model), _critical_factor(checked, model))
-    lines += [
-        *actions.series_notes(case),
-        *proportion_cautions(case, boom),
-        *([] if beam is None else bulge_cautions(_BEAMS, beam.rests[0], boom_with_laws)),
-        *([] if beam is None else hoisting_cautions(case, beam)),
-        *overload_cautions(extremes, boom, advise),
-        *panel_cautions(panels, case.system),
-        *stick_slip_cautions(drives, case.system),
-    ]
-    if case.limits is not None:
-        # Imported late, since the results of a run take half a second.
-        from protractile.runs.pipeline.quantities import static_limit_lines
-
-        lines += static_limit_lines(case.limits, extremes)
+    context.extremes, context.panels = extremes, panels
+    context.states = [State(f"in {name}", factor) for name, factor in factors.items()]
+    if static is None or beam is None:
+        lines.append("There is no static equilibrium under the loads at t = 0.")
+    else:
+        hertz = [first_frequency(case, one) for one in static]
+        lines += _static_lines(static, beam, hertz)
+        rest = State(_BEAMS, None, static.with_play.tip, hertz[:1], beam.rests[0])
+        context.states.append(rest)
+    lines += cautions(context)
     lines.append(f"A run may take {run_cost(case, preview)}.")
     lines = [case.system.convert(line) for line in lines]
     return Check(case.title, [table for table in tables if table.rows], lines)
@@ -238,24 +212,19 @@ def _extreme_axial_force(
     return largest, float(stresses.flat[np.abs(stresses).argmax()])
 
 
-def _critical_factor(checked: CheckedCase, model: Model) -> float | None:
-    return model.coarsen(checked.boom).critical_factor(checked.model_boom(model))
-
-
-def _buckling(checked: CheckedCase) -> Table:
-    """Return the table of buckling factors of all models."""
-    models = checked.case.models
-    factors = [_critical_factor(checked, model) for model in models]
+def _buckling(case: Case, boom: Boom, factors: Mapping[str, float | None]) -> Table:
+    """Return the table of the buckling factors of models, by name."""
+    shares = [factor and 1.0 / factor for factor in factors.values()]
     columns = [
-        Column("model", [_beam_name(model) for model in models]),
-        Column("buckling factor", factors, ".4g"),
-        Column("axial force over\ncritical force", [f and 1.0 / f for f in factors], ".3g", "%"),
+        Column("model", [*factors]),
+        Column("buckling factor", [*factors.values()], ".4g"),
+        Column("axial force over\ncritical force", shares, ".3g", "%"),
     ]
     walls = (
         "The factor of a shell is estimated by a beam with the contacts that are closed at t = 0, "
-        f"and with elastic {checked.boom.yielding}."
+        f"and with elastic {boom.yielding}."
     )
-    notes = [walls] if checked.boom.yielding and any(m.needs_shell for m in models) else []
+    notes = [walls] if boom.yielding and any(m.needs_shell for m in case.models) else []
     return Table("Buckling under the axial forces, joints in contact", columns, notes)
 
 
@@ -349,19 +318,9 @@ def _cylinders(state: StaticState, system: System) -> Table:
     return Table.of_rows("", "Cylinders at rest, t = 0", columns, rows, notes)
 
 
-def _static_lines(
-    case: Case,
-    boom: Boom,
-    static: Statics | None,
-    beam: BeamStates | None,
-    advise: Callable[[], str],
-) -> Iterator[str]:
-    """Yield sentences on the static tip, the first frequency and joint rotations, and cautions."""
-    if static is None or beam is None:
-        yield "There is no static equilibrium under the loads at t = 0."
-        return
+def _static_lines(static: Statics, beam: BeamStates, hertz: Sequence[float]) -> Iterator[str]:
+    """Yield sentences on the static tip, the first frequencies in Hz, and joint rotations."""
     state, bonded = static
-    hertz, bonded_hertz = (first_frequency(case, one) for one in static)
     soft = state.boom.yielding
     walls = f", with the compliance of {soft}" if soft else ""
     without = f"with bonded joints and rigid {soft.split()[0]}:" if soft else "without play"
@@ -370,8 +329,8 @@ def _static_lines(
         f"{milli(bonded.tip)} mm."
     )
     yield (
-        f"First natural frequency, joints in contact, {_BEAMS}{walls}: {number(hertz, 4)} Hz; "
-        f"{without} {number(bonded_hertz, 4)} Hz."
+        f"First natural frequency, joints in contact, {_BEAMS}{walls}: {number(hertz[0], 4)} Hz; "
+        f"{without} {number(hertz[1], 4)} Hz."
     )
     causes = f"Play and the {soft} rotate" if soft else "Play rotates"
     rest = beam.farthest
@@ -380,7 +339,3 @@ def _static_lines(
             f"{causes} {tilt.inner!r} by {milli(tilt.rotation)} mrad in {tilt.outer!r}, which "
             f"moves the tip by {milli(tilt.tip)} mm, under the loads at t = {rest.time:.4g} s."
         )
-    yield from pad_wall_lines(case, beam)
-    yield from filter(None, [rigid_wall_note(case.models, boom)])
-    yield from tip_cautions(_BEAMS, state.tip, boom, advise)
-    yield from period_cautions(_BEAMS, hertz, case)

@@ -20,7 +20,7 @@ from protractile.beam_model.statics import static_state
 from protractile.geometry.boom import Boom, BoomError
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.response_cautions import MOMENT_ERROR, TIP_ERROR
+from protractile.runs.cautions.response import MOMENT_ERROR, TIP_ERROR
 from protractile.runs.report.tables import Table
 from studies.reference_models.elastica import Rest, Rod, Telescope
 from studies.study import Progress, Verification, define_study

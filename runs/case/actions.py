@@ -230,28 +230,6 @@ def stops(case: Case) -> Iterator[Stop]:
         yield Stop(contact=contact, **field_values(table, BareStop))
 
 
-def series_notes(case: Case) -> list[str]:
-    """Return a note on each tabulated history that is shorter or longer than the run."""
-    duration = case.time.duration
-    tables = {f"load[{i}]": load.table for i, load in enumerate(case.loads, start=1)}
-    tables |= {f"base[{i}]": base.table for i, base in enumerate(case.base, start=1)}
-    notes = []
-    for key, table in tables.items():
-        if table is None:
-            continue
-        (first, first_value), (last, last_value) = table[0], table[-1]
-        remarks = [
-            *([f"its first value, {first_value:g}, is held before"] if first > 0.0 else []),
-            *(["what is before t = 0 is left out"] if first < 0.0 else []),
-            *([f"its last value, {last_value:g}, is held afterwards"] if last < duration else []),
-            *(["what comes after the run is left out"] if last > duration else []),
-        ]
-        if remarks:
-            lasts = f"lasts from {first:g} to {last:g} s, the run {duration:g} s"
-            notes.append(f"note: the series of {key} {lasts}: {'; '.join(remarks)}")
-    return notes
-
-
 def field_values(table: Any, part: type) -> dict[str, Any]:
     """Return the values that a table has for the fields of a dataclass, by name."""
     return {field.name: getattr(table, field.name) for field in fields(part)}

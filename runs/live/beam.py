@@ -28,6 +28,8 @@ from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.rules import OF_INPUTS, cautions
 from protractile.runs.folder.cache import Cache, key
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
@@ -37,7 +39,6 @@ from protractile.runs.pipeline.model_run import summarise_motion
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
 from protractile.runs.pipeline.motion_results import MotionResult
 from protractile.runs.pipeline.pads import pad_loads
-from protractile.runs.pipeline.proportions import proportion_cautions
 from protractile.runs.pipeline.results import Results, label
 from protractile.runs.pipeline.section_forces import LoadedModel
 from protractile.runs.pipeline.static_results import (
@@ -139,7 +140,7 @@ def beam_results(
         "stage": "rest",
         "rows": [*table.rows, *more],
         "utilisation": utilisation and f"At rest: {utilisation}",
-        "cautions": proportion_cautions(case, boom),
+        "cautions": cautions(Context(case, boom), OF_INPUTS),
         "boom": boom_figure(case, boom, farthest),
         "forces": _plotly_figure(chart_along(rest_curves(farthest, "", theme.PALETTE[0]))),
     }

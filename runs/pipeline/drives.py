@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Descriptions of drives, predictions of stick-slip, and cautions on segments that lag."""
+"""Descriptions of drives, and predictions of stick-slip."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -22,15 +21,8 @@ from protractile.runs.case.units import System
 from protractile.runs.pipeline.static_results import extended_positions, instants, positions
 from protractile.runs.pipeline.statics import boom_with_play, statics
 
-if TYPE_CHECKING:
-    import xarray as xr
-
-
 # Upper limit of (R_s − R)/(v √(k m)) in the search for the critical speed.
 _MAX_DROP = 1.0e6
-
-# Largest lag without a caution, as a fraction of the smallest overlap.
-MAX_LAG = 0.01
 
 
 def drive_lines(boom: Boom, system: System) -> Iterator[str]:
@@ -143,36 +135,3 @@ def stick_slip_lines(estimates: Iterable[StickSlipEstimate], system: System) -> 
             f"{TO_PERCENT * one.elastic.damping_ratio:.3g} %; against the largest static friction "
             f"of {one.friction * TO_KILO:.3g} kN it {slips}."
         )
-
-
-def stick_slip_cautions(estimates: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
-    """Yield a caution for each drive that sticks and slips even at its largest speed."""
-    for one in estimates:
-        if one.critical_speed <= one.max_speed:
-            continue
-        remedy = "has no damping; give it a dashpot"
-        if one.critical_speed < np.inf:
-            remedy = (
-                f"moves smoothly from {system.text(one.critical_speed, 'm/s', 3)} on; increase the "
-                "speed, the stiffness or the damping"
-            )
-        yield (
-            f"caution: the drive of {one.inner!r} sticks and slips during its whole travel: it "
-            f"moves at {system.text(one.max_speed, 'm/s', 3)} at most, and {remedy}"
-        )
-
-
-def lag_cautions(boom: Boom, data: xr.Dataset, system: System) -> Iterator[str]:
-    """Yield a caution for each segment with a large lag behind its drive."""
-    for number, joint in enumerate(boom.joints, start=1):
-        name = "drive_lag" if number == 1 else f"drive_lag-{number}"
-        if name not in data:
-            continue
-        lag, overlap = float(np.abs(data[name]).max()), boom.smallest_overlap(joint)
-        if lag > MAX_LAG * overlap:
-            yield (
-                f"caution: {boom.segments[joint.inner].name!r} lags up to "
-                f"{system.text(lag, 'm')} behind its drive, more than "
-                f"{TO_PERCENT * MAX_LAG:g} % of the {system.text(overlap, 'm')} of overlap: "
-                "the motion across the boom follows the drive and neglects the lag"
-            )

@@ -10,7 +10,6 @@ too early and oscillates too fast. The error is the difference between both moti
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple, Self
 
 import numpy as np
@@ -19,13 +18,10 @@ from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.hanging_load import HangingLoad
-from protractile.geometry.typography import TO_PERCENT
 from protractile.runs.case.motions import hanging_load
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.largest_loads import BeamStates
 
-# Error over the range of the tip above which a caution is given.
-_LARGE = 0.05
 # Slope of the shortening of a cantilever under a force at its tip, over w/L: d(0.6 w²/L)/dw.
 _SHORTENING = 1.2
 # Output times per period, and the largest number of periods, after which errors hardly grow.
@@ -56,20 +52,6 @@ class _Mode(NamedTuple):
         rope = load.stiffness * load.cosine * (load.cosine - height / tip)
         damping = 2.0 * closed_contact_damping(system, position)[1][at] * omega / tip**2
         return cls(omega, shapes[:, at] / tip, mass, omega**2 * mass - rope, damping)
-
-
-def hoisting_cautions(case: Case, beam: BeamStates) -> Iterator[str]:
-    """Yield a caution if the straight path of the tip causes a large error of the motion.
-
-    ``beam`` has the static states of the case at t = 0 and under extreme loads.
-    """
-    error = straight_path_error(case, beam)
-    if error > _LARGE:
-        yield (
-            "caution: hoist: under large deflections the load lifts off later and oscillates more "
-            f"slowly than in the models: the tip's motion is off by about {TO_PERCENT * error:.2g} "
-            "% of its range; static states are not affected"
-        )
 
 
 def straight_path_error(case: Case, beam: BeamStates) -> float:

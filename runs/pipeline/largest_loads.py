@@ -6,7 +6,7 @@ The model has beam elements and the compliance of walls under pads, at the initi
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -29,7 +29,6 @@ from protractile.runs.case.schema import Case
 from protractile.runs.case.units import System
 from protractile.runs.pipeline.load_table import release_note
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
-from protractile.runs.pipeline.response_cautions import CHECK_UNITS, tip_cautions
 from protractile.runs.pipeline.section_forces import LoadedModel
 from protractile.runs.pipeline.static_results import (
     StaticResult,
@@ -314,21 +313,3 @@ def beam_note(boom: Boom) -> str:
     theory = "Timoshenko" if static_theory(boom) == "timoshenko" else "Euler-Bernoulli"
     walls = f", with elastic {boom.yielding}," if boom.yielding else ""
     return f"A separate {theory} beam{walls} gives these estimates."
-
-
-def overload_cautions(
-    extremes: Sequence[StaticExtreme], boom: Boom, advise: Callable[[], str] = lambda: CHECK_UNITS
-) -> list[str]:
-    """Return cautions on utilisations above 1, and on a large deflection after t = 0.
-
-    ``advise`` returns the advice on a large deflection.
-    """
-    cautions: list[str] = []
-    for one in extremes:
-        under = f"under the loads at t = {one.time:.4g} s"
-        # The tip comes first.
-        if one.kind == "tip" and one.time > 0.0:
-            cautions += tip_cautions(under, one.largest, boom, advise)
-        if one.utilisation is not None and (one.utilisation.value or 0.0) > 1.0:
-            cautions.append(f"caution: static utilisation {under}: {one.utilisation}")
-    return cautions

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Accuracy of the results of a run: comparison of models, notes on accuracy, cautions.
+"""Accuracy of the results of a run: comparison of models, notes on accuracy.
 
 All models are compared with one reference model. Chaotic motions are compared by ensembles, at
 three levels. Motions that friction makes regular are compared over the whole run.
@@ -8,50 +8,19 @@ three levels. Motions that friction makes regular are compared over the whole ru
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
-from functools import partial
 
-import numpy as np
 import xarray as xr
 
-from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.trajectory import PointwiseDifferences
-from protractile.geometry.axial import moving_force
-from protractile.geometry.boom import Boom
 from protractile.geometry.typography import TO_PERCENT, join_words
-from protractile.runs.case.actions import series_notes
-from protractile.runs.case.kinds.model import select_kind
-from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case, Model, TimeTable
 from protractile.runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
-from protractile.runs.pipeline.drives import lag_cautions, stick_slip_cautions, stick_slip_estimates
-from protractile.runs.pipeline.hoisting_error import hoisting_cautions
-from protractile.runs.pipeline.largest_loads import BeamStates
-from protractile.runs.pipeline.pad_walls import deflection_advice
-from protractile.runs.pipeline.proportions import proportion_cautions
-from protractile.runs.pipeline.response_cautions import (
-    CHECK_UNITS,
-    buckling_cautions,
-    deflection_errors,
-    period_cautions,
-    tip_cautions,
-)
-from protractile.runs.pipeline.static_results import bulge_cautions
-from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.pipeline.summary import Comparisons, Summary, WholeRun
-from protractile.runs.pipeline.turning import pendulum_frequency, swing_cautions, turning_cautions
 from protractile.runs.report.formatting import number, signed_percent
 
 # Members whose tips differ by more than this fraction of the range have diverged.
 _DIVERGED = 0.2
-
-# Ratio of a mode's frequency to the pendulum's frequency above which the mode belongs to the boom.
-_APART = 1.2
-
-# Relative error of a reduction or a mesh above which a caution is given.
-MAX_RELATIVE_ERROR = 0.01
-
 
 # Regular motions are compared up to this time in s, and over the whole run.
 HALFWAY = 5.0
@@ -243,122 +212,3 @@ def _horizon(summary: Summary, duration: float) -> Iterator[str]:
     regular = [name for name, time in times.items() if time is None]
     if regular:
         yield f"The motion of {join_words(regular)} can be predicted over the whole {duration:g} s."
-
-
-def cautions(case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> list[str]:
-    """Return cautions on the validity of the results.
-
-    The summary has all failures, and ``data`` the trajectories of all models.
-    """
-    return [
-        *proportion_cautions(case, boom),
-        *stick_slip_cautions(stick_slip_estimates(case, boom), case.system),
-        *lag_cautions(boom, data, case.system),
-        *(f"failed: {name}: {why}" for name, why in summary.failures.items()),
-        *_static(summary, case, boom),
-        *stress_cautions(summary, boom),
-        *(
-            caution
-            for name, results in summary.design.models.items()
-            if results.static
-            for caution in bulge_cautions(f"in {name}", results.static[0], boom)
-        ),
-        *_large_displacements(case, boom, data),
-        *_straight_path(case, boom),
-        *swing_cautions(case, data),
-        *_numerical(summary, case),
-        *series_notes(case),
-    ]
-
-
-def _static(summary: Summary, case: Case, boom: Boom) -> Iterator[str]:
-    """Yield cautions on axial forces, static deflection, duration and Coriolis forces."""
-    for name, model in summary.models.items():
-        yield from buckling_cautions(name, model.critical_factor)
-        advise = partial(_advice, case, boom, name)
-        rests = summary.design.models[name].static if name in summary.design.models else []
-        tip = max((rest.tip for rest in rests), key=abs, default=model.static_tip)
-        yield from tip_cautions(f"in {name}", tip, boom, advise)
-    designs = summary.design.models.items()
-    frequencies = sorted((mode.frequency, name) for name, one in designs for mode in one.modes)
-    for frequency, name in frequencies[:1]:
-        yield from period_cautions(f"in {name}", frequency, case)
-    bending = [one for one in frequencies if one[0] > _APART * pendulum_frequency(case)]
-    for frequency, name in bending[:1]:
-        yield from turning_cautions(f"in {name}", frequency, case)
-
-
-def stress_cautions(summary: Summary, boom: Boom) -> Iterator[str]:
-    """Yield cautions on wall stresses of shells if axial forces vary along a segment."""
-    numbers = range(len(boom.joints))
-    if any(moving_force(boom.segments, boom.joints, number) for number in numbers):
-        for name in (name for name, one in summary.models.items() if one.stress is not None):
-            yield (
-                f"caution: the walls of {name} carry the axial forces of the initial extension: "
-                "their stresses and utilisations neglect the change of axial forces by drives, "
-                "unlike stresses of outer fibres"
-            )
-
-
-def _advice(case: Case, boom: Boom, name: str) -> str:
-    """Return the advice on a large deflection of the named model."""
-    if any(model.name == name and model.needs_shell for model in case.models):
-        with suppress(*NUMERICAL_ERRORS):
-            return deflection_advice(case, BeamStates.of(case, boom_with_play(case, boom)))
-    return CHECK_UNITS
-
-
-def _large_displacements(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[str]:
-    largest = np.abs(data["tip"].values).max(axis=1)
-    for name, move in zip(data["model"].values, largest, strict=True):
-        what, advise = (
-            f"in {name} the tip moves by {move:.3g} m",
-            partial(_advice, case, boom, name),
-        )
-        yield from deflection_errors(what, float(move), boom, advise)
-
-
-def _straight_path(case: Case, boom: Boom) -> Iterator[str]:
-    """Yield a caution on the path of a tip with a hanging load, by the beam of ``check``."""
-    if case.hoist is not None:
-        with suppress(*NUMERICAL_ERRORS):
-            yield from hoisting_cautions(case, BeamStates.of(case, boom_with_play(case, boom)))
-
-
-def _numerical(summary: Summary, case: Case) -> Iterator[str]:
-    """Yield cautions on errors of reductions and meshes."""
-    # Shells whose mesh follows from contact_tolerance near contacts.
-    refined = {
-        one.name
-        for one in select_kind(Shell, case.models)
-        if one.contact_tolerance != "any" and one.contact_line != "surface"
-    }
-    for name, model in summary.models.items():
-        if (error := model.reduction_errors.get("contact_compliance") or 0.0) > MAX_RELATIVE_ERROR:
-            yield (
-                f"caution: the reduction of {name} to {model.modes} coordinates has an error of "
-                f"{_percent(error)} of the local contact compliance; allow more modes, or "
-                "--modes auto"
-            )
-    for name, model in summary.models.items():
-        if (error := model.reduction_error or 0.0) > MAX_RELATIVE_ERROR:
-            yield (
-                f"caution: the reduction of {name} may change the tip's motion by "
-                f"{_percent(error)} of its range, since friction depends on vibrations of its "
-                f"plates; {_remedy(case, name)}"
-            )
-    for name, model in summary.models.items():
-        if (error := model.mesh_error or 0.0) > MAX_RELATIVE_ERROR:
-            yield (
-                f"caution: the mesh of {name} causes an error of {_percent(error)} of the "
-                "local contact compliance; give a smaller "
-                f"{'contact_tolerance' if name in refined else 'mesh_size'}"
-            )
-
-
-def _remedy(case: Case, name: str) -> str:
-    """Return what makes the motion of a reduced shell more accurate."""
-    (shell,) = (model for model in select_kind(Shell, case.models) if model.name == name)
-    finer = "a smaller tolerance" if shell.modes == "auto" else "more modes"
-    damped = case.damping.modal or case.damping.mass or case.damping.stiffness
-    return f"give {finer}" if damped else f"give damping, which ends these vibrations, and {finer}"

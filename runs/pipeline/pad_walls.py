@@ -13,55 +13,10 @@ from protractile.geometry.joint import PadSize
 from protractile.geometry.typography import join_words
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.largest_loads import BeamStates
-from protractile.runs.pipeline.response_cautions import CHECK_UNITS
 from protractile.runs.pipeline.statics import state_at_rest
-from protractile.runs.report.formatting import milli, percent
 
-# Share of the tip deflection below which walls do not matter, share above which remedies are
-# listed, and fraction to which a listed remedy reduces the tip deflection at least.
-_NO_SHARE, LARGE_SHARE, HELPFUL = 5.0e-4, 0.1, 0.9
-# Share of the tip deflection above which walls under pads govern it.
-GOVERNING_SHARE = 0.5
-
-
-def pad_wall_lines(case: Case, beam: BeamStates) -> Iterator[str]:
-    """Yield sentences on the share of the static tip deflection that walls or sections cause.
-
-    If the share is large, a list of remedies follows. The states are those of a boom with the
-    contact laws of the first model with play.
-
-    Raises:
-        NumericsError: the boom has no equilibrium after a change that a remedy makes.
-    """
-    boom, rest = beam.boom, beam.farthest
-    tip, time, part = rest.tip, rest.time, wall_part(case, beam)
-    if part is None or abs(part) < _NO_SHARE:
-        return
-    share = part * tip
-    what, where = boom.yielding.split(maxsplit=1)
-    how, source = ("distort", "a frame of plates") if what == "sections" else ("bend", "plates")
-    begin = f"caution: {what}" if abs(part) > GOVERNING_SHARE else what.capitalize()
-    yield (
-        f"{begin} {how} {where}, "
-        f"which moves the tip by {milli(share)} of {milli(tip)} mm, "
-        f"{percent(part, 2)}, under the loads at t = {time:.4g} s (estimate from {source})."
-    )
-    # A negative share, of lateral pads that close the play, needs no remedy.
-    if part < LARGE_SHARE:
-        return
-    remedies = (
-        (state_at_rest(case, changed, time=time).tip, what)
-        for what, changed in _remedies(boom)
-        if changed != boom
-    )
-    better = sorted((there / tip, there, what) for there, what in remedies)
-    better = [one for one in better if one[0] < HELPFUL]
-    if better:
-        yield (
-            "Remedies, each with the static tip deflection that it gives under these loads (for "
-            "local plate stresses, run a shell with the remedy):"
-        )
-        yield from (f"- {milli(there)} mm: {what}" for _, there, what in better)
+# Fraction to which a remedy reduces the tip deflection at least.
+HELPFUL = 0.9
 
 
 def wall_part(case: Case, beam: BeamStates) -> float | None:
@@ -76,11 +31,23 @@ def wall_part(case: Case, beam: BeamStates) -> float | None:
     return 1.0 - rigid / rest.tip if rest.tip else 0.0
 
 
-def deflection_advice(case: Case, beam: BeamStates | None) -> str:
-    """Return the advice to change the pads if walls or sections govern, else to check the units."""
-    if beam is None or (wall_part(case, beam) or 0.0) <= GOVERNING_SHARE:
-        return CHECK_UNITS
-    return f"{beam.boom.yielding} cause most of it; change the pads"
+def remedies(case: Case, beam: BeamStates) -> list[tuple[float, str]]:
+    """Return what makes the largest static tip deflection smaller: its tip in m, in words.
+
+    The best remedy is the first one. The states are those of a boom with the contact laws of the
+    first model with play.
+
+    Raises:
+        NumericsError: the boom has no equilibrium after a change that a remedy makes.
+    """
+    rest = beam.farthest
+    tips = (
+        (state_at_rest(case, changed, time=rest.time).tip, what)
+        for what, changed in _stiffer_booms(beam.boom)
+        if changed != beam.boom
+    )
+    better = sorted((tip / rest.tip, tip, what) for tip, what in tips)
+    return [(tip, what) for part, tip, what in better if part < HELPFUL]
 
 
 def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
@@ -94,7 +61,7 @@ def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
     return f"{boom.yielding.capitalize()} are rigid in {join_words(names)}{others}."
 
 
-def _remedies(boom: Boom) -> Iterator[tuple[str, Boom]]:
+def _stiffer_booms(boom: Boom) -> Iterator[tuple[str, Boom]]:
     """Yield changes that may stiffen walls or sections: a description and the changed boom."""
 
     def longer(pad: PadSize, longest: float) -> dict[str, Any]:

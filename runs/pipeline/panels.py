@@ -20,7 +20,6 @@ from protractile.geometry.segment import Segment
 from protractile.runs.case.units import System
 from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.pipeline.strength import outer_corners
-from protractile.runs.report.formatting import number
 from protractile.runs.report.tables import Table
 
 # Coefficient k of a long plate in shear (Southwell and Skan 1924).
@@ -175,13 +174,3 @@ def panel_table(panels: Sequence[PanelBuckling], system: System) -> Table:
         "are neglected."
     )
     return Table.of_rows("", "Buckling of walls, estimate", columns, rows, [note])
-
-
-def panel_cautions(panels: Sequence[PanelBuckling], system: System) -> list[str]:
-    """Return a caution on each wall that buckles under the loads at rest."""
-    return [
-        f"caution: the wall {one.wall!r} of {one.segment!r} buckles at {number(one.factor, 3)} "
-        f"times the loads at rest, at x = {system.text(one.x, 'm')} (panel formulas)"
-        for one in panels
-        if one.factor < 1.0
-    ]

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from math import log, pi
 
@@ -12,7 +12,7 @@ import numpy as np
 from protractile.geometry.arrays import Array
 from protractile.runs.case.schema import LimitsTable
 from protractile.runs.pipeline.design_results import ModelDesignResults
-from protractile.runs.pipeline.largest_loads import StaticExtreme, StaticKind
+from protractile.runs.pipeline.largest_loads import StaticKind
 from protractile.runs.pipeline.metrics import Metric, metrics, records
 from protractile.runs.pipeline.summary import ModelSummary
 
@@ -29,7 +29,7 @@ ROUND_OFF = 1.0e-12
 DECAYED_SHARE = 0.1
 
 # Kinds of static results with limits, by quantity.
-_STATIC: Mapping[str, StaticKind] = {
+STATIC_KINDS: Mapping[str, StaticKind] = {
     "tip": "tip",
     "tip_at_rest": "tip",
     "tip_lateral": "lateral tip",
@@ -136,30 +136,3 @@ def case_limits(table: LimitsTable | None) -> list[Limit]:
     return [
         Limit(one, values[one.name], one.name in least) for one in QUANTITIES if one.name in values
     ]
-
-
-def static_limit_lines(
-    table: LimitsTable | None, extremes: Sequence[StaticExtreme]
-) -> Iterator[str]:
-    """Yield a sentence on each limit of a case, with the static result where there is one.
-
-    ``extremes`` are empty without an equilibrium.
-    """
-    for limit in case_limits(table):
-        kind, at_rest = _STATIC.get(limit.quantity.name), limit.quantity.name == "tip_at_rest"
-        values = [abs(one.largest) for one in extremes if one.kind == kind]
-        if not values:
-            yield f"Limit {limit}: a run decides."
-            continue
-        largest, title = max(values), limit.quantity.title
-        what = title if at_rest else f"static {title} (maximum load)"
-        static = f"the {what} is {limit.format(largest)}"
-        if not limit.is_met_by(largest):
-            yield f"caution: the limit {limit} is exceeded: {static}"
-        elif at_rest:
-            yield (
-                f"Limit {limit}: met in this case, {limit.format(largest)}; `protractile prove` "
-                "checks the combinations against it."
-            )
-        else:
-            yield f"Limit {limit}: {static}, and the motion adds to it; a run decides."

@@ -24,6 +24,8 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.case.user_files import check_not_working_folder, check_regular
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.rules import cautions
 from protractile.runs.folder.files import (
     MANIFEST,
     atomic_folder,
@@ -34,7 +36,7 @@ from protractile.runs.folder.files import (
 )
 from protractile.runs.pipeline.design_results import ModelDesignResults, PlayEffect
 from protractile.runs.pipeline.metrics import metrics, records
-from protractile.runs.pipeline.model_quality import cautions, main_models, reference_of
+from protractile.runs.pipeline.model_quality import main_models, reference_of
 from protractile.runs.pipeline.motion_results import MotionResult
 from protractile.runs.pipeline.pads import pad_loads
 from protractile.runs.pipeline.quantities import (
@@ -131,7 +133,7 @@ class Results:
         """Add pad loads and cautions to the summary."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
         summary.pads = list(pad_loads(case, boom, data))
-        summary.cautions = cautions(case, boom, data, summary)
+        summary.cautions = cautions(Context.of_run(case, boom, data, summary))
 
     def save(self, folder: Path | str) -> None:
         """Write a folder for :meth:`load` and ``report``; it replaces the folder of an earlier run.

@@ -26,7 +26,6 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import contact_centres
 from protractile.geometry.cylinder import forces
 from protractile.geometry.telescoping import station_positions, travel
-from protractile.geometry.typography import TO_MILLI
 from protractile.runs.case.motion_tables import resolving_times
 from protractile.runs.pipeline.pads import SIGNS, loaded_pads, side_force
 from protractile.runs.pipeline.section_forces import LoadedModel, round_values
@@ -35,8 +34,6 @@ from protractile.runs.pipeline.section_forces import LoadedModel, round_values
 _SAME_EXTENSION = 1.0e-12
 # Fraction of a contact row below which its part of the boom is round-off.
 _ROUND_OFF = 1.0e-9
-# Fraction of a lateral play above which a caution on bulging walls that close the play is given.
-BULGED = 0.1
 
 
 @dataclass(frozen=True, slots=True)
@@ -323,23 +320,6 @@ def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> Array:
     if not (right and left):
         return np.zeros(len(gaps))
     return np.asarray(gaps[:, right].mean(axis=1) - gaps[:, left].mean(axis=1))
-
-
-def bulge_cautions(where: str, rest: StaticResult, boom: Boom) -> list[str]:
-    """Return a caution if bulging walls reduce lateral plays at rest.
-
-    ``where`` names the model, for example ``in MODEL``.
-    """
-    plays = {x: one.lateral_play or 0.0 for one in boom.joints for x in one.stations}
-    bulges = [
-        f"{TO_MILLI * one.closed:.2g} of {TO_MILLI * plays[one.x]:g} mm at x = {one.x:g} m"
-        for one in rest.stations
-        if one.direction == "y" and one.closed > BULGED * plays[one.x]
-    ]
-    text = (
-        f"caution: {where}, static pad forces make walls bulge, which reduces the lateral play: by "
-    )
-    return [f"{text}{', '.join(bulges)}; beams with rigid walls do not show this"] if bulges else []
 
 
 def tilts(model: LoadedModel, states: Array, time: float = 0.0) -> list[list[Tilt]]:

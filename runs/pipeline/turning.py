@@ -25,12 +25,6 @@ from protractile.runs.pipeline.metrics import Metric, Record
 if TYPE_CHECKING:
     import xarray as xr
 
-# Coriolis forces matter above this ratio of the angular speed to the first circular frequency.
-_SLOW = 0.05
-
-# The angle of a pendulum is not small above this ratio of its swing to its length.
-_SMALL = 0.2
-
 # Number of modes that a shaper suppresses, and smallest share of the deflection of such a mode.
 _SHAPED, _SHARE = 2, 0.05
 
@@ -116,7 +110,8 @@ class Hoisting(Record):
     ]
 
 
-def _laws(case: Case) -> Iterator[tuple[str, str, MotionLaw]]:
+def motion_laws(case: Case) -> Iterator[tuple[str, str, MotionLaw]]:
+    """Yield key, verb and law of slewing and of luffing, of those that the case has."""
     for key, verb, table in (("slew", "Slews", case.slew), ("luff", "Luffs", case.luff)):
         if table is not None:
             yield key, verb, table.history(key)
@@ -136,7 +131,7 @@ def fastest_turn(law: MotionLaw) -> float:
 
 def turning_lines(case: Case) -> Iterator[str]:
     """Yield a sentence on the angle, time and speed of slewing and of luffing."""
-    for _, verb, law in _laws(case):
+    for _, verb, law in motion_laws(case):
         kinks = law.kinks
         yield (
             f"{verb} by {float(law(np.array(max(kinks)))):g} degrees from {max(0.0, min(kinks)):g} "
@@ -152,7 +147,7 @@ def shaper_lines(case: Case, system: GapSystem, rest: Array | None) -> Iterator[
     """
     omega, shapes = closed_contact_modes(system, rest)
     frequencies, ratios = closed_contact_damping(system, rest)
-    for key, _, law in _laws(case):
+    for key, _, law in motion_laws(case):
         times = resolving_times([law], max(law.kinks))
         time = float(times[np.abs(law.rate(times, 2)).argmax()])
         row = system.observers["tip_lateral" if key == "slew" else "tip"].row
@@ -247,34 +242,3 @@ def _first_rise(time: Array, means: Array, level: float) -> float | None:
     middles = np.append(time[0], 0.5 * (time[1:] + time[:-1]))
     pair = [reached[0] - 1, reached[0]]
     return float(np.interp(level, means[pair], middles[pair]))
-
-
-def swing_cautions(case: Case, data: xr.Dataset) -> Iterator[str]:
-    """Yield a caution for each model whose hanging load swings by a large angle."""
-    for name in ("swing_out", "swing_aside"):
-        if name not in data:
-            continue
-        length = case.hoist.pendulum if case.hoist and case.hoist.pendulum else np.inf
-        swings = np.abs(data[name].values).max(axis=1) / length
-        for model, swing in zip(data["model"].values, swings, strict=True):
-            if swing > _SMALL:
-                yield (
-                    f"caution: hoist.pendulum: in {model} the load swings by "
-                    f"{np.rad2deg(np.arctan(swing)):.3g} degrees; its model is for small angles"
-                )
-
-
-def turning_cautions(where: str, frequency: float, case: Case) -> Iterator[str]:
-    """Yield a caution if slewing or luffing is so fast that Coriolis forces on the boom matter.
-
-    ``where`` names the source of the frequency, for example ``in MODEL``. The frequency is the
-    first one in Hz, with closed contacts.
-    """
-    for key, _, law in _laws(case):
-        part = np.deg2rad(fastest_turn(law)) / (2.0 * np.pi * frequency)
-        if part > _SLOW:
-            yield (
-                f"caution: {key}: the boom turns with {100.0 * part:.3g} % of its first circular "
-                f"frequency {where}; beyond 5 % the neglected Coriolis forces of its "
-                "vibration are significant"
-            )

@@ -17,11 +17,10 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case
 from protractile.runs.case.units import scale
+from protractile.runs.cautions.context import Context, Sentence
+from protractile.runs.cautions.response import wall_shares
 from protractile.runs.folder.cache import Cache
-from protractile.runs.pipeline.largest_loads import BeamStates
-from protractile.runs.pipeline.pad_walls import pad_wall_lines
 from protractile.runs.pipeline.quantities import QUANTITIES, Limit
-from protractile.runs.pipeline.statics import boom_with_play, statics
 from protractile.runs.process.terminal import Progress
 from protractile.runs.report.tables import Table
 from protractile.runs.sweep.points import Plan
@@ -157,9 +156,9 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
 def rigid_wall_cautions(case: Case, name: str) -> list[str]:
     """Return a caution if a beam ignores walls under pads that change the tip considerably."""
     model = next(one for one in case.models if one.name == name)
-    boom = build_boom(case)
-    if model.needs_shell or statics(case, boom) is None:
-        return []
-    beam = BeamStates.of(case, boom_with_play(case, boom))
-    cautions = [one for one in pad_wall_lines(case, beam) if one.startswith("caution")]
-    return [f"{one} {name} has rigid walls: the bound is unsafe; take a shell" for one in cautions]
+    context = Context(case, build_boom(case))
+    return [
+        f"caution: {one} {name} has rigid walls: the bound is unsafe; take a shell"
+        for one in (() if model.needs_shell else wall_shares(context))
+        if not isinstance(one, Sentence)
+    ]

@@ -9,8 +9,9 @@ import pytest
 from protractile.runs import CASES
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import load_checked
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.rules import OF_INPUTS, cautions
 from protractile.runs.check import check_case
-from protractile.runs.pipeline.proportions import proportion_cautions
 from tests.docs.conftest import toml_blocks
 
 CASE = "".join(toml_blocks("tutorial.md")[:2])
@@ -79,7 +80,7 @@ def find_cautions(path: Path) -> list[str] | None:
         found = load_checked(str(path))
     except BadInput:
         return None
-    lines = proportion_cautions(found.case, found.boom)
+    lines = cautions(Context(found.case, found.boom), OF_INPUTS)
     lines = lines or [line for line in check_case(found).lines if line.startswith("caution")]
     return [re.sub(r"\d", "", line) for line in lines]
 
@@ -100,8 +101,8 @@ def test_natural_mistakes_are_noticed(
     for mistake, (text, replacement) in mistakes.items():
         assert text in correct, mistake
         path.write_text(correct.replace(text, replacement), "utf-8")
-        cautions = find_cautions(path)
-        if cautions is not None and set(cautions) <= set(known):
+        found = find_cautions(path)
+        if found is not None and set(found) <= set(known):
             missed.add(mistake)
     assert missed == unnoticed
 

@@ -13,12 +13,13 @@ from protractile.beam_model.statics import StaticState, static_state
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.rules import OF_INPUTS, cautions
 from protractile.runs.folder.cache import Cache
 from protractile.runs.live.beam import beam_results
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.models import build
-from protractile.runs.pipeline.proportions import proportion_cautions
 from protractile.runs.pipeline.statics import cylinder_force, statics
 from protractile.runs.pipeline.summary import Summary
 from tests.docs.conftest import DOCS, toml_blocks
@@ -70,7 +71,7 @@ def test_values_of_the_first_check(tmp_path: Path) -> None:
     """Reference: the page, to its digits."""
     case = read_case(tmp_path, toml_blocks("tutorial.md")[0])
     boom = build_boom(case)
-    assert proportion_cautions(case, boom) == []
+    assert cautions(Context(case, boom), OF_INPUTS) == []
     mass = sum(segment.mass_per_length * segment.length for segment in boom.segments)
     assert shown(mass, 0, "mass of the boom")
     state = checked(case)

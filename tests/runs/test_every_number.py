@@ -33,7 +33,7 @@ EXEMPT = {
     ),
     "a part of the play, which is checked": ("play_above", "lateral_play_right"),
     "its section is compared with it (part_ranges)": ("SegmentTable.length",),
-    "loads are compared with the weight of the boom (proportions)": ("load",),
+    "loads are compared with the weight of the boom (cautions.loads)": ("load",),
     "the limit is that of the mesh or of the cost (check)": (
         "mesh_size", "element_length", "contact_tolerance", "Shell.modes",
         "surface_points",

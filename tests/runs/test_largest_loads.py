@@ -18,12 +18,13 @@ from protractile.geometry.profiles import hexagon
 from protractile.geometry.section import BoxSection
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase, convert_to_si
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.response import deflections, utilisations
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.largest_loads import (
     BeamStates,
     StaticExtreme,
-    overload_cautions,
     static_table,
 )
 from protractile.runs.pipeline.load_table import load_table
@@ -128,15 +129,16 @@ def test_overloads_are_cautions(tmp_path: Path) -> None:
     text = boom_of(RAMP.replace("ramp = 0.1\n", ""), PAD.replace("1e6", "1e5"))
     found = [*extremes_of(tmp_path, text).values()]
     far = StaticExtreme("tip", "", "tip", "m", -0.1, -2.38, 0.25)
-    boom = build_boom(read_case(tmp_path, text))
-    assert overload_cautions([far, *found[1:]], boom) == [
-        "caution: under the loads at t = 0.25 s the tip rests at -2.38 m, 17 % "
-        "of the boom's length: small displacements make it about 3.2 % too large, and moments "
-        "about 1.9 %; check units and loads",
-        "caution: static utilisation under the loads at t = 0 s: 339 % by pad pressure (fly "
-        "segment, x = 6 m): exceeds the allowable pressure",
-        "caution: static utilisation under the loads at t = 0 s: 439 % by pad pressure (fly "
-        "segment, x = 8 m): exceeds the allowable pressure",
+    case = read_case(tmp_path, text)
+    context = Context(case, build_boom(case), extremes=[far, *found[1:]])
+    assert [*deflections(context), *utilisations(context)] == [
+        "under the loads at t = 0.25 s the tip rests at -2.38 m, 17 % of the boom's length: small "
+        "displacements make it about 3.2 % too large, and moments about 1.9 %; check units and "
+        "loads",
+        "static utilisation under the loads at t = 0 s: 339 % by pad pressure (fly segment, "
+        "x = 6 m): exceeds the allowable pressure",
+        "static utilisation under the loads at t = 0 s: 439 % by pad pressure (fly segment, "
+        "x = 8 m): exceeds the allowable pressure",
     ]
 
 

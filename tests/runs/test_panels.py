@@ -14,6 +14,8 @@ from protractile.runs import CASES
 from protractile.runs.case import reading
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase
+from protractile.runs.cautions.context import Context, State
+from protractile.runs.cautions.response import bulges
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.models import build
@@ -21,7 +23,6 @@ from protractile.runs.pipeline.panels import normal_coefficient, panel_factor, w
 from protractile.runs.pipeline.static_results import (
     Diagram,
     StaticResult,
-    bulge_cautions,
     positions,
     station_loads,
 )
@@ -142,9 +143,9 @@ def test_bulging_walls_give_a_caution() -> None:
     assert [one.closed / play for one in bulging] == pytest.approx([0.0, 0.0, 0.05, 0.3])
 
     static = StaticResult(0.0, 0.0, 0.0, [], [], bulging, {})
-    assert bulge_cautions("in shell", static, boom) == [
-        "caution: in shell, static pad forces make walls bulge, which reduces the lateral play: "
-        f"by {300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams with rigid walls do not "
+    assert [*bulges(Context(case, boom, [State("in shell", rest=static)]))] == [
+        "in shell, static pad forces make walls bulge, which reduces the lateral play: by "
+        f"{300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams with rigid walls do not "
         "show this"
     ]
 
@@ -156,5 +157,6 @@ def test_check_names_plays_closed_by_walls() -> None:
     (rest, *_) = BeamStates.of(checked.case, boom).rests
     closed = [one.closed for one in rest.stations if one.direction == "y"]
     assert closed == pytest.approx([1.1985e-3, 1.8414e-3, 0.8242e-3, 1.3873e-3], rel=0.02)
-    (caution,) = bulge_cautions("in the beam estimate", rest, boom)
+    state = State("in the beam estimate", rest=rest)
+    (caution,) = bulges(Context(checked.case, boom, [state]))
     assert "1.2 of 4 mm at x = 3.5 m, 1.8 of 4 mm at x = 4.5 m" in caution

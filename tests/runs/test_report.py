@@ -19,10 +19,12 @@ from protractile.cases import run_case
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.shell import Shell
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.response import axial_stresses
+from protractile.runs.cautions.rules import cautions
 from protractile.runs.paper.rules import judge
 from protractile.runs.paper.statements import STATEMENTS
 from protractile.runs.paper.verdicts import Verdict, addition, print_verdicts
-from protractile.runs.pipeline.model_quality import cautions, stress_cautions
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import Snapshots, Summary
 from protractile.runs.report.additions import Addition
@@ -30,7 +32,7 @@ from protractile.runs.report.document import render
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.terminal_tables import print_models
 from tests.runs.case_texts import shipped
-from tests.runs.summaries import changed, model_summary, printed, summary_of
+from tests.runs.summaries import changed, model_summary, printed
 from tests.system.run_folder import Page
 
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-bonded"]
@@ -217,7 +219,8 @@ def test_terminal_does_not_read_markup(results: Results) -> None:
 
 
 def told(results: Results) -> list[str]:
-    return cautions(results.case, results.boom, results.trajectories, results.summary)
+    found = results.case, results.boom, results.trajectories, results.summary
+    return cautions(Context.of_run(*found))
 
 
 def test_large_displacement_gives_a_caution(results: Results) -> None:
@@ -292,10 +295,11 @@ def test_how_near_a_shell_is_stands_with_its_costs(results: Results) -> None:
 def test_axial_forces_beyond_the_wall_limit_give_a_caution(name: str, cautioned: bool) -> None:
     """Reference: by hand. Only one of these booms has axial forces and telescopes."""
     shell = model_summary().model_copy(update={"stress": object()})
-    boom = build_boom(shipped(name))
-    told = list(stress_cautions(summary_of({"beam": model_summary(), "shell": shell}), boom))
+    case = shipped(name)
+    models = {"beam": model_summary(), "shell": shell}
+    told = [*axial_stresses(Context(case, build_boom(case), models=models))]
     assert [line.partition(" carry ")[0] for line in told] == (
-        ["caution: the walls of shell"] if cautioned else []
+        ["the walls of shell"] if cautioned else []
     )
 
 

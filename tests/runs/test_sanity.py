@@ -9,7 +9,8 @@ import pytest
 from protractile.runs import CASES
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
-from protractile.runs.pipeline.proportions import proportion_cautions
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.rules import OF_INPUTS, cautions
 from tests.runs.case_texts import (
     CLAMPED,
     HINGED,
@@ -209,7 +210,7 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
 def test_unusual_numbers_give_cautions(tmp_path: Path, old: str, new: str, line: str) -> None:
     case = read_case(tmp_path, edited(LIFT, (old, new)))
     lines = [f"caution: {one}" for one in line.split("\n")]
-    assert proportion_cautions(case, build_boom(case)) == lines
+    assert cautions(Context(case, build_boom(case)), OF_INPUTS) == lines
 
 
 WEIGHTS = [("gravity = { angle = 45.0 }\n", ""), ("payload = { mass = 300.0 }\n", "")]
@@ -301,7 +302,7 @@ def test_usual_booms_give_no_caution(tmp_path: Path, text: str) -> None:
 @pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
 def test_shipped_cases_have_no_cautions(path: Path) -> None:
     case = case_file.load(str(path))
-    assert proportion_cautions(case, build_boom(case)) == []
+    assert cautions(Context(case, build_boom(case)), OF_INPUTS) == []
 
 
 def test_folds_and_heads_are_walls_too(tmp_path: Path) -> None:
@@ -319,7 +320,7 @@ def test_folds_and_heads_are_walls_too(tmp_path: Path) -> None:
             "width = 0.05, t", "width = 0.02, t"
         )
         case = read_case(tmp_path, text + SHELL)
-        found = proportion_cautions(case, build_boom(case))
+        found = cautions(Context(case, build_boom(case)), OF_INPUTS)
         assert [line for line in found if "mesh" in line] == expected
 
 
@@ -330,5 +331,5 @@ def test_the_boom_of_the_readme_has_no_slip(tmp_path: Path) -> None:
     section = README.read_text("utf-8").split("## Your own boom\n")[1].split("\n## ")[0]
     case = read_case(tmp_path, section.split("```toml\n")[1].split("```")[0])
     boom = build_boom(case)
-    assert proportion_cautions(case, boom) == []
+    assert cautions(Context(case, boom), OF_INPUTS) == []
     assert boom.tip == 11.3

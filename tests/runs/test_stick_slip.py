@@ -21,8 +21,8 @@ from protractile.dynamics.travel import RowTable, Travel
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.motions import elastic_drives
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import System
-from protractile.runs.pipeline.drives import lag_cautions
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.response import lag
 from protractile.runs.pipeline.residual_vibration import ResidualVibration, farthest_from_rest
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.report import theme
@@ -213,10 +213,11 @@ def _checked_slips(data: xr.Dataset) -> int:
 
 def test_lag_is_in_the_units_of_the_case(tmp_path: Path) -> None:
     """Reference: by hand, 0.1 m of the remaining overlap of 1 m."""
-    boom, data = build_boom(drawn_by(tmp_path, ROPE)), xr.Dataset({"drive_lag": ("time", [-0.1])})
-    (line,) = lag_cautions(boom, data, System("mm-t-s"))
+    case = drawn_by(tmp_path, ROPE).model_copy(update={"shown_units": "mm-t-s"})
+    data = xr.Dataset({"drive_lag": ("time", [-0.1])})
+    (line,) = lag(Context(case, build_boom(case), data=data))
     assert line.startswith(
-        "caution: 'inner' lags up to 100 mm behind its drive, more than 1 % of the 1000 mm of "
+        "'inner' lags up to 100 mm behind its drive, more than 1 % of the 1000 mm of "
     )
 
 

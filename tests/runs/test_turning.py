@@ -29,13 +29,13 @@ from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
 from protractile.runs.case.motions import turning_changes, turning_loads
 from protractile.runs.case.reading import CheckedCase, load
 from protractile.runs.case.schema import Case
+from protractile.runs.cautions.context import Context, State
+from protractile.runs.cautions.response import swings, turning
 from protractile.runs.pipeline.estimates import Preview
 from protractile.runs.pipeline.models import axial_travels
 from protractile.runs.pipeline.turning import (
     drive_moments,
     shaper_lines,
-    swing_cautions,
-    turning_cautions,
     turning_lines,
 )
 from protractile.runs.report.crane_position import CranePosition
@@ -117,8 +117,9 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
         "Luffs by 10 degrees from 0 to 3 s, at 6.667 degrees/s at most.",
     ]
     # Luffing stays below 5 %.
-    (slew,) = turning_cautions("in beam", 0.5, case)
-    assert slew.startswith("caution: slew: the boom turns with 8.33 % of its first circular freq")
+    state = State("in beam", frequencies=[0.5])
+    (slew,) = turning(Context(case, build_boom(case), [state]))
+    assert slew.startswith("slew: the boom turns with 8.33 % of its first circular freq")
 
 
 @pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
@@ -195,11 +196,10 @@ def test_large_swings_are_cautioned() -> None:
     """Reference: by hand, arctan of 0.8 m over 2 m; 0.39 m are just small."""
     hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, pendulum=2.0)
     case = shipped("hoist").model_copy(update={"hoist": hung})
-    swings = ("model", "time"), [[0.0, -0.8], [0.0, 0.39]]
-    data = xr.Dataset({"swing_aside": swings}, {"model": ["far", "near"]})
-    assert [*swing_cautions(case, data)] == [
-        "caution: hoist.pendulum: in far the load swings by 21.8 degrees; its model is for small "
-        "angles"
+    aside = ("model", "time"), [[0.0, -0.8], [0.0, 0.39]]
+    data = xr.Dataset({"swing_aside": aside}, {"model": ["far", "near"]})
+    assert [*swings(Context(case, build_boom(case), data=data))] == [
+        "hoist.pendulum: in far the load swings by 21.8 degrees; its model is for small angles"
     ]
 
 

@@ -7,11 +7,13 @@ from pathlib import Path
 
 import pytest
 
-from protractile.runs.case.actions import series_notes
+from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import load
 from protractile.runs.case.schema import Case
 from protractile.runs.case.units import Unit
 from protractile.runs.case.user_files import MAX_BYTES, check_not_working_folder
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.inputs import series
 from protractile.runs.folder.files import MANIFEST
 from protractile.runs.pipeline.results import prepare
 from tests.runs.case_texts import COARSE, read_case, refusal, refused
@@ -232,7 +234,7 @@ def test_end_of_a_series_gives_a_caution(times: tuple[float, float], note: str |
     case = case_of(f"{times[0]},1\n{times[1]},2\n", "magnitude = 1.0")
     assert case.time.duration == 0.6
     expected = [] if note is None else [f"note: the series of load[1] {note}"]
-    assert series_notes(case) == expected
+    assert [*series(Context(case, build_boom(case)))] == expected
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from protractile.runs.pipeline.proportions import proportion_cautions
+from protractile.runs.cautions import rules
+from protractile.runs.cautions.context import Context
 from tests.runs.case_texts import (
     CASES,
     HINGED,
@@ -66,7 +67,8 @@ HOIST = re.sub(r"(?ms)^\[\[axial\]\].*?(?=^\[)", "", (CASES / "hoist.toml").read
 def cautions(folder: Path, text: str) -> list[str]:
     checked = load_checked_text(folder, text)
     return [
-        line.removeprefix("caution: ") for line in proportion_cautions(checked.case, checked.boom)
+        line.removeprefix("caution: ")
+        for line in rules.cautions(Context(checked.case, checked.boom), rules.OF_INPUTS)
     ]
 
 
