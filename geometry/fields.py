@@ -53,7 +53,7 @@ class BoomError(ValueError):
 
 
 class In:
-    """Unit of the numbers of a field, one of :mod:`.runs.case.units`.
+    """Unit of the numbers of a field, one of :mod:`.geometry.units`.
 
     Args:
         units: one unit for all numbers, or one for each column of a table; ``1`` means

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from protractile.geometry.units import Unit
+
 # Factors from m, N and Pa to mm, kN and MPa, and from a fraction to per cent.
-TO_MICRO, TO_MILLI, TO_KILO, TO_MEGA, TO_PERCENT = 1.0e6, 1.0e3, 1.0e-3, 1.0e-6, 100.0
+TO_MILLI, TO_KILO, TO_MEGA, TO_PERCENT = map(Unit.conversion, ("mm", "kN", "MPa", "%"))
 
 
 def with_minus_signs(text: str) -> str:

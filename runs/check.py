@@ -24,9 +24,9 @@ from protractile.dynamics.motion import constant_load_equilibrium
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import axial_force, moving_force_places
 from protractile.geometry.boom import Boom
+from protractile.geometry.units import System
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case, Model
-from protractile.runs.case.units import System
 from protractile.runs.cautions.context import Context, State
 from protractile.runs.cautions.rules import cautions
 from protractile.runs.pipeline.combinations import combination_results, combination_tables

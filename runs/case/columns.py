@@ -19,9 +19,9 @@ from pathlib import Path
 
 import numpy as np
 
+from protractile.geometry.units import Unit
 from protractile.runs.case.limits import MOST_TIMES
 from protractile.runs.case.messages import BadInput
-from protractile.runs.case.units import Unit
 from protractile.runs.case.user_files import read_any_text
 from protractile.runs.process.terminal import shorten
 

@@ -11,7 +11,7 @@ import numpy as np
 from protractile.geometry.boom import Boom, BoomError, Segment
 from protractile.geometry.material import Material
 from protractile.geometry.section import Direction
-from protractile.runs.case.units import System, Unit
+from protractile.geometry.units import System, Unit
 
 # Units that a user may have meant, most likely first.
 _LIKELY_UNITS = {

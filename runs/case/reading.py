@@ -23,6 +23,7 @@ from protractile.dynamics.motion import MOST_OUTPUTS
 from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.fields import describe, is_number
 from protractile.geometry.typography import choices
+from protractile.geometry.units import System, scale
 from protractile.runs.case.build import build_boom, check_ensemble_data, check_names
 from protractile.runs.case.columns import FileColumn, read_pairs
 from protractile.runs.case.combinations import check_combinations
@@ -43,7 +44,6 @@ from protractile.runs.case.messages import BadInput, refusing
 from protractile.runs.case.motion_tables import TravelTable
 from protractile.runs.case.sanity import check_ranges, usual_ranges
 from protractile.runs.case.schema import Case, EnsembleTable, Model, TimeTable
-from protractile.runs.case.units import System, scale
 from protractile.runs.case.user_files import read_text
 
 _NOTICES = logging.getLogger("protractile")

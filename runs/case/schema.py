@@ -32,6 +32,7 @@ from protractile.geometry.joint import BareStop
 from protractile.geometry.material import Material
 from protractile.geometry.observation import Observation, Recorded
 from protractile.geometry.support import Support
+from protractile.geometry.units import System, SystemName
 from protractile.runs import clients
 from protractile.runs.case.contact import JointTable
 from protractile.runs.case.kinds import KINDS
@@ -59,7 +60,6 @@ from protractile.runs.case.load_tables import (
 )
 from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
 from protractile.runs.case.sections import SegmentTable
-from protractile.runs.case.units import System, SystemName
 
 
 class TimeTable(CaseTable):

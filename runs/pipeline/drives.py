@@ -14,10 +14,10 @@ from protractile.dynamics.stick_slip import ElasticDrive
 from protractile.dynamics.travel import Travel
 from protractile.geometry.boom import Boom
 from protractile.geometry.typography import TO_KILO, TO_PERCENT
+from protractile.geometry.units import System
 from protractile.runs.case.motion_tables import max_speed
 from protractile.runs.case.motions import elastic_drives, with_elastic_drives
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import System
 from protractile.runs.pipeline.static_results import extended_positions, instants, positions
 from protractile.runs.pipeline.statics import boom_with_play, statics
 

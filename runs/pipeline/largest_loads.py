@@ -22,11 +22,11 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import forces
+from protractile.geometry.units import System
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import System
 from protractile.runs.pipeline.load_table import release_note
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
 from protractile.runs.pipeline.section_forces import LoadedModel

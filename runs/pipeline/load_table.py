@@ -10,12 +10,12 @@ import numpy as np
 
 from protractile.geometry.boom import Boom
 from protractile.geometry.load import Load, PartialLoad
+from protractile.geometry.units import System
 from protractile.runs.case.actions import thrusts
 from protractile.runs.case.load_tables import HistoryTable, LoadTable, build_history
 from protractile.runs.case.motion_tables import resolving_times
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import System
-from protractile.runs.report.formatting import SHOWN, number
+from protractile.runs.report.formatting import SHOWN, in_shown_unit, number
 from protractile.runs.report.tables import Table
 
 # Forces and moments from this number on are in kN and kN m in all systems of units.
@@ -43,8 +43,7 @@ def load_table(case: Case, boom: Boom) -> Table:
     for *names, largest, unit, time in _rows(case, boom):
         shown, label = system.of(largest, unit), system.label(unit)
         if unit in _ENGINEERS and abs(shown) >= _MANY:
-            label, factor = SHOWN[unit]
-            shown = factor * largest
+            label, shown = SHOWN[unit], in_shown_unit(largest, unit)
         maximum = f"{number(shown, 4)} {label}"
         rows.append((*names, maximum, "" if time is None else f"{time:.4g}"))
     headings = "load", "on", "direction", "history", "maximum", "maximum\nat s"

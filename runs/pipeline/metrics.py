@@ -12,10 +12,7 @@ from dataclasses import KW_ONLY, dataclass, replace
 from types import UnionType
 from typing import ClassVar, get_args, get_type_hints
 
-from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT
-
-# Conversion factors from SI units by the first character of the displayed unit.
-_PREFIXES = {"m": TO_MILLI, "k": TO_KILO, "M": TO_MEGA, "%": TO_PERCENT}
+from protractile.geometry.units import Unit
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,7 +32,7 @@ class Metric:
     @property
     def factor(self) -> float:
         """The conversion factor from the SI unit to the displayed unit."""
-        return _PREFIXES[self.shown[0]] if self.shown else 1.0
+        return Unit.conversion(self.shown_unit)
 
     @property
     def shown_unit(self) -> str:

@@ -17,7 +17,7 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.material import Material
 from protractile.geometry.section import Plate, Section
 from protractile.geometry.segment import Segment
-from protractile.runs.case.units import System
+from protractile.geometry.units import System
 from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.pipeline.strength import outer_corners
 from protractile.runs.report.tables import Table

@@ -17,9 +17,9 @@ from protractile.beam_model.statics import estimate_critical_factor
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.arrays import Array
 from protractile.geometry.cylinder import force_name
+from protractile.geometry.units import System
 from protractile.runs.case.load_tables import CombinationTable
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import System
 from protractile.runs.pipeline.combinations import CombinationState
 from protractile.runs.pipeline.fatigue import detail_damages
 from protractile.runs.pipeline.largest_loads import BeamStates

@@ -9,8 +9,8 @@ from functools import partial
 from protractile.geometry.boom import Boom, Direction, Joint
 from protractile.geometry.fit import room
 from protractile.geometry.section import Section
+from protractile.geometry.units import System
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import System
 from protractile.runs.report.tables import Column, Table
 
 

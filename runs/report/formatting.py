@@ -7,7 +7,8 @@ import math
 from collections.abc import Sequence
 from statistics import median
 
-from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, TO_PERCENT, with_minus_signs
+from protractile.geometry.typography import TO_MILLI, TO_PERCENT, with_minus_signs
+from protractile.geometry.units import Unit
 
 _SUPERSCRIPT = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -33,18 +34,22 @@ def number(value: float | None, digits: int = 3) -> str:
     return scientific(value, digits)
 
 
-SHOWN = {"m": ("mm", TO_MILLI), "N": ("kN", TO_KILO), "N m": ("kN m", TO_KILO)}
+# Displayed units by SI units.
+SHOWN = {"m": "mm", "N": "kN", "N m": "kN m", "N/m": "kN/mm", "Pa": "MPa", "Hz": "Hz", "1": ""}
 # Fraction of the largest magnitude of a column that counts as zero.
 ROUND_OFF = 1.0e-6
 # Decimals of displayed amounts, beyond which digits are round-off.
 _DECIMALS = 9
-SHOWN |= {"Pa": ("MPa", TO_MEGA), "Hz": ("Hz", 1.0), "1": ("", 1.0)}
+
+
+def in_shown_unit(value: float, unit: str) -> float:
+    """Return an amount in SI units in its display unit."""
+    return Unit.conversion(SHOWN[unit] or "1") * value
 
 
 def amount(value: float, unit: str) -> str:
     """Return an amount in SI units as text in its display unit."""
-    name, factor = SHOWN[unit]
-    return f"{number(round(factor * value, _DECIMALS))} {name}".strip()
+    return f"{number(round(in_shown_unit(value, unit), _DECIMALS))} {SHOWN[unit]}".strip()
 
 
 def without_round_off(values: Sequence[float], least: float | None = None) -> list[float]:

@@ -28,9 +28,9 @@ from protractile.runs.pipeline.strength import Utilisation
 from protractile.runs.report.figure_context import farthest, tip_directions
 from protractile.runs.report.formatting import (
     NONE,
-    SHOWN,
     amount,
     fixed,
+    in_shown_unit,
     number,
     percent,
     signed_percent,
@@ -341,7 +341,8 @@ def _largest(results: ModelDesignResults, what: str, at: str = "") -> str | None
     """Return the largest peak of a quantity in kN or mm, with its position, as text."""
     if (peak := largest_peak(results, what)) is None:
         return None
-    return f"{number(SHOWN[peak.unit][1] * peak.largest, 4)}{times(peak)}{at.format(peak.where)}"
+    largest = number(in_shown_unit(peak.largest, peak.unit), 4)
+    return f"{largest}{times(peak)}{at.format(peak.where)}"
 
 
 def largest_peak(results: ModelDesignResults, what: str) -> Peak | None:

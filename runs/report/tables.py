@@ -7,6 +7,7 @@ import json
 import math
 import re
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from html import escape
 from itertools import zip_longest
@@ -20,7 +21,7 @@ from rich.measure import Measurement
 from rich.table import Table as Grid
 from rich.text import Text
 
-from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MICRO, TO_MILLI, TO_PERCENT
+from protractile.geometry.units import Unit
 from protractile.runs.folder.files import write_atomically
 from protractile.runs.report.formatting import NONE, count, fixed, number, repeated
 
@@ -34,11 +35,6 @@ WIDE = 180
 _KEPT_SPACE = re.compile(
     r"(?<=\d) (?=[^\W\d]{1,3}\b|[%×])|(?<=×) (?=\d)|(?<=\b\w) (?=[=≤≥])|(?<=[=≤≥]) (?=[−\d])"
 )
-
-# Conversion factors from SI units to units of headings; all other units are SI units.
-_FACTORS = {"%": TO_PERCENT, "mm": TO_MILLI, "mrad": TO_MILLI, "ms": TO_MILLI, "µs": TO_MICRO}
-_FACTORS |= dict.fromkeys(("kN", "kW", "kJ"), TO_KILO)
-_FACTORS |= dict.fromkeys(("MPa", "MN", "MN/m"), TO_MEGA)
 
 # Type of a cell: text, a number, repeated measurements of a number, or None.
 Cell = str | float | list[float] | None
@@ -74,8 +70,10 @@ class Column:
 
     @property
     def factor(self) -> float:
-        """The conversion factor from SI units to the unit of the heading."""
-        return _FACTORS.get(self.unit.partition(" ")[0], 1.0)
+        """The conversion factor from SI units to the unit of the heading; 1 for other words."""
+        with suppress(ValueError):
+            return Unit.conversion(self.unit.partition(" of ")[0])
+        return 1.0
 
     @property
     def text(self) -> list[str]:

@@ -22,12 +22,11 @@ from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure as Sheet
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
 from protractile.runs.pipeline.metrics import Metric
 from protractile.runs.pipeline.quantities import QUANTITIES
 from protractile.runs.report import theme
 from protractile.runs.report.figure_context import new_sheet
-from protractile.runs.report.formatting import number
+from protractile.runs.report.formatting import SHOWN, in_shown_unit, number
 from protractile.runs.sweep.distances import DISTANCES, LEVELS, TIP_DEVIATION, UNTIL
 from protractile.runs.sweep.residual_vibration import draw_vibration
 
@@ -36,10 +35,9 @@ CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
 PERMITTED = "permitted"
 # Maximum number of readable cells of a map along each axis.
 MOST_CELLS = 10
-# Other display units of values within limits: the limits, conversion factor, unit.
-_DISPLAYED = {"N": (1.0e3, np.inf, TO_KILO, "kN"), "N m": (1.0e3, np.inf, TO_KILO, "kN m"),
-              "Pa": (1.0e5, np.inf, TO_MEGA, "MPa"), "N/m": (1.0e6, np.inf, 1.0e-6, "kN/mm"),
-              "m": (np.nextafter(0.0, 1.0), 1.0, TO_MILLI, "mm")}  # fmt: skip
+# Limits of the largest value, between which a quantity is in its display unit.
+_DISPLAYED = {"N": (1.0e3, np.inf), "N m": (1.0e3, np.inf), "Pa": (1.0e5, np.inf),
+              "N/m": (1.0e6, np.inf), "m": (np.nextafter(0.0, 1.0), 1.0)}  # fmt: skip
 # Relative change below which a quantity counts as constant.
 SAME = 1.0e-6
 # Ratio of the largest to the smallest value above which an axis is logarithmic.
@@ -122,13 +120,14 @@ def in_display_units(data: xr.Dataset) -> xr.Dataset:
     """Return the data with the values of keys in displayed units, such as mm or kN."""
     coordinates = {}
     for name, along in data.coords.items():
-        if (displayed := _DISPLAYED.get(along.attrs.get("units"))) is None:
+        if (unit := along.attrs.get("units")) not in _DISPLAYED:
             continue
-        least, limit, factor, unit = displayed
+        least, limit = _DISPLAYED[unit]
         if least <= np.abs(along.values).max() < limit:
             # Values are rounded to readable numbers.
-            values = np.array([float(f"{factor * value:.12g}") for value in along.values])
-            coordinates[name] = (along.dims, values, {**along.attrs, "units": unit})
+            shown = [in_shown_unit(value, unit) for value in along.values]
+            values = np.array([float(f"{value:.12g}") for value in shown])
+            coordinates[name] = (along.dims, values, {**along.attrs, "units": SHOWN[unit]})
     return data.assign_coords(coordinates)
 
 

@@ -13,10 +13,10 @@ import numpy as np
 from rich.console import Console
 
 from protractile.geometry.typography import choices
+from protractile.geometry.units import scale
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import scale
 from protractile.runs.cautions.context import Context, Sentence
 from protractile.runs.cautions.response import wall_shares
 from protractile.runs.folder.cache import Cache

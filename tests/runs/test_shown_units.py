@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from protractile.runs.case.units import System
+from protractile.geometry.units import System
 from protractile.runs.check import check_case
 from tests.runs.case_texts import edited, load_checked_text, refusal
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from protractile.geometry.units import Unit
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import load
 from protractile.runs.case.schema import Case
-from protractile.runs.case.units import Unit
 from protractile.runs.case.user_files import MAX_BYTES, check_not_working_folder
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.inputs import series

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Units of measurement, with their names, factors to SI units and dimensions."""
+"""Units of measurement with their names, sizes in SI units and dimensions; systems of units."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
+from functools import cache
 from typing import Literal
 
 # Exponents of length, mass and time.
@@ -14,24 +15,25 @@ Dimension = tuple[float, float, float]
 
 _NONE, _LENGTH, _MASS, _TIME = (0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _ACCELERATION, _FORCE, _PRESSURE = (1.0, 0.0, -2.0), (1.0, 1.0, -2.0), (-1.0, 1.0, -2.0)
-_MOMENT = (2.0, 1.0, -2.0)
+_MOMENT, _POWER = (2.0, 1.0, -2.0), (2.0, 1.0, -3.0)
 
 _SIZES: Mapping[Dimension, Mapping[str, str]] = {
-    _NONE: {"1": "1.0", "-": "1.0", "%": "0.01", "rad": "1.0", "deg": "1.0"},
+    _NONE: {"1": "1.0", "-": "1.0", "%": "0.01", "rad": "1.0", "mrad": "1.0e-3", "deg": "1.0"},
     _LENGTH: {"m": "1.0", "km": "1.0e3", "cm": "1.0e-2", "mm": "1.0e-3", "µm": "1.0e-6"},
     _MASS: {"kg": "1.0", "t": "1.0e3"},
     _TIME: {"s": "1.0", "ms": "1.0e-3", "µs": "1.0e-6", "min": "60.0"},
     (0.0, 0.0, -1.0): {"Hz": "1.0"},
     _ACCELERATION: {"g": "9.80665"},
     _FORCE: {"N": "1.0", "daN": "10.0", "kN": "1.0e3", "MN": "1.0e6"},
-    _MOMENT: {"Nm": "1.0", "kNm": "1.0e3", "Nmm": "1.0e-3"},
+    _MOMENT: {"Nm": "1.0", "kNm": "1.0e3", "Nmm": "1.0e-3", "J": "1.0", "kJ": "1.0e3"},
+    _POWER: {"W": "1.0", "kW": "1.0e3"},
     _PRESSURE: {"Pa": "1.0", "kPa": "1.0e3", "MPa": "1.0e6", "GPa": "1.0e9"},
 }
 _SYMBOLS = {name: (size, of) for of, sizes in _SIZES.items() for name, size in sizes.items()}
 
 # Pattern of a factor of a unit: m^2, m2, m-2, N/m^1.5.
-_POWER = re.compile(r"([^\^0-9-]+|1|-)(?:\^(-?[0-9]{1,2}(?:\.[0-9]{1,9})?)|(-?[0-9]))?")
-_PLAIN = str.maketrans("¹²³⁴⁻μ·*", "1234-µ  ")
+_FACTOR = re.compile(r"([^\^0-9-]+|1|-)(?:\^(-?[0-9]{1,2}(?:\.[0-9]{1,9})?)|(-?[0-9]))?")
+_PLAIN = str.maketrans("¹²³⁴⁻–μ·*", "1234--µ  ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +58,7 @@ class Unit:
             if not part.strip():
                 raise ValueError("no unit")
             for name in part.split():
-                power = _POWER.fullmatch(name)
+                power = _FACTOR.fullmatch(name)
                 if power is None or power[1] not in _SYMBOLS:
                     raise ValueError("no unit that is known")
                 one, dimension = _SYMBOLS[power[1]]
@@ -65,6 +67,16 @@ class Unit:
                 for base, power_of in enumerate(dimension):
                     exponents[base] += exponent * power_of
         return cls(float(size), (exponents[0], exponents[1], exponents[2]))
+
+    @staticmethod
+    @cache
+    def conversion(name: str) -> float:
+        """Return the conversion factor from SI units to a unit.
+
+        >>> Unit.conversion("mm"), Unit.conversion("MPa")
+        (1000.0, 1e-06)
+        """
+        return float(1 / Fraction(repr(Unit.of(name).factor)))
 
 
 SystemName = Literal["SI", "mm-t-s", "N-mm"]
@@ -104,7 +116,7 @@ class System:
     def convert(self, message: str) -> str:
         """Return a message whose amounts in SI units are in the system's units.
 
-        >>> from protractile.runs.case.units import System
+        >>> from protractile.geometry.units import System
         >>> System("mm-t-s").convert("must be below 4.8 m, got 4.9 m of steel")
         'must be below 4800 mm, got 4900 mm of steel'
         """
