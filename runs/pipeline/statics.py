@@ -98,8 +98,8 @@ def first_frequency(case: Case, state: StaticState) -> float:
 
 def boom_with_play(case: Case, boom: Boom) -> Boom:
     """Return the boom with the contact laws of the first model with play, or the bonded boom."""
-    with_play = next((model for model in case.models if not model.bonded), case.models[0])
-    return with_play.model_boom(boom).boom
+    with_play = next((model for model in case.models if not model.bonded), None)
+    return boom.bonded if with_play is None else with_play.model_boom(boom).boom
 
 
 def reactions(state: StaticState) -> list[Reaction]:

@@ -21,6 +21,7 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.load_tables import LoadTable
 from protractile.runs.case.reading import select
 from protractile.runs.case.schema import Case, StopTable, TimeTable
+from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.design_results import DesignResults, PlayDifference
 from protractile.runs.pipeline.evaluation import bonded_system
 from protractile.runs.pipeline.model_quality import quality_notes
@@ -81,6 +82,15 @@ def test_unequal_plays_are_not_pressed_in() -> None:
     rows = {tuple(line.split()[:2]): line.split()[2:] for line in lines}
     for x, expected in (("9", [2.203, 0.0148]), ("10", [-2.7535, 0.0166])):
         assert [float(value) for value in rows["inner", x]] == pytest.approx(expected, rel=2e-3)
+
+
+def test_combinations_of_bonded_models_have_no_play() -> None:
+    """Reference: other code, the tip in check. With play it would be 143 mm."""
+    case = shipped("coarse")
+    bonded = tuple(model for model in case.models if model.bonded)
+    (state,) = combination_states(case.model_copy(update={"models": bonded}))
+    assert state.beam is not None
+    assert state.beam.farthest.tip == pytest.approx(9.916e-3, rel=1e-3)
 
 
 def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
