@@ -58,7 +58,7 @@ def system_without_drives(
         lambda row: row,
         modes.omega2,
         sum((push for _, push in pin_moments(boom, beams)), modes.load),
-        boom.stations,
+        [(station.x, station.direction) for station in boom.stations],
         {
             place.name: OutputOperator(_row(place, modes), place.kind.unit, place.kind.derivative)
             for place in boom.all_observations(ends)
@@ -85,29 +85,28 @@ def _rows(
     """
     rows: GapBuilder[Array] = GapBuilder()
     for pad in pads(boom):
-        on_outer, on_inner = pad.travels(extensions.get(pad.number, 0.0))
-        law = pad.joint.law(pad.direction)
-        joint = pad.joint
-        slide_x = pad.midpoint if joint.lateral_play is None else pad.x
+        on_outer, on_inner = pad.travels(extensions.get(pad.station.number, 0.0))
+        station, joint = pad.station, pad.joint
+        slide_x = pad.midpoint if joint.lateral_play is None else station.x
         # u − w of both points of the pad.
         approach, slide = (
             modes.displacement(joint.inner, x + on_inner, direction, inner)
             - modes.displacement(joint.outer, x + on_outer, direction, outer)
             for direction, x, (inner, outer) in (
-                (pad.direction, pad.midpoint, pad.area_centres),
+                (station.direction, pad.midpoint, pad.area_centres),
                 (pad.sliding_direction, slide_x, (pad.inner, pad.outer)),
             )
         )
         pressing_sides = (pad.side,) if pad.side else sides
         points = [(side, pad.weight, approach) for side in pressing_sides]
-        pressing = rows.add_contact(pad.station, law, points, pad.shim)
-        rows.add_dashpot(pad.station, joint.dashpot, points)
-        rows.add_friction(pad.station, joint.friction, slide, pad.normal_force, pressing)
-    for station, stop in boom.numbered_stops:
-        drives = drives_below(boom.joints, stop.segment)
+        pressing = rows.add_contact(station.index, station.law, points, pad.shim)
+        rows.add_dashpot(station.index, joint.dashpot, points)
+        rows.add_friction(station.index, joint.friction, slide, pad.normal_force, pressing)
+    for station in (station for station in boom.stations if station.stop is not None):
+        drives = drives_below(boom.joints, station.segment)
         moved = sum(extensions.get(number, 0.0) for number in drives)
-        row = modes.displacement(stop.segment, stop.x - moved, "z")
-        rows.add_stop(station, stop.law, [(side, 1.0, row) for side in sides])
+        row = modes.displacement(station.segment, station.x - moved, "z")
+        rows.add_stop(station.index, station.law, [(side, 1.0, row) for side in sides])
     return rows
 
 

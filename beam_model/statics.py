@@ -214,7 +214,7 @@ def net_reactions(boom: Boom, reactions: Sequence[NodeReaction]) -> list[NodeRea
     """
     net = {reaction[:2]: reaction for reaction in reactions}
     for joint in sorted(boom.joints, key=lambda joint: -joint.inner):
-        for x in chain.from_iterable(contact_centres(boom, joint).values()):
+        for x in chain.from_iterable(contact_centres(boom, joint)):
             inner, outer = net[joint.inner, x], net[joint.outer, x]
             net[joint.outer, x] = outer._replace(
                 force=outer.force + inner.force, moment=outer.moment + inner.moment

@@ -80,7 +80,7 @@ def contact_compliance(boom: Boom) -> Array:
             ``protractile.beam_model.segment_model.EACH_SIDE``.
     """
     rows = _contact_rows(boom)
-    stops = sum(len(stop.sides) for _, stop in boom.numbered_stops)
+    stops = sum(len(stop.sides) for stop in boom.stops)
     compliance = np.zeros((len(rows) + stops,) * 2)
     # Load cases and combinations share the cached results of the unloaded segments.
     unloaded = [
@@ -94,8 +94,9 @@ def contact_compliance(boom: Boom) -> Array:
         compliance[np.ix_(at, at)] += np.outer(sides, sides) * outward
 
     # Vertical and lateral pads at one x belong together: flanges that bend make webs bulge.
-    for place in {(pad.number, pad.x) for pad, _ in rows if pad.patch is not None}:
-        at = [i for i, (pad, _) in enumerate(rows) if (pad.number, pad.x) == place and pad.patch]
+    places = [pad.patch and (pad.station.number, pad.station.place) for pad, _ in rows]
+    for place in {*places} - {None}:
+        at = [i for i, one in enumerate(places) if one == place]
         joint = rows[at[0]][0].joint
         inner = unloaded[joint.inner]
         areas = tuple(_pad_area(*rows[i], inner) for i in at)
@@ -103,7 +104,7 @@ def contact_compliance(boom: Boom) -> Array:
             add(at, wall_compliance(segment, areas))
     # A distortion extends from one station of a joint to the next.
     for number, joint in enumerate(boom.joints):
-        at = [i for i, (pad, _) in enumerate(rows) if pad.number == number]
+        at = [i for i, (pad, _) in enumerate(rows) if pad.station.number == number]
         members = unloaded[joint.inner], unloaded[joint.outer]
         for member, segment in enumerate(members if at else ()):
             if segment.section is not None:
@@ -123,7 +124,10 @@ def station_compliance(boom: Boom, stiffness: Array) -> StationCompliance:
     """
     of_rows = [
         ContactPlace(
-            pad.number, pad.direction, pad.joint.stations.index(pad.x), pad.midpoint - pad.x
+            pad.station.number,
+            pad.station.direction,
+            pad.station.place,
+            pad.midpoint - pad.station.x,
         )
         for pad, _ in _contact_rows(boom)
     ]
@@ -143,17 +147,17 @@ def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
         (pad, side)
         for pad in pads(boom)
         for side in ((pad.side,) if pad.side else EACH_SIDE)
-        if pad.joint.law(pad.direction).one_sided(side) is not None
+        if pad.station.law.one_sided(side) is not None
     ]
 
 
 def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
     """Return the area of a pad, or of a symmetric pair of pads in a planar boom."""
     assert pad.patch is not None
-    near, far = pad.patch.across(inner.section_at(pad.x).face(pad.direction, side))
+    near, far = pad.patch.across(inner.section_at(pad.station.x).face(pad.station.direction, side))
     halves = (1, -1) if pad.face is None else (pad.half,)
     spans = tuple((half * near, half * far) for half in halves)
-    return PressedArea(pad.patch.start, pad.patch.end, pad.direction, side, spans)
+    return PressedArea(pad.patch.start, pad.patch.end, pad.station.direction, side, spans)
 
 
 def _press(pad: Pad, side: Side, members: tuple[Segment, Segment], member: int) -> Press:
@@ -161,13 +165,13 @@ def _press(pad: Pad, side: Side, members: tuple[Segment, Segment], member: int) 
     if pad.patch is not None:
         area = _pad_area(pad, side, members[0])
         parts = tuple((1.0 / len(area.spans), *span) for span in area.spans)
-        return Press(pad.midpoint, pad.direction, side, parts)
+        return Press(pad.midpoint, pad.station.direction, side, parts)
     # The corners of the segment carry the force in static equilibrium.
-    face = members[member].section_at(pad.midpoint).face(pad.direction, side)
-    point = (pad.inner, pad.outer)[member][0 if pad.direction == "z" else 1]
+    face = members[member].section_at(pad.midpoint).face(pad.station.direction, side)
+    point = (pad.inner, pad.outer)[member][0 if pad.station.direction == "z" else 1]
     high = (point - face.low) / face.width
     parts = (1.0 - high, face.low, face.low), (high, face.high, face.high)
-    return Press(pad.midpoint, pad.direction, side, parts)
+    return Press(pad.midpoint, pad.station.direction, side, parts)
 
 
 @lru_cache(maxsize=512)

@@ -6,7 +6,7 @@ x runs along the boom, z is in the plane of bending, y is lateral. All units are
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -20,6 +20,7 @@ from protractile.geometry.material import Material
 from protractile.geometry.observation import Observation, Quantity
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import SAME_PLACE, Lateral, PointMass, Segment
+from protractile.geometry.station import Station, stations
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Support
 from protractile.geometry.telescoping import drives_of, reach, station_positions
@@ -75,8 +76,8 @@ class Boom:
     >>> law = pt.PowerContact(1e9, exponent=1.0)
     >>> joint = pt.Joint("arm", "fly", stations=(6.0, 8.0), play=0.01, contact=law)
     >>> boom = pt.Boom([arm, fly], [joint])
-    >>> boom.tip, boom.stations
-    (14.0, [(6.0, 'z'), (8.0, 'z')])
+    >>> boom.tip, [station.x for station in boom.stations]
+    (14.0, [6.0, 8.0])
     >>> pt.BeamElements(boom).system().num_modes
     66
 
@@ -192,27 +193,21 @@ class Boom:
         """The directions in which the segments can touch."""
         return ("z", "y") if self.spatial else ("z",)
 
-    @property
-    def stations(self) -> list[tuple[float, Direction]]:
-        """The x in m and the direction of all contact stations, without bonded joints.
+    @cached_property
+    def stations(self) -> tuple[Station, ...]:
+        """All contact stations, without bonded joints.
 
         The order is: joints along z, in three-dimensional booms joints along y, stops.
         """
-        return self._stations_of_joints + [(stop.x, "z") for stop in self.stops]
+        return stations(self.joints, self.stops, self.directions)
 
-    @property
-    def numbered_stops(self) -> Iterator[tuple[int, Stop]]:
-        """The index in ``stations`` of each stop, and the stop."""
-        return enumerate(self.stops, start=len(self._stations_of_joints))
-
-    @property
-    def _stations_of_joints(self) -> list[tuple[float, Direction]]:
+    def joint_stations(self, number: int, direction: Direction) -> list[Station]:
+        """Return the stations of a joint in a direction; none if the joint is bonded."""
         return [
-            (x, direction)
-            for direction in self.directions
-            for joint in self.joints
-            if not joint.bonded
-            for x in joint.stations
+            station
+            for station in self.stations
+            if station.joint is not None
+            and (station.number, station.direction) == (number, direction)
         ]
 
     def moving_intervals(self, segment: int) -> tuple[float, ...]:

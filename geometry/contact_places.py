@@ -16,9 +16,9 @@ import numpy as np
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Direction, Joint, Stop
-from protractile.geometry.joint import Carrier
 from protractile.geometry.section import Face, Offset, Side
 from protractile.geometry.segment import Segment
+from protractile.geometry.station import Station
 from protractile.geometry.telescoping import drives_of, reach
 
 ContactLine = Literal["near webs", "across", "surface"]
@@ -92,11 +92,8 @@ class Pad:
     """Contact pair: a point of the inner segment and a point of the outer segment of a joint.
 
     Args:
-        station: index in ``Boom.stations``.
-        joint: joint of the pad.
-        number: index of the joint in ``Boom.joints``.
-        x: position in m.
-        direction: direction of the contact normal.
+        station: its station.
+        joint: joint of the station.
         side: 1 if contact is at positive displacement of the inner segment, −1 if it is at
             negative displacement, 0 if it is at both.
         inner, outer: (y, z) in m of the points from the axes of their segments.
@@ -107,15 +104,11 @@ class Pad:
         patch: area on the wall; None for a point, or a pad that bears on a corner.
         shim: reduction of the clearance by a shim in m.
         face: face of the inner segment at whose corner the pad is; None in a flat boom.
-        carrier: segment to which the pad is fixed; None without a drive.
         travel: displacement in m of the contact along the inner and the outer segment.
     """
 
-    station: int
+    station: Station
     joint: Joint
-    number: int
-    x: float
-    direction: Direction
     side: Side
     inner: Offset
     outer: Offset
@@ -126,7 +119,6 @@ class Pad:
     patch: Patch | None
     shim: float = 0.0
     face: Face | None = None
-    carrier: Carrier | None = None
     travel: tuple[float, float] = (0.0, 0.0)
 
     @property
@@ -137,7 +129,7 @@ class Pad:
     @property
     def _corner(self) -> float:
         """The coordinate of the point across the wall in m."""
-        return self.inner[0] if self.direction == "z" else self.inner[1]
+        return self.inner[0] if self.station.direction == "z" else self.inner[1]
 
     @property
     def across(self) -> float:
@@ -160,8 +152,10 @@ class Pad:
 
     def travels(self, extension: float) -> tuple[float, float]:
         """Return the travel in m of the contact on outer and inner segment at an extension in m."""
-        on_outer = extension if self.carrier == "inner" else 0.0
-        return on_outer, -extension if self.carrier == "outer" else 0.0
+        drive = self.joint.drive
+        carrier = None if drive is None else drive.carriers[self.station.place]
+        on_outer = extension if carrier == "inner" else 0.0
+        return on_outer, -extension if carrier == "outer" else 0.0
 
     def at_extension(self, boom: Boom, extension: float) -> Pad:
         """Return the pad at an ``extension`` of the joint in m."""
@@ -180,7 +174,7 @@ class Pad:
     @property
     def area_centres(self) -> tuple[Offset, Offset]:
         """The patch centres (y, z) in m on inner and outer segment, from the segment's axis."""
-        step = (self.across, 0.0) if self.direction == "z" else (0.0, self.across)
+        step = (self.across, 0.0) if self.station.direction == "z" else (0.0, self.across)
         (a, b), (c, d) = self.inner, self.outer
         return (a + step[0], b + step[1]), (c + step[0], d + step[1])
 
@@ -191,76 +185,65 @@ def pads(boom: Boom) -> list[Pad]:
     The weights of each side of a station sum to one.
     """
     pairs: list[Pad] = []
-    station = 0
-    for direction in boom.directions:
-        for number, joint in enumerate(boom.joints):
-            if joint.bonded:
-                continue
-            overlap = boom.overlap(joint)
-            length = joint.contact_length or _OF_OVERLAP * boom.smallest_overlap(joint)
-            inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
-            for k, x in enumerate(joint.stations):
-                normal_force = joint.normal_forces[k] if joint.normal_forces else None
-                at_corners = (
-                    ContactInterval.from_station(inner_segment, x, length),
-                    ContactInterval.from_station(outer_segment, x, length),
+    for station in boom.stations:
+        joint, x, direction = station.joint, station.x, station.direction
+        if joint is None:
+            continue
+        overlap = boom.overlap(joint)
+        length = joint.contact_length or _OF_OVERLAP * boom.smallest_overlap(joint)
+        inner_segment, outer_segment = boom.segments[joint.inner], boom.segments[joint.outer]
+        normal_force = joint.normal_forces[station.place] if joint.normal_forces else None
+        at_corners = (
+            ContactInterval.from_station(inner_segment, x, length),
+            ContactInterval.from_station(outer_segment, x, length),
+        )
+        for side, inner, outer, whole, face in _points(boom, joint, direction, x):
+            for size, share, shim in joint.pads_of(direction, side):
+                weight = whole * share
+                patch, intervals = None, at_corners
+                # Without a section, pads are points.
+                if size is not None and inner_segment.section is not None:
+                    span = size.span(x, overlap)
+                    if size.bears == "wall":
+                        patch = Patch(*span, size.offset, size.width)
+                    else:
+                        intervals = (ContactInterval(*span, 0.5 * sum(span)),) * 2
+                pad = Pad(
+                    station=station,
+                    joint=joint,
+                    side=side,
+                    inner=inner,
+                    outer=outer,
+                    weight=weight,
+                    sliding_direction="y" if boom.spatial and direction == "z" else "z",
+                    # Both sides share the normal force of the station.
+                    normal_force=None
+                    if normal_force is None
+                    else normal_force * weight * (0.5 if side else 1.0),
+                    intervals=intervals,
+                    patch=patch,
+                    shim=shim,
+                    face=face,
                 )
-                for side, inner, outer, whole, face in _points(boom, joint, direction, x):
-                    for size, share, shim in joint.pads_of(direction, side):
-                        weight = whole * share
-                        patch, intervals = None, at_corners
-                        # Without a section, pads are points.
-                        if size is not None and inner_segment.section is not None:
-                            span = size.span(x, overlap)
-                            if size.bears == "wall":
-                                patch = Patch(*span, size.offset, size.width)
-                            else:
-                                intervals = (ContactInterval(*span, 0.5 * sum(span)),) * 2
-                        pad = Pad(
-                            station=station,
-                            joint=joint,
-                            number=number,
-                            x=x,
-                            direction=direction,
-                            side=side,
-                            inner=inner,
-                            outer=outer,
-                            weight=weight,
-                            sliding_direction="y" if boom.spatial and direction == "z" else "z",
-                            # Both sides share the normal force of the station.
-                            normal_force=None
-                            if normal_force is None
-                            else normal_force * weight * (0.5 if side else 1.0),
-                            intervals=intervals,
-                            patch=patch,
-                            shim=shim,
-                            face=face,
-                            carrier=None if joint.drive is None else joint.drive.carriers[k],
-                        )
-                        pairs.append(pad)
-                station += 1
+                pairs.append(pad)
     return pairs
 
 
-def contact_centres(boom: Boom, joint: Joint) -> dict[float, tuple[float, ...]]:
-    """Return the x in m of the centres of top and bottom pads, by the station's x in m."""
+def contact_centres(boom: Boom, joint: Joint) -> list[list[float]]:
+    """Return the ascending x in m of the centres of top and bottom pads at each station."""
     overlap = boom.overlap(joint)
     sizes = [size for side in _SIDES for size, _, _ in joint.pads_of("z", side)]
     has_section = boom.segments[joint.inner].section is not None
-    return {
-        x: tuple(
-            sorted(
-                {0.5 * sum(size.span(x, overlap)) if size and has_section else x for size in sizes}
-            )
-        )
+    return [
+        sorted({0.5 * sum(size.span(x, overlap)) if size and has_section else x for size in sizes})
         for x in joint.stations
-    }
+    ]
 
 
 def pad_places(boom: Boom, number: int) -> set[float]:
     """Return the x in m of the centres of top and bottom pads on a segment."""
     joints = (joint for joint in boom.joints if number in (joint.outer, joint.inner))
-    return {x for joint in joints for at in contact_centres(boom, joint).values() for x in at}
+    return {x for joint in joints for centres in contact_centres(boom, joint) for x in centres}
 
 
 def load_places(boom: Boom, number: int) -> tuple[float, ...]:
@@ -299,8 +282,8 @@ _OF_HEIGHT = 0.2
 class StopPatch:
     """Contact of a stop with the corners of a segment."""
 
-    station: int  #: index in ``Boom.stations``
-    stop: Stop  #: the stop
+    station: Station  #: its station
+    stop: Stop  #: stop of the station
     interval: ContactInterval  #: interval of the corners on which the force acts
     reach: tuple[float, float]  #: range of the travel of the segment in m
 
@@ -313,7 +296,10 @@ class StopPatch:
 def stop_patches(boom: Boom) -> list[StopPatch]:
     """Return the contacts of all stops of a boom with sections."""
     patches = []
-    for station, stop in boom.numbered_stops:
+    for station in boom.stations:
+        stop = station.stop
+        if stop is None:
+            continue
         segment = boom.segments[stop.segment]
         extended = reach(drives_of(boom.joints, stop.segment))
         length = stop.contact_length or min(

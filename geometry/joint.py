@@ -302,8 +302,8 @@ class Stop(BareStop):
     """Stop on the ground that a segment touches when it deflects along z.
 
     >>> rest = pt.Stop(1, 14.0, play=0.2, contact=pt.PowerContact(1e6, exponent=1.0).lower())
-    >>> replace(boom, stops=(rest,)).stations[-1]
-    (14.0, 'z')
+    >>> replace(boom, stops=(rest,)).stations[-1].name
+    '14'
 
     Args:
         contact: law across the play, a :class:`.dynamics.contact.ContactLaw`; one-sided if the stop

@@ -113,7 +113,7 @@ def _zones(boom: Boom, number: int, line: ContactLine) -> Iterator[RefinementZon
     for pad in pads(boom):
         for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
             if of == number:
-                for face in _faces(section, pad.direction):
+                for face in _faces(section, pad.station.direction):
                     extended_pads = (pad.at_extension(boom, extension) for extension in pad.reach)
                     yield _envelope(_pad_zone(boom, one, end, face, line) for one in extended_pads)
 

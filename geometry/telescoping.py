@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
@@ -45,21 +46,20 @@ class TelescopingStations:
 
 def telescoping_stations(boom: Boom) -> list[TelescopingStations]:
     """Return the stations that move, grouped by drives; stops on moving segments are included."""
-    movers: list[tuple[int, ...]] = [
-        () if joint.drive is None else (number,)
-        for _ in boom.directions
-        for number, joint in enumerate(boom.joints)
-        if not joint.bonded
-        for _ in joint.stations
-    ]
-    movers += [drives_below(boom.joints, stop.segment) for stop in boom.stops]
+    groups = defaultdict[tuple[int, ...], list[int]](list)
+    for station in boom.stations:
+        if station.joint is None:
+            joints = drives_below(boom.joints, station.segment)
+        else:
+            joints = () if station.joint.drive is None else (station.number,)
+        groups[joints].append(station.index)
     return [
         TelescopingStations(
             joints,
             tuple(drive for n in joints if (drive := boom.joints[n].drive) is not None),
-            tuple(station for station, by in enumerate(movers) if by == joints),
+            tuple(indices),
         )
-        for joints in dict.fromkeys(movers)
+        for joints, indices in groups.items()
         if joints
     ]
 

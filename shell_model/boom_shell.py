@@ -14,7 +14,7 @@ from mpi4py import MPI
 from protractile.dynamics.gap_builder import GapBuilder, OutputOperator
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import pin_moments
-from protractile.geometry.boom import Boom, BoomError, Direction
+from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.contact_places import ContactLine
 from protractile.geometry.cylinder import GroundLine, ground_lines
 from protractile.geometry.grading import graded_mesh
@@ -70,7 +70,6 @@ class BoomShell:
 
     comm: MPI.Comm  #: ranks that share the model
     shells: Sequence[SegmentShell]  #: shell of each segment
-    stations: Sequence[tuple[float, Direction]]  #: x in m and direction of each station
     touching: ShellContacts  #: possible contacts, friction and dashpots at any extension
     rows: GapBuilder[Operator]  #: rows of contacts, friction and dashpots at t = 0
     ties: Sequence[Operator]  #: displacement operators that bonded joints constrain to zero
@@ -152,7 +151,6 @@ def assemble_boom(
         return BoomShell(
             comm=comm,
             shells=shells,
-            stations=boom.stations,
             touching=touching,
             rows=touching.rows({}),
             ties=ties(boom, shells),

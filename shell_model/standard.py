@@ -43,14 +43,13 @@ def standard_boom(boom: Boom) -> Boom:
 def with_plays_and_loads(shell: ReducedShell, boom: Boom) -> ReducedShell:
     """Return the reduced shell of ``boom``, from ``shell``, that of its :func:`standard_boom`."""
     system = shell.system
+    # Rows of stops and pads with shims, and all rows of 3-D booms, already have their clearances.
     clearances = [
-        joint.clearances("z")
-        for joint in boom.joints
-        if not (joint.bonded or boom.spatial or _has_shims(joint))
-        for _ in joint.stations
+        (0.0, 0.0)
+        if boom.spatial or station.joint is None or _has_shims(station.joint)
+        else station.joint.clearances("z")
+        for station in boom.stations
     ]
-    # Rows of stops, and all rows of 3-D booms, already have their clearances.
-    clearances += [(0.0, 0.0)] * (len(system.stations) - len(clearances))
     factors = np.array([_own_load(segment) for segment in boom.segments])
     changing = [load for load in boom.loads if _is_varying(load)]
     system_with_play = replace(

@@ -122,7 +122,7 @@ def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]
         ]
         samples.append(_SampledRows(group, moving, extensions, touching))
     moving_rows = {row for sampled in samples for row in sampled.moving}
-    every = full.rows.rows_at(range(len(full.stations)))
+    every = full.rows.rows_at(range(len(boom.stations)))
     if fixed_rows := [row for row in every if row not in moving_rows]:
         samples.append(_SampledRows(None, fixed_rows, np.zeros(1), [full.rows]))
     return samples

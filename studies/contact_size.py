@@ -142,7 +142,7 @@ def study(progress: Progress, sizes: Sizes | None = None) -> Iterator[Piece]:
     values = [NANO * value for value in support_compliance(friction_case(), sizes.meshes)]
     what = "local compliance, elastic support, at 2 m"
     yield Verification(what, values[default], values[-1], UNIT, *criterion)
-    stations = [x for x, _ in build_boom(friction_case()).stations]
+    stations = [station.x for station in build_boom(friction_case()).stations]
     rows, found = [], [Refined("elastic support, 2 m", UNIT, sizes.meshes, values)]
     for contact in contacts_of(friction_case(), sizes):
         progress(contact.name)

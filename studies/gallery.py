@@ -165,7 +165,9 @@ def draw_mesh(scene: Scene, overlap: Overlap) -> Image.Image:
 def draw_sections(scene: Scene, instant: Instant, overlap: Overlap) -> Image.Image:
     """Draw the distortion of the sections at the stations of an overlap."""
     moved = scene.displacement(instant.time)
-    now = scene.motion.isel(station=overlap.stations).sel(time=instant.time, method="nearest")
+    now = scene.motion.isel(station=[one.index for one in overlap.stations]).sel(
+        time=instant.time, method="nearest"
+    )
     stations = now["station"].values.tolist()
     both = {overlap.outer: theme.OUTER, overlap.inner: theme.INNER}
     outlines = {(n, x): change_of_shape(scene, moved, n, x) for x in stations for n in both}

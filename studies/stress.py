@@ -62,7 +62,7 @@ class InnerSegmentState(NamedTuple):
         shell = shell_alone(segment, size, boom.stations_of(INNER))
         force = segment.load * shell.unit_loads["z"]
         corners = CornerLines(shell)
-        pressed = {pad.x: pad.intervals[0] for pad in pads(boom)}
+        pressed = {pad.station.x: pad.intervals[0] for pad in pads(boom)}
         for x, (side, strength) in contact_forces(boom).items():
             row = corners.deflection(pressed[x], "z", 0.0, side)
             force -= side * strength * shell.row(row)

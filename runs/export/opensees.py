@@ -76,7 +76,7 @@ def script(
     _check(case, model_boom)
     boom = model_boom.boom
     # Segment and x in m of each contact point.
-    touching = [(stop.segment, stop.x) for _, stop in boom.numbered_stops]
+    touching = [(stop.segment, stop.x) for stop in boom.stops]
     for pad in pads(boom):
         touching += [(pad.joint.inner, pad.midpoint), (pad.joint.outer, pad.midpoint)]
     stiff = boom if calibration is None else with_stiffnesses(boom, calibration.segments)
@@ -211,13 +211,13 @@ def _contacts(
     for pad in pads(boom):
         outer, inner = _ends(pad, parts)
         for side in (pad.side,) if pad.side else (1, -1):
-            law = pad.joint.law(pad.direction).one_sided(side)
+            law = pad.station.law.one_sided(side)
             if law is None:
                 continue
             law = law.with_weight(pad.weight)
             law = law.with_clearance(-pad.shim) if pad.shim else law
             yield {"outer": outer, "inner": inner, "points": points(law)}
-    for _, stop in boom.numbered_stops:
+    for stop in boom.stops:
         node = [stop.segment, parts[stop.segment].node(stop.x)]
         for stopped in stop.sides:
             yield {"outer": None, "inner": node, "points": points(stop.law.one_sided(stopped))}

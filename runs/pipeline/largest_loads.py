@@ -238,24 +238,15 @@ class BeamStates:
 
     def _at_stations(self, system: System) -> Iterator[StaticExtreme]:
         boom, states = self.boom, self._station_loads()
-        stations = [
-            (joint.inner, number)
-            for joint in boom.joints
-            if not joint.bonded
-            for number, _ in enumerate(joint.stations, start=1)
-        ]
-        for index, loads in enumerate(zip(*states, strict=True)):
-            station = loads[0]
+        for station, *loads in zip(boom.stations, *states, strict=True):
             lateral = ", lateral" if station.direction == "y" else ""
             where = f"{system.text(station.x, 'm', 5)}{lateral}"
-            # Stops come after the stations of joints.
             part, inner, place = where, "", f" at {where}"
-            if index < len(boom.directions) * len(stations):
-                number_of_inner, number = stations[index % len(stations)]
-                inner = boom.segments[number_of_inner].name
-                part = f"{inner}, station {number}{lateral}"
+            if station.joint is not None:
+                inner = boom.segments[station.segment].name
+                part = f"{inner}, station {station.place + 1}{lateral}"
                 place = f", {inner}{place}"
-            if station.pressure is None:
+            if loads[0].pressure is None:
                 pushes = [load.force for load in loads]
                 what = f"contact force{place}"
                 yield self._extreme("contact", part, what, "N", pushes)

@@ -17,7 +17,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import forces
 from protractile.geometry.section import Direction
 from protractile.runs.pipeline.section_forces import LoadedModel, round_values
-from protractile.runs.pipeline.static_results import StaticResult, place_names
+from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.pipeline.strength import (
     Fibres,
     FibreStress,
@@ -154,10 +154,10 @@ def _output_peaks(
     if boom.spatial:
         rest_values = [rest.tip_lateral or 0.0 for rest in rests]
         yield _peak("lateral deflection", "tip", "m", time, data["tip_lateral"].values, rest_values)
-    for number, name in enumerate(place_names(boom.stations)):
-        values = data["contact_force"].values[:, number]
-        rest_values = [rest.stations[number].force for rest in rests]
-        yield _peak("contact force", name, "N", time, values, rest_values)
+    for station in boom.stations:
+        values = data["contact_force"].values[:, station.index]
+        rest_values = [rest.stations[station.index].force for rest in rests]
+        yield _peak("contact force", station.name, "N", time, values, rest_values)
     for name in forces(boom):
         rest_values = [rest.cylinders[name] for rest in rests]
         yield _peak("cylinder force", name, "N", time, data[name].values, rest_values)

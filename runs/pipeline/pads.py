@@ -5,17 +5,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import count
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from protractile.dynamics.contact import ContactLaw
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Direction, Joint
+from protractile.geometry.boom import Boom, Joint
 from protractile.geometry.joint import SIDES, PadSize
 from protractile.geometry.section import Side
-from protractile.runs.case.contact import PADS_OF_SIDE, JointTable
+from protractile.geometry.station import Station
+from protractile.runs.case.contact import PADS_OF_SIDE
 from protractile.runs.case.schema import Case, Model
 
 if TYPE_CHECKING:
@@ -51,45 +51,42 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
 
     ``data`` has the trajectories of all models.
     """
-    if not any(table.pad or table.pads for table in case.joints):
+    if not any(joint.padded for joint in boom.joints):
         return
     with_play = (model for model in case.models if not model.bonded)
     for model in (model for model in with_play if model.name in data["model"].values):
-        boom_of_model = model.model_boom(boom).boom
-        station, peak_forces = count(), data["contact_force_peak"].sel(model=model.name)
+        peak_forces = data["contact_force_peak"].sel(model=model.name)
         ends = np.stack([peak_forces.min("time").values, peak_forces.max("time").values], axis=1)
-        for direction in boom.directions:
-            for table, joint in zip(case.joints, boom_of_model.joints, strict=True):
-                law = joint.law(direction)
-                for x in () if joint.bonded else joint.stations:
-                    largest_pushes = ends[next(station)]
-                    if table.pad is not None:
-                        largest = max(largest_pushes, key=abs)
-                        force = abs(float(largest))
-                        if not model.needs_shell:
-                            # A beam has the net force of both sides. Without preload by shims,
-                            # one side carries it alone.
-                            sides = [law.one_sided(side) for side in SIGNS]
-                            preloads = [float(abs(one.force(np.zeros(())))) for one in sides if one]
-                            force = max(force, max(preloads) + 0.5 * force)
-                        side = _SIDE_NAMES[direction, 1 if largest > 0.0 else -1]
-                        yield _pad_load(model, table, table.pad, x, side, force)
-                    forces = _pair_forces(joint, direction, law, largest_pushes)
-                    pads = [pad for pad in table.pads if SIDES[pad.side][0] == direction]
-                    for pad, force in zip(pads, forces, strict=True):
-                        yield _pad_load(model, table, pad, x, pad.side, force)
+        for station in model.model_boom(boom).boom.stations:
+            joint, largest_pushes = station.joint, ends[station.index]
+            if joint is None:
+                continue
+            if joint.pad is not None:
+                largest = max(largest_pushes, key=abs)
+                force = abs(float(largest))
+                if not model.needs_shell:
+                    # A beam has the net force of both sides. Without preload by shims, one side
+                    # carries it alone.
+                    sides = [station.law.one_sided(side) for side in SIGNS]
+                    preloads = [float(abs(one.force(np.zeros(())))) for one in sides if one]
+                    force = max(force, max(preloads) + 0.5 * force)
+                side = _SIDE_NAMES[station.direction, 1 if largest > 0.0 else -1]
+                yield _pad_load(model, boom, joint, joint.pad, station.x, side, force)
+            forces = _pair_forces(station, largest_pushes)
+            for pad, force in zip(station.pads, forces, strict=True):
+                yield _pad_load(model, boom, joint, pad, station.x, pad.side, force)
 
 
 def _pad_load(
-    model: Model, joint: JointTable, pad: PadSize, x: float, side: str, both: float
+    model: Model, boom: Boom, joint: Joint, pad: PadSize, x: float, side: str, both: float
 ) -> PadLoad:
     """Return the load of one pad of a pair; ``both`` is the force on the pair in N."""
     force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
     pressure = force / pad.area
     return PadLoad(
         model=model.name,
-        outer=joint.outer,
-        inner=joint.inner,
+        outer=boom.segments[joint.outer].name,
+        inner=boom.segments[joint.inner].name,
         x=x,
         side=side,
         force=force,
@@ -98,22 +95,20 @@ def _pad_load(
     )
 
 
-def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Array) -> list[float]:
-    """Return the largest force in N on each pair of pads.
+def _pair_forces(station: Station, pushes: Array) -> list[float]:
+    """Return the largest force in N on each pair of pads of a station.
 
     Args:
-        joint: the joint of the pads.
-        direction: direction of the forces.
-        law: contact law of a station.
+        station: the station.
         pushes: forces (num_pushes,) in N of all pads on one side, negative for side −1. This is the
             side with the larger force. Its approach determines the force on the other side.
     """
     laws, sides = [], []
-    for pad in (pad for pad in joint.pads if SIDES[pad.side][0] == direction):
+    for pad in station.pads:
         side = SIDES[pad.side][1]
         sides.append(side)
-        whole = sum(other.stiffness for other in joint.pads if other.side == pad.side)
-        there = law.one_sided(side)
+        whole = sum(other.stiffness for other in station.pads if other.side == pad.side)
+        there = station.law.one_sided(side)
         assert there is not None
         part = there.with_weight(pad.stiffness / whole)
         laws.append(part.with_clearance(-pad.shim))
@@ -137,20 +132,20 @@ def _pair_forces(joint: Joint, direction: Direction, law: ContactLaw, pushes: Ar
     return [float(most) for most in largest]
 
 
-def loaded_pads(
-    joint: Joint, direction: Direction, sides: Sequence[Array]
-) -> list[tuple[PadSize, Array]]:
+def loaded_pads(station: Station, sides: Sequence[Array]) -> list[tuple[PadSize, Array]]:
     """Return the pads of known size at a station, each with its forces (num_states,) in N.
 
     ``sides`` are the forces (num_states,) on the two sides in N, in the order of ``SIGNS``, not
     negative.
     """
-    loads = list[tuple[PadSize | None, Array]]()
-    for side, force in zip(SIGNS, sides, strict=True) if joint.padded else ():
+    joint, loads = station.joint, list[tuple[PadSize | None, Array]]()
+    if joint is None or not joint.padded:
+        return []
+    for side, force in zip(SIGNS, sides, strict=True):
         # Pairs with thicker shims close first.
-        pairs = sorted(joint.pads_of(direction, side), key=lambda pair: -pair[2])
+        pairs = sorted(joint.pads_of(station.direction, side), key=lambda pair: -pair[2])
         shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
-        stiffnesses = [pad.stiffness for pad in joint.pads if pad.touches(direction, side)]
+        stiffnesses = [pad.stiffness for pad in station.pads if SIDES[pad.side][1] == side]
         stiffness = PADS_OF_SIDE * sum(stiffnesses) or 1.0
         # Each pair that closes reduces the compression of the pairs that closed before.
         closing = force[:, None] / stiffness - np.cumsum(shares * shims)

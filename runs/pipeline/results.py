@@ -48,7 +48,6 @@ from protractile.runs.pipeline.quantities import (
     decay_time,
     settling_time,
 )
-from protractile.runs.pipeline.static_results import place_names
 from protractile.runs.pipeline.summary import Summary
 
 TRAJECTORIES = "trajectories.nc"
@@ -330,7 +329,6 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
     The stations of the boom become the dimension ``station``. All trajectories, which are given by
     model name, have the same times.
     """
-    stations = [x for x, _ in boom.stations]
     everything = [trajectory.data for trajectory in trajectories.values()]
     time = everything[0]["time"]
     units = {
@@ -345,7 +343,7 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
         }
         for place in boom.all_observations(list(KINDS))
     } | {name: {"long_name": title} for name, title in forces(boom).items()}
-    lengths = {"time": time.size, "station": len(stations)}
+    lengths = {"time": time.size, "station": len(boom.stations)}
     variables = {}
     for name, (dims, attributes) in units.items():
         values = np.full((len(everything), *(lengths[str(dim)] for dim in dims)), np.nan)
@@ -361,17 +359,17 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
             "time": time,
             "station": (
                 "station",
-                np.array(stations, dtype=float),
+                np.array([station.x for station in boom.stations], dtype=float),
                 {"units": "m", "long_name": "x of the station"},
             ),
             "direction": (
                 "station",
-                np.array([along for _, along in boom.stations], dtype="U1"),
+                np.array([station.direction for station in boom.stations], dtype="U1"),
                 {"long_name": "direction in which the station touches"},
             ),
             "place": (
                 "station",
-                np.array(place_names(boom.stations), dtype=str),
+                np.array([station.name for station in boom.stations], dtype=str),
                 {"long_name": "name of the station, each its own"},
             ),
         },

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
-from itertools import repeat, zip_longest
+from itertools import repeat
 from typing import Any
 
 import numpy as np
@@ -93,18 +93,6 @@ class StaticResult:
     tilts: list[Tilt]  #: rotations of the joints with play and at least two stations
     stations: list[StationLoad]  #: loads of stations with play, and of stops
     cylinders: dict[str, float]  #: axial forces of cylinders in N, by their names in the results
-
-
-def place_names(stations: Sequence[tuple[float, str]]) -> list[str]:
-    """Return the name of each station: its x in m, followed by ``y`` for a lateral station.
-
-    The suffixes ``#2``, ``#3`` … distinguish stations with the same x and direction.
-    """
-    names = [f"{x:g}" + ("y" if direction == "y" else "") for x, direction in stations]
-    before = [names[:i].count(name) for i, name in enumerate(names)]
-    return [
-        f"{name}#{count + 1}" if count else name for name, count in zip(names, before, strict=True)
-    ]
 
 
 def instants(system: GapSystem, duration: float) -> list[float]:
@@ -271,20 +259,16 @@ def station_loads(boom: Boom, system: GapSystem, states: Array) -> list[list[Sta
 
     ``states`` are equilibria (num_states, num_modes).
     """
-    gaps, stations = states @ system.rows.T, []
-    loose = [joint for joint in boom.joints if not joint.bonded]
-    joints = [joint for _ in boom.directions for joint in loose for _ in joint.stations]
-    for k, ((x, direction), name, joint) in enumerate(
-        zip_longest(boom.stations, place_names(boom.stations), joints)
-    ):
+    gaps, loads = states @ system.rows.T, list[list[StationLoad]]()
+    for station in boom.stations:
         # The stations of a model without play have no contacts.
-        here = np.flatnonzero(system.station_of_row == k)
+        here = np.flatnonzero(system.station_of_row == station.index)
         none = np.zeros(len(gaps))
         sides = [
             sum((side_force(system.laws[row], side, gaps[:, row]) for row in here), none)
             for side in SIGNS
         ]
-        pads = [] if joint is None else loaded_pads(joint, direction, sides)
+        pads = loaded_pads(station, sides)
         used = [
             force / pad.area / pad.allowable_pressure
             for pad, force in pads
@@ -296,12 +280,11 @@ def station_loads(boom: Boom, system: GapSystem, states: Array) -> list[list[Sta
             _largest([none, *(system.laws[row].depth(gaps[:, row]) for row in here)]),
             _largest([force / pad.area for pad, force in pads]),
             _largest(used),
-            (_closed_play(system, gaps, here) if direction == "y" else none).tolist(),
+            (_closed_play(system, gaps, here) if station.direction == "y" else none).tolist(),
         )
-        stations.append(
-            [StationLoad(name, x, direction, *values) for values in zip(*columns, strict=False)]
-        )
-    return [list(loads) for loads in zip(*stations, strict=True)] or [[] for _ in states]
+        place = station.name, station.x, station.direction
+        loads.append([StationLoad(*place, *values) for values in zip(*columns, strict=False)])
+    return [list(of_state) for of_state in zip(*loads, strict=True)] or [[] for _ in states]
 
 
 def _largest(values: Sequence[Array]) -> Iterable[Any]:
@@ -336,7 +319,7 @@ def tilts(model: LoadedModel, states: Array, time: float = 0.0) -> list[list[Til
             places = station_positions(joint, extension)
         # The resultant force of a pad acts at its centre.
         centres = contact_centres(boom, joint)
-        offsets = [sum(centres[x]) / len(centres[x]) - x for x in joint.stations]
+        offsets = [sum(at) / len(at) - x for at, x in zip(centres, joint.stations, strict=True)]
         on_outer, displacements = [], []
         for (x_outer, x_inner), offset in zip(places, offsets, strict=True):
             on_outer.append(x_outer + offset)

@@ -115,8 +115,8 @@ def _joint_contacts(boom: Boom) -> set[tuple[int, float]]:
     return {
         (joint.inner, x)
         for joint in boom.joints
-        for at in contact_centres(boom, joint).values()
-        for x in at
+        for centres in contact_centres(boom, joint)
+        for x in centres
     }
 
 
@@ -164,20 +164,12 @@ def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
 def _depths(state: StaticState) -> dict[tuple[int, float], float]:
     """Return the compression in m of contacts along z, by segment index and x in m."""
     boom = state.boom
-    joints = [joint for joint in boom.joints if not joint.bonded]
-    inner = [
-        (joint.inner, midpoints)
-        for _ in boom.directions
-        for joint in joints
-        for midpoints in contact_centres(boom, joint).values()
-    ]
-    owners = [*inner, *((stop.segment, (stop.x,)) for stop in boom.stops)]
     (loads,) = station_loads(boom, state.system, state.position[None])
     return {
-        (number, x): one.depth
-        for (number, midpoints), one in zip(owners, loads, strict=True)
-        if one.direction == "z"
-        for x in midpoints
+        (at.segment, x): load.depth
+        for at, load in zip(boom.stations, loads, strict=True)
+        if at.direction == "z"
+        for x in ([at.x] if at.joint is None else contact_centres(boom, at.joint)[at.place])
     }
 
 

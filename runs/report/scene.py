@@ -8,6 +8,7 @@ beams have the same interface.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -23,6 +24,7 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.contact_places import pads
 from protractile.geometry.section import Direction
+from protractile.geometry.station import Station
 from protractile.geometry.telescoping import drives_below
 from protractile.geometry.typography import with_minus_signs
 from protractile.runs.case.build import build_boom
@@ -56,7 +58,7 @@ class Overlap(NamedTuple):
 
     outer: int  #: index of the outer segment
     inner: int  #: index of the inner segment
-    stations: list[int]  #: indices of the stations in the trajectories
+    stations: list[Station]  #: stations of the joint
     centres: list[float]  #: x in m of the pad centres of the stations
     clearance: float  #: clearance Δ in m
 
@@ -174,17 +176,15 @@ class Scene:
     @cached_property
     def overlaps(self) -> list[Overlap]:
         """The overlaps of joints with play in the plane of the picture, from base to tip."""
-        midpoints: dict[int, dict[int, list[float]]] = {}
+        midpoints = defaultdict[int, list[float]](list)
         for pad in pads(self.boom):
-            if pad.direction == self.direction:
-                of_station = midpoints.setdefault(pad.number, {}).setdefault(pad.station, [])
-                of_station.append(pad.midpoint)
+            midpoints[pad.station.index].append(pad.midpoint)
         overlaps = []
-        for number, stations in midpoints.items():
-            joint = self.boom.joints[number]
-            clearance = 0.5 * ((joint.lateral_play or 0.0) if self.from_above else joint.play)
-            centres = [float(np.mean(several)) for several in stations.values()]
-            overlaps.append(Overlap(joint.outer, joint.inner, [*stations], centres, clearance))
+        for number, joint in enumerate(self.boom.joints):
+            if stations := self.boom.joint_stations(number, self.direction):
+                clearance = 0.5 * ((joint.lateral_play or 0.0) if self.from_above else joint.play)
+                centres = [float(np.mean(midpoints[station.index])) for station in stations]
+                overlaps.append(Overlap(joint.outer, joint.inner, stations, centres, clearance))
         return overlaps
 
     def displacement(self, t: float) -> Array:
@@ -316,7 +316,7 @@ class Scene:
         """Return magnifications (num_segments,) of sections; inner ones leave room for play."""
         factors = np.full(len(self.boom.segments), section)
         for overlap in sorted(self.overlaps, key=lambda o: -self.half_height(o.outer)):
-            x = float(np.mean(np.array([at for at, _ in self.boom.stations])[overlap.stations]))
+            x = float(np.mean([station.x for station in overlap.stations]))
             outer, inner = (self.half_height(n, x) for n in (overlap.outer, overlap.inner))
             room = scale * overlap.clearance + section * self.wall(overlap)
             factors[overlap.inner] = (factors[overlap.outer] * outer - room) / inner

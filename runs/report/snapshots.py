@@ -97,8 +97,8 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
             }
             # The view does not follow the stations of a driven overlap.
             overlaps = {
-                number: overlap
-                for number, overlap in enumerate(seen.overlaps, start=1)
+                overlap.stations[0].number + 1: overlap
+                for overlap in seen.overlaps
                 if not seen.telescopes(overlap)
             }
             stresses = draw_stress(seen, instants, scale, overlaps.values())
@@ -177,7 +177,7 @@ def _named_times(motion: xr.Dataset, times: Times) -> dict[str, float]:
 
 def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant]:
     places = {
-        name: place_of_largest_force(views, when[name]) for name in AT_A_STATION & when.keys()
+        name: place_of_largest_force(views[0], when[name]) for name in AT_A_STATION & when.keys()
     }
     return [Instant(t, TITLES.get(name, "") + places.get(name, "")) for name, t in when.items()]
 
@@ -205,19 +205,19 @@ def characteristic_instants(motion: xr.Dataset) -> dict[str, float]:
     return instants
 
 
-def place_of_largest_force(views: Sequence[Scene], time: float) -> str:
-    """Return the location of the largest force at a time in s as text; empty for one station."""
-    scene = views[0]
-    places = [
-        (f"joint {number}{', lateral' if seen.from_above else ''}", overlap.stations)
-        for seen in views
-        for number, overlap in enumerate(seen.overlaps, start=1)
-    ]
-    if len(places) + len(scene.boom.stops) < 2:
+def place_of_largest_force(scene: Scene, time: float) -> str:
+    """Return the location of the largest force at a time in s as text.
+
+    It is empty if there is one joint in one direction, or one stop.
+    """
+    stations = scene.boom.stations
+    if len({(one.stop is None, one.number, one.direction) for one in stations}) < 2:
         return ""
     peaks = scene.motion["contact_force_peak"].sel(time=time, method="nearest").values
-    hardest = int(np.abs(np.nan_to_num(peaks)).argmax())
-    return f" ({next((place for place, stations in places if hardest in stations), 'a stop')})"
+    station = stations[int(np.abs(np.nan_to_num(peaks)).argmax())]
+    if station.joint is None:
+        return " (a stop)"
+    return f" (joint {station.number + 1}{', lateral' if station.direction == 'y' else ''})"
 
 
 def shell_files(folder: Path) -> list[Path]:

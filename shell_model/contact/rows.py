@@ -48,7 +48,7 @@ class _PadOperators:
         pad = self.pad
         if pad.joint.lateral_play is not None:
             if pad.patch is None:
-                approach = self.at_corners(pad.direction, pad.inner, pad.outer)
+                approach = self.at_corners(pad.station.direction, pad.inner, pad.outer)
             else:
                 approach = self.over_patch(pad.patch, pad.side, pad.half)
             slide = self.at_corners(pad.sliding_direction, pad.inner, pad.outer)
@@ -93,13 +93,13 @@ class _PadOperators:
     def over_patch(self, patch: Patch, side: Side, half: int) -> Operator:
         """Return the operator of the mean of u − w over a patch. Collective."""
         x, along = gauss(patch.start, patch.end, _POINTS)
-        near, far = patch.across(self._inner_section.face(self.pad.direction, side))
+        near, far = patch.across(self._inner_section.face(self.pad.station.direction, side))
         y, over = gauss(half * near, half * far, _POINTS)
         places = np.column_stack([np.repeat(x, y.size), np.tile(y, x.size)])
         weights = np.outer(along, over).ravel()
-        wall = Wall(self.pad.direction, side)
+        wall = Wall(self.pad.station.direction, side)
         rows = (
-            self.walls[n].mean(wall, places + np.array([by, 0.0]), weights, self.pad.direction)
+            self.walls[n].mean(wall, places + np.array([by, 0.0]), weights, wall.normal)
             for n, by in zip(self._ends, self.pad.travel, strict=True)
         )
         return self._approach(*rows)
@@ -108,7 +108,7 @@ class _PadOperators:
     def _inner_section(self) -> Section:
         """The section of the inner segment at the pad."""
         inner = self.walls[self.pad.joint.inner].segment
-        return inner.section_at(self.pad.x + self.pad.travel[0])
+        return inner.section_at(self.pad.station.x + self.pad.travel[0])
 
     @property
     def _ends(self) -> tuple[int, int]:
@@ -160,15 +160,15 @@ class ShellContacts:
         boom, points = self.boom, self.points
         rows = GapBuilder([LawRow(point.operator, point.law, point.station) for point in points])
         for pad in pads(boom):
-            extended = pad.at_extension(boom, extensions.get(pad.number, 0.0))
+            station, joint = pad.station, pad.joint
+            extended = pad.at_extension(boom, extensions.get(station.number, 0.0))
             touching, slide = _PadOperators(extended, self.corners, self.walls).contact(self.line)
             if self.line == "surface":
                 pressing = tuple(i for i, point in enumerate(points) if point.presses(pad))
             else:
-                law = pad.joint.law(pad.direction)
-                pressing = rows.add_contact(pad.station, law, touching, pad.shim)
-            rows.add_dashpot(pad.station, pad.joint.dashpot, touching)
-            rows.add_friction(pad.station, pad.joint.friction, slide, pad.normal_force, pressing)
+                pressing = rows.add_contact(station.index, station.law, touching, pad.shim)
+            rows.add_dashpot(station.index, joint.dashpot, touching)
+            rows.add_friction(station.index, joint.friction, slide, pad.normal_force, pressing)
         for rest in stop_patches(boom):
             segment, drives = rest.stop.segment, drives_below(boom.joints, rest.stop.segment)
             extension = sum(extensions.get(number, 0.0) for number in drives)
@@ -178,7 +178,7 @@ class ShellContacts:
                 (side, 1.0, Operator({segment: lines.deflection(interval, "z", 0.0, side)}))
                 for side in _SIDES
             ]
-            rows.add_stop(rest.station, rest.stop.law, flanges)
+            rows.add_stop(rest.station.index, rest.station.law, flanges)
         return rows
 
 

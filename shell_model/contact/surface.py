@@ -19,7 +19,7 @@ from mpi4py import MPI
 from protractile.dynamics.contact import ContactLaw
 from protractile.dynamics.reduction import independent_columns
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Joint
+from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import Pad
 from protractile.shell_model.contact.wall_rows import Wall, WallPoints, gauss
 from protractile.shell_model.reduction.segment import ReducedSegment
@@ -66,7 +66,7 @@ class SurfacePoint(NamedTuple):
 
     def presses(self, pad: Pad) -> bool:
         """Return whether the force of the point is a normal force of a pad."""
-        if self.station != pad.station:
+        if self.station != pad.station.index:
             return False
         return pad.side == 0 or (self.side, self.half) == (pad.side, pad.half)
 
@@ -78,30 +78,26 @@ def surface_points(
 ) -> list[SurfacePoint]:
     """Return the contact points of all joints that are not bonded. Collective."""
     walls = [WallPoints(shell) for shell in shells]
-    points: list[SurfacePoint] = []
-    first = 0
-    for direction in boom.directions:
-        for joint in boom.joints:
-            if joint.bonded:
-                continue
-            law = joint.law(direction)
-            for side in (1, -1):
-                wall = Wall(direction, side)
-                points += _on_wall(boom, walls, joint, wall, law, options, first)
-            first += len(joint.stations)
-    return points
+    return [
+        point
+        for direction in boom.directions
+        for number, joint in enumerate(boom.joints)
+        if not joint.bonded
+        for side in (1, -1)
+        for point in _on_wall(boom, walls, number, Wall(direction, side), options)
+    ]
 
 
 def _on_wall(
     boom: Boom,
     walls: Sequence[WallPoints],
-    joint: Joint,
+    number: int,
     wall: Wall,
-    law: ContactLaw,
     options: SurfaceOptions,
-    first: int,
 ) -> Iterator[SurfacePoint]:
-    """Yield the points on a wall; ``first`` is the index of the first station of the joint."""
+    """Yield the points on a wall of a joint, whose index is ``number``."""
+    joint, stations = boom.joints[number], boom.joint_stations(number, wall.normal)
+    law = joint.law(wall.normal)
     one_sided = law.one_sided(wall.side)
     if one_sided is None:
         return
@@ -118,7 +114,7 @@ def _on_wall(
     # Fraction of the area of the wall that a pair of points represents.
     weights = np.outer(along[1], across[1]).ravel()
     x, beside = np.repeat(along[0], across[0].size), np.tile(across[0], along[0].size)
-    stations = np.abs(np.subtract.outer(x, joint.stations)).argmin(axis=1) + first
+    nearest = np.abs(np.subtract.outer(x, joint.stations)).argmin(axis=1).tolist()
 
     def approaches(half: int) -> list[Operator]:
         """Return the operators of u − w along the normal at the points of one half."""
@@ -128,8 +124,9 @@ def _on_wall(
             Operator({ends[0]: inner, ends[1]: -outer}) for inner, outer in zip(*rows, strict=True)
         ]
 
-    points = zip(approaches(1), approaches(-1), weights, stations.tolist(), strict=True)
-    for right, left, weight, station in points:
+    points = zip(approaches(1), approaches(-1), weights, nearest, strict=True)
+    for right, left, weight, place in points:
+        station = stations[place].index
         if boom.spatial:
             part = pressing.with_weight(0.5 * weight)
             yield SurfacePoint(right, part, station, wall.side, 1)

@@ -245,8 +245,7 @@ def integrate_directly(
 
 
 def _check(full: BoomShell) -> None:
-    in_space = any(direction == "y" for _, direction in full.stations)
-    if in_space or full.loads or full.ties:
+    if full.touching.boom.spatial or full.loads or full.ties:
         raise BoomError(
             "joint",
             "the unreduced shell moves in the plane, under constant loads, without bonded joints",

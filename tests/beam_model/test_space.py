@@ -128,7 +128,7 @@ def test_places_and_names(spatial_boom: Boom) -> None:
     boom = touching(replace(spatial_boom, stops=(stop,)), LAW, LATERAL_LAW)
     system = gap_system(boom, beams(spatial_boom))
     found = list(zip(system.stations, system.station_directions, strict=True))
-    assert found == boom.stations
+    assert found == [(station.x, station.direction) for station in boom.stations]
     assert np.bincount(system.station_of_row).tolist() == [4, 4, 4, 4, 1]
     assert set(system.observers) == {
         "tip", "head", "tail", "tip_lateral", "head_lateral", "tail_lateral"

@@ -74,7 +74,7 @@ def test_a_segment_turned_has_its_planes_exchanged(spatial_boom: Boom) -> None:
 
 def test_places_of_the_paper(paper_boom: Boom) -> None:
     assert paper_boom.tip == 19.0
-    assert paper_boom.stations == [(9.0, "z"), (10.0, "z")]
+    assert [station.x for station in paper_boom.stations] == [9.0, 10.0]
     assert not paper_boom.spatial
     assert paper_boom.stations_of(0) == paper_boom.stations_of(1) == (9.0, 10.0)
     assert paper_boom.observed == {"tip": (1, 19.0), "head": (0, 10.0), "tail": (1, 9.0)}
@@ -105,14 +105,16 @@ def test_positions_of_stations_and_loads(paper_boom: Boom, spatial_boom: Boom) -
     outer, inner = paper_boom.segments
     heavy = replace(inner, masses=(PointMass(19.0, 80.0),))
     boom = Boom((outer, heavy), paper_boom.joints, loads, (stop,))
-    assert boom.stations == [(9.0, "z"), (10.0, "z"), (14.0, "z")]
+    assert [station.name for station in boom.stations] == ["9", "10", "14"]
     assert boom.stations_of(0) == (4.0, 9.0, 10.0)
     assert boom.stations_of(1) == (9.0, 10.0, 14.0, 19.0)
     assert spatial_boom.spatial
     both = replace(spatial_boom, stops=(stop,))
-    assert both.stations == [(9.0, "z"), (10.0, "z"), (9.0, "y"), (10.0, "y"), (14.0, "z")]
+    assert [station.name for station in both.stations] == ["9", "10", "9y", "10y", "14"]
+    assert [station.place for station in both.stations] == [0, 1, 0, 1, 0]
+    assert [station.stop for station in both.stations] == [None] * 4 + [stop]
     bonded = Boom(paper_boom.segments, (replace(paper_boom.joints[0], bonded=True),), stops=(stop,))
-    assert bonded.stations == [(14.0, "z")]
+    assert [station.name for station in bonded.stations] == ["14"]
     assert bonded.stations_of(0) == (9.0, 10.0)
 
 

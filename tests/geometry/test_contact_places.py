@@ -23,8 +23,8 @@ def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
         for x in joint.stations
     )
     assert pads(boom) == [
-        Pad(0, joint, 0, 9.0, "z", 0, axis, axis, 1.0, "z", 4500.0, tail, None),
-        Pad(1, joint, 0, 10.0, "z", 0, axis, axis, 1.0, "z", 5000.0, head, None),
+        Pad(boom.stations[0], joint, 0, axis, axis, 1.0, "z", 4500.0, tail, None),
+        Pad(boom.stations[1], joint, 0, axis, axis, 1.0, "z", 5000.0, head, None),
     ]
 
 
@@ -40,13 +40,9 @@ def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
     """Reference: analytic, by hand: 4 flange pads at each station, then 4 web pads at each."""
     outer, inner = (segment.section for segment in spatial_boom.segments)
     found = pads(spatial_boom)
-    assert [(pad.station, pad.x) for pad in found[::4]] == [
-        (0, 9.0),
-        (1, 10.0),
-        (2, 9.0),
-        (3, 10.0),
-    ]
-    assert [(pad.direction, pad.sliding_direction) for pad in found[::4]] == 2 * [
+    assert [pad.station for pad in found[::4]] == [*spatial_boom.stations]
+    assert [pad.station.name for pad in found[::4]] == ["9", "10", "9y", "10y"]
+    assert [(pad.station.direction, pad.sliding_direction) for pad in found[::4]] == 2 * [
         ("z", "y")
     ] + 2 * [("y", "z")]
     b, h = 0.5 * inner.width, 0.5 * inner.height
@@ -88,9 +84,9 @@ def test_stations_are_those_of_the_boom(spatial_boom: Boom) -> None:
         assert len(boom.stations) == (7 if bonded else 11)
         assert len(found) == 4 * (len(boom.stations) - 1)
         for pad in found:
-            assert (pad.x, pad.direction) == boom.stations[pad.station]
-            assert boom.joints[pad.number] is pad.joint
-            assert pad.x in pad.joint.stations
+            assert pad.station is boom.stations[pad.station.index]
+            assert pad.joint is pad.station.joint is boom.joints[pad.station.number]
+            assert pad.station.x == pad.joint.stations[pad.station.place]
 
 
 def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
@@ -100,7 +96,7 @@ def test_shares_of_a_station_sum_to_one(spatial_boom: Boom) -> None:
     found = pads(replace(spatial_boom, joints=(joint,)))
     assert len(found) == 16
     for station, force in enumerate((4500.0, 5000.0, 4500.0, 5000.0)):
-        here = [pad for pad in found if pad.station == station]
+        here = [pad for pad in found if pad.station.index == station]
         for side in (1, -1):
             assert sum(pad.weight for pad in here if pad.side == side) == 1.0
         assert sum(pad.normal_force or 0.0 for pad in here) == force

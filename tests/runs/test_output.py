@@ -13,12 +13,14 @@ import xarray as xr
 from pydantic import ValidationError
 
 from protractile.cases import change
+from protractile.dynamics.contact import PowerContact
+from protractile.geometry.joint import Stop
+from protractile.geometry.station import stations
 from protractile.runs.case import reading as case_file
 from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import Run
-from protractile.runs.pipeline.static_results import place_names
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.report.additions import Addition, judge
 from protractile.runs.report.output import write, write_csv, write_report
@@ -49,7 +51,9 @@ def header(folder: Path) -> list[str]:
 def test_columns_of_stations_are_distinct(run: Run, folder: Path, tmp_path: Path) -> None:
     plain = run.results.trajectories
     places = [("9", "z"), ("10", "z"), ("9", "y"), ("10", "y"), ("9", "z")]
-    names = place_names([(float(x), direction) for x, direction in places])
+    rest = Stop(1, 9.0, 0.1, PowerContact(1.0e6))
+    stations_in_space = stations(run.results.boom.joints, [rest], ["z", "y"])
+    names = [station.name for station in stations_in_space]
     assert names == ["9", "10", "9y", "10y", "9#2"]
     data = plain.isel(station=[0, 1, 0, 1, 0]).assign_coords(
         direction=("station", [direction for _, direction in places]), place=("station", names)

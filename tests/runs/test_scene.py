@@ -101,7 +101,7 @@ def test_change_of_shape_excludes_the_rigid_motion(shell: Scene) -> None:
 def test_contact_in_run_is_contact_in_picture(shell: Scene, scale: float, section: float) -> None:
     """Reference: analytic, a wall between mid-surfaces; opposite, twice the clearance more."""
     (overlap,) = shell.overlaps
-    assert overlap == (0, 1, [0, 1], [9.0, 10.0], CLEARANCE)
+    assert overlap == (0, 1, [*BOOM.stations], [9.0, 10.0], CLEARANCE)
     moved = np.zeros_like(shell.points)
     moved[shell.owner == 1, 2] = CLEARANCE
     drawn = shell.magnify(moved, scale, section)
@@ -119,19 +119,20 @@ def in_space(shell: Scene) -> list[Scene]:
         boom, stops=(Stop(1, boom.joints[0].stations[0], 0.04, PowerContact(1e9, 1.0).upper()),)
     )
     motion = shell.motion.isel(station=[0] * len(boom.stations))
-    motion = motion.assign_coords(station=[x for x, _ in boom.stations])
+    motion = motion.assign_coords(station=[station.x for station in boom.stations])
     side = replace(shell, boom=boom, motion=motion)
     return [side, replace(side, from_above=True)]
 
 
 def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
     one, two = in_space[0].boom.joints
+    stations = in_space[0].boom.stations
     found = [(*at[:3], at.clearance) for scene in in_space for at in scene.overlaps]
     assert found == [
-        (0, 1, [0, 1], 0.5 * one.play),
-        (1, 2, [2, 3], 0.5 * two.play),
-        (0, 1, [4, 5], 0.5 * one.lateral_play),
-        (1, 2, [6, 7], 0.5 * two.lateral_play),
+        (0, 1, [*stations[0:2]], 0.5 * one.play),
+        (1, 2, [*stations[2:4]], 0.5 * two.play),
+        (0, 1, [*stations[4:6]], 0.5 * one.lateral_play),
+        (1, 2, [*stations[6:8]], 0.5 * two.lateral_play),
     ]
     # Pads are 0.12 m long and begin at the ends of the overlap.
     for scene in in_space:
@@ -146,13 +147,13 @@ def test_of_several_joints_the_pressed_one_is_named(
     shell: Scene, in_space: list[Scene], station: int, place: str
 ) -> None:
     """Reference: the fixture, with a force up or down at one station only."""
-    side, above = in_space
+    side, _ = in_space
     peak = xr.zeros_like(side.motion["contact_force_peak"])
     peak[200, station] = (-1.0) ** (station // 2) * 3.0e4
     side = replace(side, motion=side.motion.assign(contact_force_peak=peak))
-    assert place_of_largest_force([side, above], float(TIME[200])) == place
+    assert place_of_largest_force(side, float(TIME[200])) == place
     # The only joint of a boom is not named.
-    assert place_of_largest_force([shell], 0.5) == ""
+    assert place_of_largest_force(shell, 0.5) == ""
 
 
 def test_from_above_y_points_up(shell: Scene) -> None:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Shared shells of booms with different loads, and output of a shell besides its trajectory."""
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
@@ -12,20 +13,23 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
+from protractile.beam_model.segment_model import EACH_SIDE, gap_system
+from protractile.beam_model.statics import Elements
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Cylinder, Load, PointMass, Stop
+from protractile.geometry.boom import Boom, Cylinder, Load, PointMass, SlidePad, Stop
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.pipeline.model_output import ShellOutput
 from protractile.runs.pipeline.models import build
 from protractile.shell_model.boom_shell import ShellOptions
-from protractile.shell_model.reduced_shell import reduce_boom
-from tests.runs.case_texts import HINGED, STEEL, box, read_case, table
+from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.shell_model.standard import standard_boom, with_plays_and_loads
+from tests.runs.case_texts import HINGED, STEEL, box, read_case, shipped, table
 from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
 from tests.touching import touching
 
@@ -99,3 +103,32 @@ def test_stresses_are_stored_beside_every_contact_and_support() -> None:
     moved = np.tensordot(left.modes["state"].values, left.modes["modes"].values, axes=1)
     np.testing.assert_allclose(np.linalg.norm(moved, axis=2).max(axis=1), 1.0, rtol=1e-5)
     assert set(left.meshes) == {"outer", "inner"}
+
+
+@dataclass(frozen=True)
+class Shared:
+    """The parts of a reduced shell that plays and loads change, here of beams."""
+
+    system: GapSystem
+    own_loads: Array
+
+
+def test_a_shared_shell_gets_the_plays_of_its_joints() -> None:
+    """Reference: the boom itself. Of two joints, the first has pads with shims, which stay."""
+    boom = touching(build_boom(shipped("three-segments")), PowerContact(1.0e9, 1.0))
+    pads = tuple(
+        SlidePad(0.1, 0.03, side=side, thickness=0.02, shim=0.001) for side in ("above", "below")
+    )
+    first, second = boom.joints
+    boom = replace(boom, joints=(replace(first, pad=None, pads=pads), second), loads=())
+
+    def system(boom: Boom) -> GapSystem:
+        return gap_system(boom, Elements(boom).segments, EACH_SIDE)
+
+    shared = system(standard_boom(boom))
+    loads = np.zeros((len(boom.segments), shared.num_modes))
+    shell = cast(ReducedShell, Shared(shared, loads))
+    found, expected = with_plays_and_loads(shell, boom).system.laws, system(boom).laws
+    onsets = [[law.terms[0].onset for law in laws] for laws in (found, expected)]
+    assert onsets[0] == pytest.approx(onsets[1])
+    assert onsets[1] == pytest.approx(4 * [0.5 * first.play - 0.001] + 4 * [0.5 * second.play])

@@ -244,10 +244,10 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     corners = 1 if len(sides) == 2 else 2
     assert len(rows.contacts) == 2 * len(pads) * corners
     for contact, pad in zip(rows.contacts, places, strict=True):
-        across = COMPONENT["y" if pad.direction == "z" else "z"]
+        across = COMPONENT["y" if pad.station.direction == "z" else "z"]
         moved = np.zeros(inner.free.size)
-        moved[inner.node_dofs[:, COMPONENT[pad.direction]]] = inner.nodes[:, across] ** 2
-        near, far = pad.patch.across(inner.segment.section.face(pad.direction, pad.side))
+        moved[inner.node_dofs[:, COMPONENT[pad.station.direction]]] = inner.nodes[:, across] ** 2
+        near, far = pad.patch.across(inner.segment.section.face(pad.station.direction, pad.side))
         mean = (far**3 - near**3) / (3.0 * (far - near))
         assert inner.row(contact.operator[1]) @ moved == pytest.approx(mean, rel=1e-9)
         share = (0.75 if pad.patch.offset == 0.0 else 0.25) / corners

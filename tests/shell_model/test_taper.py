@@ -165,9 +165,9 @@ def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -
         touching(boom, LAW, LAW), shells, "near webs", SurfaceOptions()
     ).rows({})
     inner = shells[1]
-    directions = [boom.stations[contact.station][1] for contact in rows.contacts]
+    directions = [boom.stations[contact.station].direction for contact in rows.contacts]
     assert len(directions) == (4 if lateral is None else 16)
-    places = [boom.stations[contact.station][0] for contact in rows.contacts]
+    places = [boom.stations[contact.station].x for contact in rows.contacts]
     reach = 0.06 if pad else 0.0
     for contact, direction, place in zip(rows.contacts, directions, places, strict=True):
         moved, turned = np.zeros((2, inner.free.size))
