@@ -22,12 +22,13 @@ from scipy.optimize import least_squares
 
 from protractile.beam_model.component import Component, SegmentModel, natural_modes
 from protractile.beam_model.finite_element import finite_element_segment
-from protractile.beam_model.segment_model import EACH_SIDE, gap_system
+from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.reduction import with_coordinates
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
+from protractile.geometry.section import EACH_SIDE
 
 # Weight in the least squares that keeps a factor near 1 if it has no influence on the responses.
 _PRIOR = 1.0e-4

@@ -20,9 +20,8 @@ from protractile.geometry.observation import Displacement, Observation, Quantity
 from protractile.geometry.section import Side
 from protractile.geometry.telescoping import drives_below, telescoping_stations
 
-# Sides of the contact rows of a flat joint or a stop: one row for both sides, or one row per side.
+# Sides of the contact rows of a flat joint or a stop, with one row for both sides.
 BOTH_SIDES: Sequence[Side] = (0,)
-EACH_SIDE: Sequence[Side] = (1, -1)
 
 
 def gap_system(

@@ -20,7 +20,7 @@ from protractile.beam_model.component import Component, SegmentModel
 from protractile.beam_model.elements import Theory
 from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
 from protractile.beam_model.lines import lines_of_modes
-from protractile.beam_model.segment_model import EACH_SIDE, gap_system, system_without_drives
+from protractile.beam_model.segment_model import gap_system, system_without_drives
 from protractile.beam_model.wall_compliance import station_compliance, with_wall_springs
 from protractile.dynamics.damping import closed_stiffness
 from protractile.dynamics.equilibrium import equilibrium, equilibrium_at
@@ -34,6 +34,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.compression import NO_COMPRESSION
 from protractile.geometry.contact_places import contact_centres, pad_places
 from protractile.geometry.load import Load
+from protractile.geometry.section import EACH_SIDE
 
 # Minimum number of elements of the longest segment in a boom with axial forces or tapers.
 ELEMENTS_WITH_AXIAL_FORCE = 20

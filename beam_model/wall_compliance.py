@@ -24,13 +24,12 @@ from protractile.beam_model.boom_modes import ContactPlace, StationCompliance
 from protractile.beam_model.calibration import with_springs
 from protractile.beam_model.distortion import Press, distortion_compliance
 from protractile.beam_model.hermite import HermiteAxis, sum_of_products
-from protractile.beam_model.segment_model import EACH_SIDE
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.compression import NO_COMPRESSION
 from protractile.geometry.contact_places import Pad, pads
-from protractile.geometry.section import Direction, Side
+from protractile.geometry.section import EACH_SIDE, Direction, Side
 from protractile.geometry.segment import Segment
 
 # Length of wall beyond a pad that is modelled, as a fraction of the larger side of the section.
@@ -59,7 +58,7 @@ def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> Gap
     """Return the system of a beam with springs for the compliance of walls under pads.
 
     Args:
-        system: gap system with a contact row for each side, :data:`.segment_model.EACH_SIDE`.
+        system: gap system with a contact row for each side.
         factor: factor of the compliance, 0 for rigid walls.
     """
     walls = factor * contact_compliance(boom) if factor else np.zeros(0)
@@ -76,8 +75,7 @@ def contact_compliance(boom: Boom) -> Array:
     forces on its corners, a box has none.
 
     Args:
-        boom: boom of beams with a contact row for each side,
-            ``protractile.beam_model.segment_model.EACH_SIDE``.
+        boom: boom of beams with a contact row for each side.
     """
     rows = _contact_rows(boom)
     stops = sum(len(stop.sides) for stop in boom.stops)

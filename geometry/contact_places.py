@@ -16,7 +16,7 @@ import numpy as np
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Direction, Joint, Stop
-from protractile.geometry.section import Face, Offset, Side
+from protractile.geometry.section import EACH_SIDE, Face, Offset, Side
 from protractile.geometry.segment import Segment
 from protractile.geometry.station import Station
 from protractile.geometry.telescoping import drives_of, reach
@@ -27,7 +27,6 @@ ContactLine = Literal["near webs", "across", "surface"]
 # 0.1 m in the paper's boom, a typical length of slide pads.
 _OF_OVERLAP = 0.1
 
-_SIDES: tuple[Side, Side] = (1, -1)
 _BOTH: tuple[Side] = (0,)
 
 
@@ -232,7 +231,7 @@ def pads(boom: Boom) -> list[Pad]:
 def contact_centres(boom: Boom, joint: Joint) -> list[list[float]]:
     """Return the ascending x in m of the centres of top and bottom pads at each station."""
     overlap = boom.overlap(joint)
-    sizes = [size for side in _SIDES for size, _, _ in joint.pads_of("z", side)]
+    sizes = [size for side in EACH_SIDE for size, _, _ in joint.pads_of("z", side)]
     has_section = boom.segments[joint.inner].section is not None
     return [
         sorted({0.5 * sum(size.span(x, overlap)) if size and has_section else x for size in sizes})
@@ -259,12 +258,12 @@ def _points(
     Points are (y, z) in m from the axis of their segment.
     """
     if joint.lateral_play is None:
-        for side in _SIDES if joint.pads else _BOTH:
+        for side in EACH_SIDE if joint.pads else _BOTH:
             yield side, (0.0, 0.0), (0.0, 0.0), 1.0, None
         return
     inner, outer = (boom.segments[number].section_at(x) for number in (joint.inner, joint.outer))
     clearance = 0.5 * (joint.play if direction == "z" else joint.lateral_play)
-    for side in _SIDES:
+    for side in EACH_SIDE:
         touching, surface = inner.face(direction, side), outer.face(direction, side).inside
         for corner in (touching.low, touching.high):
             within, around = (corner, surface - side * clearance), (corner, surface)

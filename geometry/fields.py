@@ -40,6 +40,7 @@ from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
+from protractile.dynamics.contact import ContactLaw
 from protractile.geometry.typography import choices
 
 
@@ -389,9 +390,9 @@ def _is_history(value: Any) -> Any:
     raise PydanticCustomError("history", "a history")
 
 
-# Types of a contact law, :class:`.dynamics.contact.ContactLaw`, and of the history of a load.
-LawRef = Annotated[Any, Having("contact_law", "with_clearance", optional=False)]
-LawOrNone = Annotated[Any, Having("contact_law", "with_clearance")]
+# Types of a contact law, and of the history of a load.
+LawRef = Annotated[ContactLaw, Having("contact_law", "with_clearance", optional=False)]
+LawOrNone = Annotated[ContactLaw | None, Having("contact_law", "with_clearance")]
 HistoryRef = Annotated[Any, AfterValidator(_is_history)]
 
 if TYPE_CHECKING:

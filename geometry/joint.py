@@ -11,6 +11,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import Field, SkipValidation
 
+from protractile.dynamics.contact import Gap, PowerContact
 from protractile.geometry.arrays import Array
 from protractile.geometry.fields import (
     MOST_STATIONS,
@@ -28,7 +29,7 @@ from protractile.geometry.fields import (
     SegmentRef,
     part,
 )
-from protractile.geometry.section import Direction, Side
+from protractile.geometry.section import EACH_SIDE, Direction, Side
 
 PadSide = Literal["above", "below", "left", "right"]
 
@@ -40,6 +41,8 @@ SIDES: Mapping[PadSide, tuple[Direction, Side]] = {
     "right": ("y", 1),
 }
 
+# Number of pads that share the force on one side of a station, one beside each web.
+PADS_OF_SIDE = 2
 
 # Modulus in Pa of cast polyamide 6 with 2.5 % of moisture (data sheet of PolyJARID); 3.2e9 if dry.
 POLYAMIDE = 1.9e9
@@ -49,9 +52,10 @@ POLYAMIDE = 1.9e9
 class PadSize:
     """Slide pad: a patch on a wall of the inner segment, beside a corner.
 
-    >>> padded = replace(boom.joints[0], pad=pt.PadSize(length=0.2, width=0.06))
-    >>> replace(boom, joints=(padded,)).joints[0].pad.length
-    0.2
+    >>> polyamide = pt.PadSize(length=0.2, width=0.06, thickness=0.02)
+    >>> padded = replace(boom.joints[0], contact=None, pad=polyamide)
+    >>> str(padded.law("z"))
+    'k 2.28e+09, n 1'
     """
 
     length: Length
@@ -218,6 +222,35 @@ class BareJoint:
     """the number of the detail category of the welds of both segments at its stations, for
     [[spectrum]]"""
 
+    @property
+    def padded(self) -> bool:
+        """True if the joint has pads of a given size."""
+        return self.pad is not None or bool(self.pads)
+
+    def pads_of(
+        self, direction: Direction, side: Side
+    ) -> list[tuple[PadSize | None, float, float]]:
+        """Return (size, fraction of the force, shim in m) of each pad on a side; side 0 is both."""
+        if not self.pads:
+            return [(self.pad, 1.0, 0.0)]
+        here = [pad for pad in self.pads if pad.touches(direction, side)]
+        whole = sum(pad.stiffness for pad in here)
+        return [(pad, pad.stiffness / whole, pad.shim) for pad in here]
+
+    def pad_law(self, direction: Direction, damping: float = 0.0) -> PowerContact | None:
+        """Return the contact law of each station by its pads; None if none has a thickness.
+
+        ``damping`` is that of the law in s/m.
+        """
+        above, below = (
+            PADS_OF_SIDE
+            * sum(pad.stiffness or 0.0 for pad, *_ in self.pads_of(direction, side) if pad)
+            for side in EACH_SIDE
+        )
+        if not (above or below):
+            return None
+        return PowerContact(above, 1.0, stiffness_below=below, damping=damping)
+
 
 @part
 class Joint(BareJoint):
@@ -228,8 +261,8 @@ class Joint(BareJoint):
     ((6.0, 8.0), (0.005, 0.005))
 
     Args:
-        contact: law of each station across the play, a :class:`.dynamics.contact.ContactLaw`; not
-            needed for a bonded joint.
+        contact: law of each station across the play; by default that of the pads, if they have a
+            thickness. A bonded joint needs none.
         lateral_contact: law along y; as ``contact`` unless given.
         drive: drive that telescopes the inner segment during the motion; without it the extension
             is constant.
@@ -253,33 +286,21 @@ class Joint(BareJoint):
         first = 0.5 * play if first is None else first
         return first - 0.5 * interference, play - first - 0.5 * interference
 
-    def law(self, direction: Direction) -> Any:
+    def law(self, direction: Direction) -> Gap:
         """Return the contact law of each station in a direction, with its clearances.
 
         Raises:
             BoomError: the joint has no contact.
         """
         law = (self.lateral_contact or self.contact) if direction == "y" else self.contact
+        law = law or self.pad_law(direction)
         if law is None:
             raise BoomError(
-                "joint.contact", "missing; give a contact law, or tie the segments of the joint"
+                "joint.contact",
+                "missing; give a contact law, or pads with a thickness, or tie the segments of the "
+                "joint",
             )
         return law.with_clearance(*self.clearances(direction))
-
-    @property
-    def padded(self) -> bool:
-        """True if the joint has pads of a given size."""
-        return self.pad is not None or bool(self.pads)
-
-    def pads_of(
-        self, direction: Direction, side: Side
-    ) -> list[tuple[PadSize | None, float, float]]:
-        """Return (size, fraction of the force, shim in m) of each pad on a side; side 0 is both."""
-        if not self.pads:
-            return [(self.pad, 1.0, 0.0)]
-        here = [pad for pad in self.pads if pad.touches(direction, side)]
-        whole = sum(pad.stiffness for pad in here)
-        return [(pad, pad.stiffness / whole, pad.shim) for pad in here]
 
 
 @part
@@ -306,8 +327,7 @@ class Stop(BareStop):
     '14'
 
     Args:
-        contact: law across the play, a :class:`.dynamics.contact.ContactLaw`; one-sided if the stop
-            is on one side only.
+        contact: law across the play; one-sided if the stop is on one side only.
     """
 
     contact: LawRef
@@ -315,10 +335,9 @@ class Stop(BareStop):
     @property
     def sides(self) -> tuple[Side, ...]:
         """The sides on which the stop acts: 1 for upward deflections, −1 for downward ones."""
-        both: tuple[Side, Side] = (1, -1)
-        return tuple(side for side in both if self.contact.one_sided(side) is not None)
+        return tuple(side for side in EACH_SIDE if self.contact.one_sided(side) is not None)
 
     @property
-    def law(self) -> Any:
+    def law(self) -> Gap:
         """The contact law across the play."""
         return self.contact.with_clearance(0.5 * self.play)

@@ -24,6 +24,7 @@ from protractile.geometry.fields import is_positive
 
 Direction = Literal["z", "y"]
 Side = Literal[-1, 0, 1]
+EACH_SIDE: tuple[Side, Side] = (1, -1)
 Offset = tuple[float, float]
 
 # Index of each direction in (x, y, z).

@@ -5,8 +5,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
+from protractile.dynamics.contact import Gap
 from protractile.geometry.joint import SIDES, Joint, SlidePad, Stop
 from protractile.geometry.section import Direction
 
@@ -39,7 +39,7 @@ class Station:
         return tuple(pad for pad in pads if SIDES[pad.side][0] == self.direction)
 
     @property
-    def law(self) -> Any:
+    def law(self) -> Gap:
         """The contact law with its clearances.
 
         Raises:

@@ -23,11 +23,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from protractile.beam_model.segment_model import EACH_SIDE
 from protractile.beam_model.wall_compliance import contact_compliance
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.section import BoxSection
+from protractile.geometry.section import EACH_SIDE, BoxSection
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SectionTable

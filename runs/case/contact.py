@@ -23,7 +23,6 @@ from protractile.geometry.fields import (
     rising,
 )
 from protractile.geometry.joint import BareJoint, Carrier, Drive
-from protractile.geometry.section import Side
 from protractile.runs.case.limits import (
     CaseTable,
     Exponent,
@@ -33,11 +32,6 @@ from protractile.runs.case.limits import (
     unsuitable,
 )
 from protractile.runs.case.motion_tables import DriveTable
-
-BOTH_SIDES: tuple[Side, Side] = (1, -1)
-
-# Number of pads that share the force on one side of a station, one beside each web.
-PADS_OF_SIDE = 2
 
 # Maximum number of points of a law. The time loop evaluates all of them at every contact.
 MOST_POINTS = 1000
@@ -138,9 +132,21 @@ class ContactTable:
         return self.exponent or 2.0
 
     def law(self, direction: Direction) -> ContactLaw | None:
-        """Return the contact law of each station in a direction."""
+        """Return the contact law of each station in a direction; None if no pad acts in it."""
+        if self.force_table is not None:
+            return table_law(self.force_table, self.damping)
+        if self.stiffness is None:
+            return None
         below = self.stiffness_below if direction == "z" else None
-        return _law(self, self.stiffness, below, self.exponent)
+        return PowerContact(
+            self.stiffness, self.exponent or 2.0, stiffness_below=below, damping=self.damping
+        )
+
+    @property
+    def damping(self) -> float:
+        """The damping of the contact in s/m."""
+        impact = self.restitution
+        return 0.0 if impact is None else restitution_damping(impact.coefficient, impact.speed)
 
 
 @dataclass(frozen=True, config=PART, kw_only=True)
@@ -175,7 +181,7 @@ class JointTable(ContactTable, BareJoint):
         _check_law(self, (*_POWER_LAW_KEYS, *lateral))
         if self.pads and self.lateral_stiffness:
             raise superfluous_error(self, "pads", "lateral_stiffness")
-        if self.lateral_exponent and not self.lateral_stiffness and not self.pads:
+        if self.lateral_exponent and not self.lateral_stiffness:
             raise error_at(self, "missing", "lateral_stiffness")
         return self
 
@@ -213,35 +219,11 @@ class JointTable(ContactTable, BareJoint):
         return "inner" if place.head is None else "outer"
 
     def exponent_of(self, key: str) -> float | None:
-        along_z = 1.0 if self.elastic_pads_key and not self.stiffness else self.exponent
+        along_z = 1.0 if self.elastic_pads_key else self.exponent
         return self.lateral_exponent or along_z if key == "lateral_stiffness" else along_z
 
     def law(self, direction: Direction) -> ContactLaw | None:
-        """Return the contact law of each station in a direction; None if no pad acts in it."""
-        if self.pads:
-            above, below = (
-                PADS_OF_SIDE
-                * sum(pad.stiffness for pad in self.pads if pad.touches(direction, side))
-                for side in BOTH_SIDES
-            )
-            return _law(self, above, below, 1.0) if above or below else None
-        of_pads = PADS_OF_SIDE * self.pad.stiffness if self.pad and self.pad.stiffness else None
-        exponent = self.exponent if of_pads is None or self.stiffness else 1.0
-        if direction == "z":
-            return _law(self, self.stiffness or of_pads, self.stiffness_below, exponent)
-        stiffness = self.lateral_stiffness or self.stiffness or of_pads
-        return _law(self, stiffness, None, self.lateral_exponent or exponent)
-
-
-def _law(
-    table: ContactTable,
-    stiffness: float | None,
-    below: float | None,
-    exponent: float | None,
-) -> ContactLaw:
-    impact = table.restitution
-    damping = 0.0 if impact is None else restitution_damping(impact.coefficient, impact.speed)
-    if table.force_table is not None and stiffness is None:
-        return table_law(table.force_table, damping=damping)
-    assert stiffness is not None
-    return PowerContact(stiffness, exponent or 2.0, stiffness_below=below, damping=damping)
+        if direction == "y" and self.lateral_stiffness:
+            exponent = self.exponent_of("lateral_stiffness")
+            return PowerContact(self.lateral_stiffness, exponent or 2.0, damping=self.damping)
+        return self.pad_law(direction, self.damping) or super().law(direction)

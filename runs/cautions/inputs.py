@@ -202,7 +202,7 @@ def compliant_contacts(context: Context) -> Iterator[str]:
             inner = boom.segments[joint.inner]
             bending = 3.0 * inner.bending_stiffness / inner.length**3
             force = 0.5 * STANDARD_GRAVITY * inner.mass
-            stiffness = joint.contact.slope_at(force)
+            stiffness = joint.law("z").slope_at(force)
             if stiffness <= 0.0:
                 yield (
                     f"the contacts of {inner.name!r} in {model.name!r} do not become stiffer at "

@@ -219,8 +219,8 @@ def _contacts(
             yield {"outer": outer, "inner": inner, "points": points(law)}
     for stop in boom.stops:
         node = [stop.segment, parts[stop.segment].node(stop.x)]
-        for stopped in stop.sides:
-            yield {"outer": None, "inner": node, "points": points(stop.law.one_sided(stopped))}
+        for law in filter(None, map(stop.law.one_sided, (1, -1))):
+            yield {"outer": None, "inner": node, "points": points(law)}
 
 
 def _points(law: ContactLaw, compliance: float) -> list[list[float]]:

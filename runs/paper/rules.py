@@ -476,4 +476,4 @@ def _range(curve: Array) -> float:
 def _exponents(run: RunQuery, model: Model) -> list[set[float]]:
     """Return the contact exponents n of each joint under the laws of a model."""
     joints = model.model_boom(run.results.boom).boom.joints
-    return [{term.exponent for term in joint.contact.terms} for joint in joints]
+    return [{term.exponent for term in joint.law("z").terms} for joint in joints]

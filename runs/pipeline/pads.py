@@ -11,18 +11,14 @@ import numpy as np
 
 from protractile.dynamics.contact import ContactLaw
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Joint
-from protractile.geometry.joint import SIDES, PadSize
-from protractile.geometry.section import Side
+from protractile.geometry.boom import Boom
+from protractile.geometry.joint import PADS_OF_SIDE, SIDES, PadSide, PadSize
+from protractile.geometry.section import EACH_SIDE
 from protractile.geometry.station import Station
-from protractile.runs.case.contact import PADS_OF_SIDE
-from protractile.runs.case.schema import Case, Model
+from protractile.runs.case.schema import Case
 
 if TYPE_CHECKING:
     import xarray as xr
-
-# Sign of each side.
-SIGNS: tuple[Side, Side] = (1, -1)
 
 # Name of each side, by direction.
 _SIDE_NAMES = {on: side for side, on in SIDES.items()}
@@ -58,41 +54,37 @@ def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
         peak_forces = data["contact_force_peak"].sel(model=model.name)
         ends = np.stack([peak_forces.min("time").values, peak_forces.max("time").values], axis=1)
         for station in model.model_boom(boom).boom.stations:
-            joint, largest_pushes = station.joint, ends[station.index]
-            if joint is None:
+            if station.joint is None:
                 continue
-            if joint.pad is not None:
-                largest = max(largest_pushes, key=abs)
-                force = abs(float(largest))
-                if not model.needs_shell:
-                    # A beam has the net force of both sides. Without preload by shims, one side
-                    # carries it alone.
-                    sides = [station.law.one_sided(side) for side in SIGNS]
-                    preloads = [float(abs(one.force(np.zeros(())))) for one in sides if one]
-                    force = max(force, max(preloads) + 0.5 * force)
-                side = _SIDE_NAMES[station.direction, 1 if largest > 0.0 else -1]
-                yield _pad_load(model, boom, joint, joint.pad, station.x, side, force)
-            forces = _pair_forces(station, largest_pushes)
-            for pad, force in zip(station.pads, forces, strict=True):
-                yield _pad_load(model, boom, joint, pad, station.x, pad.side, force)
+            ends_of_joint = station.joint.outer, station.joint.inner
+            outer, inner = (boom.segments[number].name for number in ends_of_joint)
+            forces = _largest_forces(station, ends[station.index], net=not model.needs_shell)
+            for pad, side, both in forces:
+                force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
+                pressure = force / pad.area
+                used = None if allowable is None else pressure / allowable
+                yield PadLoad(model.name, outer, inner, station.x, side, force, pressure, used)
 
 
-def _pad_load(
-    model: Model, boom: Boom, joint: Joint, pad: PadSize, x: float, side: str, both: float
-) -> PadLoad:
-    """Return the load of one pad of a pair; ``both`` is the force on the pair in N."""
-    force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
-    pressure = force / pad.area
-    return PadLoad(
-        model=model.name,
-        outer=boom.segments[joint.outer].name,
-        inner=boom.segments[joint.inner].name,
-        x=x,
-        side=side,
-        force=force,
-        pressure=pressure,
-        utilisation=None if allowable is None else pressure / allowable,
-    )
+def _largest_forces(
+    station: Station, pushes: Array, net: bool
+) -> Iterator[tuple[PadSize, PadSide, float]]:
+    """Yield the governing pads of a station, their side, and the force in N on both of a pair.
+
+    The forces ``pushes`` are those of :func:`_pair_forces`, or the ``net`` forces of both sides.
+    """
+    if station.joint is not None and station.joint.pad is not None:
+        largest = max(pushes, key=abs)
+        force = abs(float(largest))
+        if net:
+            # Without preload by shims, one side carries the net force alone.
+            sides = [station.law.one_sided(side) for side in EACH_SIDE]
+            preloads = [float(abs(one.force(np.zeros(())))) for one in sides if one]
+            force = max(force, max(preloads) + 0.5 * force)
+        side = _SIDE_NAMES[station.direction, 1 if largest > 0.0 else -1]
+        yield station.joint.pad, side, force
+    for pad, force in zip(station.pads, _pair_forces(station, pushes), strict=True):
+        yield pad, pad.side, force
 
 
 def _pair_forces(station: Station, pushes: Array) -> list[float]:
@@ -103,10 +95,8 @@ def _pair_forces(station: Station, pushes: Array) -> list[float]:
         pushes: forces (num_pushes,) in N of all pads on one side, negative for side −1. This is the
             side with the larger force. Its approach determines the force on the other side.
     """
-    laws, sides = [], []
-    for pad in station.pads:
-        side = SIDES[pad.side][1]
-        sides.append(side)
+    laws, sides = [], [SIDES[pad.side][1] for pad in station.pads]
+    for pad, side in zip(station.pads, sides, strict=True):
         whole = sum(other.stiffness for other in station.pads if other.side == pad.side)
         there = station.law.one_sided(side)
         assert there is not None
@@ -135,13 +125,13 @@ def _pair_forces(station: Station, pushes: Array) -> list[float]:
 def loaded_pads(station: Station, sides: Sequence[Array]) -> list[tuple[PadSize, Array]]:
     """Return the pads of known size at a station, each with its forces (num_states,) in N.
 
-    ``sides`` are the forces (num_states,) on the two sides in N, in the order of ``SIGNS``, not
+    ``sides`` are the forces (num_states,) on the two sides in N, in the order of ``EACH_SIDE``, not
     negative.
     """
     joint, loads = station.joint, list[tuple[PadSize | None, Array]]()
     if joint is None or not joint.padded:
         return []
-    for side, force in zip(SIGNS, sides, strict=True):
+    for side, force in zip(EACH_SIDE, sides, strict=True):
         # Pairs with thicker shims close first.
         pairs = sorted(joint.pads_of(station.direction, side), key=lambda pair: -pair[2])
         shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))

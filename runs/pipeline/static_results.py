@@ -25,9 +25,10 @@ from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import contact_centres
 from protractile.geometry.cylinder import forces
+from protractile.geometry.section import EACH_SIDE
 from protractile.geometry.telescoping import station_positions, travel
 from protractile.runs.case.motion_tables import resolving_times
-from protractile.runs.pipeline.pads import SIGNS, loaded_pads, side_force
+from protractile.runs.pipeline.pads import loaded_pads, side_force
 from protractile.runs.pipeline.section_forces import LoadedModel, round_values
 
 # Extensions that differ by less than this fraction count as equal.
@@ -266,7 +267,7 @@ def station_loads(boom: Boom, system: GapSystem, states: Array) -> list[list[Sta
         none = np.zeros(len(gaps))
         sides = [
             sum((side_force(system.laws[row], side, gaps[:, row]) for row in here), none)
-            for side in SIGNS
+            for side in EACH_SIDE
         ]
         pads = loaded_pads(station, sides)
         used = [
@@ -298,7 +299,7 @@ def _closed_play(system: GapSystem, gaps: Array, rows: Indices) -> Array:
     It is the mean approach on the right less that on the left.
     """
     right, left = (
-        [row for row in rows if np.isfinite(system.laws[row].onset(side))] for side in SIGNS
+        [row for row in rows if np.isfinite(system.laws[row].onset(side))] for side in EACH_SIDE
     )
     if not (right and left):
         return np.zeros(len(gaps))

@@ -18,14 +18,12 @@ import numpy as np
 from protractile.dynamics.gap_builder import GapBuilder, LawRow
 from protractile.geometry.boom import Boom, BoomError, Direction
 from protractile.geometry.contact_places import ContactLine, Pad, Patch, pads, stop_patches
-from protractile.geometry.section import Offset, Section, Side
+from protractile.geometry.section import EACH_SIDE, Offset, Section, Side
 from protractile.geometry.telescoping import drives_below
 from protractile.shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
 from protractile.shell_model.contact.wall_rows import CornerLines, Wall, WallPoints, gauss
 from protractile.shell_model.segment.cross_section import Operator, Row, SectionNodes
 from protractile.shell_model.segment.segment_shell import SegmentShell
-
-_SIDES: tuple[Side, Side] = (1, -1)
 
 # Numbers of Gauss points of a patch, along x and across.
 _POINTS = 4
@@ -54,7 +52,7 @@ class _PadOperators:
             slide = self.at_corners(pad.sliding_direction, pad.inner, pad.outer)
             return [(pad.side, pad.weight, approach)], slide
         points = []
-        for side in (pad.side,) if pad.side else _SIDES:
+        for side in (pad.side,) if pad.side else EACH_SIDE:
             if pad.patch is not None:
                 right, left = (self.over_patch(pad.patch, side, half) for half in (1, -1))
                 points.append((side, pad.weight, 0.5 * right + 0.5 * left))
@@ -176,7 +174,7 @@ class ShellContacts:
             # A stop touches a flange at both webs.
             flanges = [
                 (side, 1.0, Operator({segment: lines.deflection(interval, "z", 0.0, side)}))
-                for side in _SIDES
+                for side in EACH_SIDE
             ]
             rows.add_stop(rest.station.index, rest.station.law, flanges)
         return rows

@@ -6,8 +6,9 @@ import pytest
 
 from protractile.beam_model.calibration import Calibration, Stiffness
 from protractile.beam_model.finite_element import finite_element_segments
-from protractile.beam_model.segment_model import EACH_SIDE, gap_system
+from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import PowerContact
+from protractile.geometry.section import EACH_SIDE
 from protractile.runs.case.build import build_boom
 from protractile.runs.pipeline.model_run import calibration_card
 from studies.motions import friction_case

@@ -23,7 +23,7 @@ from tests.system.run_folder import ROOT, python
 # What each room knows besides itself.
 BELOW = {"geometry", "dynamics"}
 ROOMS = {
-    "geometry": set[str](),
+    "geometry": {"dynamics"},
     "dynamics": set[str](),
     "beam_model": BELOW,
     "shell_model": BELOW,
@@ -112,6 +112,12 @@ def test_nothing_imports_a_client(client: str, trees: dict[str, ast.Module]) -> 
     others = [name for name in trees if not name.startswith((package, "studies"))]
     assert 150 < len(others) < len(trees)
     assert [name for name in others if package in ast.unparse(trees[name])] == []
+
+
+def test_geometry_knows_contact_laws_only(graph: dict[str, set[str]]) -> None:
+    known = {one for name in graph if room_of(name) == "geometry" for one in graph[name]}
+    assert {one for one in known if room_of(one) == "dynamics"} == {"protractile.dynamics.contact"}
+    assert graph["protractile.dynamics.contact"] == {"protractile.dynamics.arrays"}
 
 
 def answer(*arguments: str, program: str = PROGRAM) -> tuple[str, set[str]]:

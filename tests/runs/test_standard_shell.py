@@ -13,7 +13,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from protractile.beam_model.segment_model import EACH_SIDE, gap_system
+from protractile.beam_model.segment_model import gap_system
 from protractile.beam_model.statics import Elements
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
@@ -22,6 +22,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Cylinder, Load, PointMass, SlidePad, Stop
+from protractile.geometry.section import EACH_SIDE
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.pipeline.model_output import ShellOutput

@@ -10,7 +10,7 @@ from mpi4py import MPI
 
 from protractile.beam_model.calibration import residual_compliance
 from protractile.beam_model.finite_element import finite_element_segments
-from protractile.beam_model.segment_model import EACH_SIDE, gap_system
+from protractile.beam_model.segment_model import gap_system
 from protractile.beam_model.statics import static_state
 from protractile.beam_model.wall_compliance import contact_compliance, station_compliance
 from protractile.dynamics.contact import PowerContact
@@ -21,6 +21,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.boom import Boom, Collar, Joint, PadSize, Segment, Support
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import hexagon, octagon, u_section
+from protractile.geometry.section import EACH_SIDE
 from protractile.geometry.segment import PointMass
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import reduce_boom
