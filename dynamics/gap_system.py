@@ -72,7 +72,7 @@ class GapSystem:
         damping: (num_modes,) c = 2ζω in 1/s; zero unless given.
         dashpots: (num_dashpots, num_modes) rows Z in 1/√s; none unless given.
         friction_rows: (num_frictions, num_modes) sliding rows D in 1/√kg; none unless given.
-        frictions: friction law of each friction row.
+        frictions: friction law of each friction row; with travels, one coefficient at each station.
         excitations: loads that change with time.
         station_directions: direction of the relative displacement at each station; "z" for all
             unless given.
@@ -144,6 +144,13 @@ class GapSystem:
                 raise ValueError(f"{name} must hold positions in stations")
         if any(not 0 <= friction.station < places for friction in self.frictions):
             raise ValueError("the station of a friction must be a position in stations")
+        coefficients: dict[int, float] = {}
+        for station, given in ((one.station, one.coefficient) for one in self.frictions):
+            if self.travels and coefficients.setdefault(station, given) != given:
+                raise ValueError(
+                    "the frictions of a station that may telescope must have one coefficient, got "
+                    f"{coefficients[station]:g} and {given:g} at {self.stations[station]:g} m"
+                )
         if any(not 0 <= row < m for friction in self.frictions for row in friction.normal_rows):
             raise ValueError("normal_rows must hold positions in rows")
         if len(self.station_directions) != places:

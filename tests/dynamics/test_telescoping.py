@@ -254,6 +254,12 @@ _TABLE = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 1, 1)))
                             station_of_row=np.zeros(0, dtype=int)),
             "travel 0 must move rows of the system",
         ),
+        (
+            lambda: replace(lossy(SCurve(1.0, 1.0)), friction_rows=np.ones((2, 9)),
+                            frictions=[DryFriction(0.3, 0, 400.0), DryFriction(0.2, 0, 400.0)]),
+            "the frictions of a station that may telescope must have one coefficient, got 0.3 and "
+            "0.2 at 2 m",
+        ),
     ],
 )  # fmt: skip
 def test_complaints(make: Any, message: str) -> None:
