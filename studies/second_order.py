@@ -9,7 +9,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from mpi4py import MPI
 
 from protractile.beam_model.boom_modes import critical_factor
 from protractile.beam_model.elements import Theory
@@ -22,8 +21,6 @@ from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Material, Segment, Support
 from protractile.geometry.load import Load
 from protractile.geometry.section import BoxSection
-from protractile.shell_model.boom_shell import ShellOptions
-from protractile.shell_model.reduced_shell import reduce_boom
 from studies.reference_models.statics import static_response
 from studies.study import Progress, Verification, define_study
 
@@ -81,6 +78,11 @@ def series(boom: Boom) -> tuple[GapSystem, float | None]:
 
 def shell(boom: Boom) -> tuple[GapSystem, float | None]:
     """Return the reduced shell of a box, and its critical factor."""
+    from mpi4py import MPI
+
+    from protractile.shell_model.boom_shell import ShellOptions
+    from protractile.shell_model.reduced_shell import reduce_boom
+
     reduced = reduce_boom(boom, ShellOptions(mesh_size=MESH_SIZE), MPI.COMM_SELF)
     return reduced.system, reduced.critical_factor
 

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+import protractile.shell_model  # noqa: F401 # DOLFINx's wheel is imported after it
 from protractile.dynamics.contact import PowerContact
 from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
 from protractile.geometry.section import infer_inner_section, infer_outer_section
