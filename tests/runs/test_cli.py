@@ -302,6 +302,7 @@ def test_a_beam_is_exported_without_fenicsx(protractile: Protractile) -> None:
 
 def test_ranks_of_another_mpi_are_refused(tmp_path: Path) -> None:
     """Each of two processes that MPICH starts is the only rank of Open MPI."""
+    pytest.importorskip("mpi4py", reason="ranks need mpi4py")
     variables = {"PMI_RANK": "0", "PMI_SIZE": "2"} if launcher() == "mpirun" else {"PMIX_RANK": "0"}
     command = "-m", "protractile", "run", "case.toml", "--models", "shell"
     ended = in_a_process(tmp_path, *command, **variables)

@@ -167,6 +167,7 @@ def test_run_reports_stick_slip(tmp_path: Path) -> None:
 
 def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
     """Reference: analytic, the shell's own friction; other code, beam elements, by 1e-3."""
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     beam = '[[model]]\nname = "timoshenko"'
     coarse = 'kind = "shell"\nmesh_size = 1.0\ncontact_tolerance = "any"'
     changes = {

@@ -6,6 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
 from mpi4py import MPI
 
 from protractile.runs import CASES
