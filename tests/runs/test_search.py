@@ -101,18 +101,18 @@ def test_search_with_governing_walls_gives_a_caution() -> None:
          "--until: 'tip=0.9' is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER"),
         (("--vary", LENGTHS, "--vary", "segment.load=1,2", "--until", "tip<0.9"),
          "--until: 2 keys vary; give one --vary"),
-        # At 5 m the tip is 5.0625 mm, whose fourth digit depends on round-off.
-        (("--vary", "segment[1].length=3,4", "--until", "tip_at_rest<0.5"),
+        # At 3 m the tip is 5.0625 mm, whose fourth digit depends on round-off.
+        (("--vary", "segment[1].length=4,5", "--until", "tip_at_rest<0.5"),
          "--until: static tip deflection (maximum load) does not pass 500 mm over "
-         f"segment[1].length, where it is {1e3 * static_tip(3.0):.4g} mm to "
-         f"{1e3 * static_tip(4.0):.4g} mm; give values of segment[1].length around one place "
+         f"segment[1].length, where it is {1e3 * static_tip(4.0):.4g} mm to "
+         f"{1e3 * static_tip(5.0):.4g} mm; give values of segment[1].length around one place "
          "where it does"),
     ],
 )  # fmt: skip
 def test_a_search_without_an_aim_is_refused(
     arguments: tuple[str, ...], line: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Reference: analytic, static tips of lengths of 3 and 4 m."""
+    """Reference: analytic, static tips of lengths of 4 and 5 m."""
     assert sweep(*arguments, "--out", "out") == 2
     assert capsys.readouterr().err == f"protractile: case.toml: {line}\n"
 
