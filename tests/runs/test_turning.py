@@ -31,6 +31,7 @@ from protractile.runs.case.reading import CheckedCase, load
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context, State
 from protractile.runs.cautions.response import swings, turning
+from protractile.runs.check import check_case
 from protractile.runs.pipeline.estimates import Preview
 from protractile.runs.pipeline.models import axial_travels
 from protractile.runs.pipeline.turning import (
@@ -120,6 +121,18 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
     state = State("in beam", frequencies=[0.5])
     (slew,) = turning(Context(case, build_boom(case), [state]))
     assert slew.startswith("slew: the boom turns with 8.33 % of its first circular freq")
+
+
+def test_check_cautions_on_fast_slewing(tmp_path: Path) -> None:
+    """Reference: by hand, 30 of 360 degrees per second over the frequency that ``check`` prints."""
+    fast = slewing_arm(tmp_path, SLEW.replace("speed = 15.0", "speed = 30.0"))
+    lines = check_case(CheckedCase(fast)).lines
+    (first,) = (line for line in lines if line.startswith("First natural frequency"))
+    part = 30.0 / 360.0 / float(first.split(": ")[1].split()[0])
+    (caution,) = (line for line in lines if "Coriolis" in line)
+    assert caution.startswith(
+        f"caution: slew: the boom turns with {100.0 * part:.3g} % of its first"
+    )
 
 
 @pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
