@@ -64,7 +64,7 @@ class _Loaded:
         observed = {"tip": OutputOperator(Operator({0: tip}))}
         touching = ShellContacts(Boom((shell.segment,), ()), "near webs", [], [], [])
         self.few, self.all = (
-            BoomShell(MPI.COMM_WORLD, [shell], [], touching, GapBuilder(), [], [push], [], observed)
+            BoomShell(MPI.COMM_WORLD, [shell], touching, GapBuilder(), [], [push], [], observed)
             for push in (narrow, load)
         )
 
