@@ -202,7 +202,7 @@ def test_all_imports_begin_with_the_name_of_the_program() -> None:
     files = [
         path for room in (*ROOMS, "tests", "docs", "examples") for path in (ROOT / room).rglob("*")
     ]
-    texts = [path for path in files if path.suffix in {".py", ".md", ".ipynb"}]
+    texts = [path for path in files if path.suffix in {".py", ".pyi", ".md", ".ipynb"}]
     assert len(texts) > 400
     assert [path for path in texts if OLD_IMPORT.search(path.read_text("utf-8"))] == []
 

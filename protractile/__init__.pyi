@@ -1,6 +1,4 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Public names of the package."""
-
 # ruff: isort: skip_file
 
 # What a boom is made of
