@@ -226,12 +226,18 @@ def axial_stresses(context: Context) -> Iterator[str]:
 
 def bulges(context: Context) -> Iterator[str]:
     """Yield a caution for each model at rest whose bulging walls reduce lateral plays."""
-    plays = {x: one.lateral_play or 0.0 for one in context.boom.joints for x in one.stations}
     for state in context.states:
+        # A bonded model has no loads of stations.
+        loads = state.rest.stations if state.rest else ()
+        plays = [
+            (station.joint.lateral_play or 0.0, load)
+            for station, load in zip(context.boom.stations, loads, strict=False)
+            if station.joint is not None and station.direction == "y"
+        ]
         parts = [
-            f"{TO_MILLI * one.closed:.2g} of {TO_MILLI * plays[one.x]:g} mm at x = {one.x:g} m"
-            for one in (state.rest.stations if state.rest else ())
-            if one.direction == "y" and one.closed > BULGED * plays[one.x]
+            f"{TO_MILLI * load.closed:.2g} of {TO_MILLI * play:g} mm at x = {load.x:g} m"
+            for play, load in plays
+            if load.closed > BULGED * play
         ]
         if parts:
             yield (

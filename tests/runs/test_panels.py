@@ -3,6 +3,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from protractile.geometry.material import Material
 from protractile.geometry.section import BoxSection
 from protractile.geometry.segment import Segment
+from protractile.geometry.station import stations
 from protractile.runs import CASES
 from protractile.runs.case import reading
 from protractile.runs.case.build import build_boom
@@ -142,12 +144,18 @@ def test_bulging_walls_give_a_caution() -> None:
     (bulging,) = station_loads(boom, replace(system, rows=rows), position[None])
     assert [one.closed / play for one in bulging] == pytest.approx([0.0, 0.0, 0.05, 0.3])
 
-    static = StaticResult(0.0, 0.0, 0.0, [], [], bulging, {})
-    assert [*bulges(Context(case, boom, [State("in shell", rest=static)]))] == [
+    told = [
         "in shell, static pad forces make walls bulge, which reduces the lateral play: by "
         f"{300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams with rigid walls do not "
         "show this"
     ]
+    static = StaticResult(0.0, 0.0, 0.0, [], [], bulging, {})
+    assert [*bulges(Context(case, boom, [State("in shell", rest=static)]))] == told
+    # Stations of another joint at the same places have their own play.
+    joints = boom.joints[0], replace(boom.joints[0], lateral_play=10.0 * play)
+    two = SimpleNamespace(stations=stations(joints, (), ("y",)))
+    static = StaticResult(0.0, 0.0, 0.0, [], [], 2 * [*bulging[2:]], {})
+    assert [*bulges(Context(case, two, [State("in shell", rest=static)]))] == told
 
 
 def test_check_names_plays_closed_by_walls() -> None:
