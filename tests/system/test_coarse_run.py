@@ -192,7 +192,7 @@ def test_fields_of_another_version_are_one_line(
     )
 
 
-@pytest.mark.usefixtures("few_figures", "_short_film")
+@pytest.mark.usefixtures("opengl", "few_figures", "_short_film")
 def test_a_run_without_opengl_says_so_and_goes_on(
     again: Path, short: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
