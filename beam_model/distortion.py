@@ -121,7 +121,7 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
 
     around = [collars_at(x) for x in 0.5 * (axis.nodes[:-1] + axis.nodes[1:])]
     frames = {
-        # Sections are frozen, which the protocol does not say.
+        # Sections are frozen dataclasses, which have a hash. A protocol cannot tell this.
         collars: _frame(segment.material, section, collars)  # type: ignore[arg-type]
         for collars in dict.fromkeys((*around, *map(collars_at, places)))
     }

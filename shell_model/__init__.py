@@ -8,4 +8,4 @@ from contextlib import suppress
 # aborts under the launcher of Open MPI, which `runs.process.ranks` refuses.
 if "PMIX_RANK" not in os.environ:
     with suppress(ImportError):
-        import dolfinx_solver  # noqa: F401 # its import alone does it
+        import dolfinx_solver  # noqa: F401 # its import loads MPI

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-import protractile.shell_model  # noqa: F401 # DOLFINx's wheel is imported after it
+import protractile.shell_model  # noqa: F401 # its import loads MPI before DOLFINx
 from protractile.dynamics.contact import PowerContact
 from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
 from protractile.geometry.section import infer_inner_section, infer_outer_section
@@ -176,7 +176,7 @@ def opengl() -> None:
 def ranks_in(folder: Path) -> Callable[..., subprocess.CompletedProcess[str]]:
     """Return a runner of Python programs on a number of ranks in a folder."""
     if shutil.which(launcher()) is None:
-        pytest.skip("several ranks take mpirun, which is not installed")
+        pytest.skip(f"several ranks take {launcher()}, which is not installed")
     # A test worker that has entered MPI by itself must not pass its own rank on.
     outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
     environment = {

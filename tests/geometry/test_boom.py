@@ -340,7 +340,8 @@ def test_impossible_numbers_are_refused(
     assert str(error.value) == f"{part.__name__}.{key}: must be a number {message}"
 
 
-# Calls of Python, by their messages. Type checkers find some of these mistakes, too.
+# Wrong calls of Python, by their messages. Each ignored error is the mistake that is tested, which
+# type checkers find, too.
 SLIPS: dict[str, Callable[[], object]] = {
     "Cylinder.ground: missing; give ground=… by name; it is the other end in m, which does not "
     "luff: { front, below }, its distances in front of and below the foot pin in earth axes; or "

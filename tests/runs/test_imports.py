@@ -192,8 +192,9 @@ def test_the_packages_are_found_by_themselves() -> None:
     assert program()["sources"] == sources(packages())
 
 
+# At the start of a line, also of one within a text of a program.
 OLD_IMPORT = re.compile(
-    r"^\W*(from|import) (geometry|dynamics|beam_model|shell_model|runs)\b", re.M
+    r"(^\W*|\\n)(from|import) (geometry|dynamics|beam_model|shell_model|runs)\b", re.M
 )
 
 

@@ -18,7 +18,7 @@ _SHELL = "--models", "shell", "--mesh-size", "1"
 # In the names of all that is not whole yet.
 IN_THE_MAKING = "protractile-"
 # The command, with one figure, which is written as all of them are.
-COMMAND = f"{ONE_BLANK_FIGURE}\nfrom runs import cli\ncli.main()\n"
+COMMAND = f"{ONE_BLANK_FIGURE}\nfrom protractile.runs import cli\ncli.main()\n"
 
 
 def rows(folder: Path, tries: int = 3) -> Iterator[Row]:

@@ -155,7 +155,7 @@ class ModelTable(CaseTable):
 
     # With this private attribute pydantic validates without __init__: a case file must give name
     # and kind. Functions are typed without attributes.
-    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined] # see above
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined] # for pydantic
 
     def __init_subclass__(cls, init: bool = True) -> None:
         """Accept ``init=False``, by which type checkers take the constructor from this class."""
