@@ -14,6 +14,11 @@ import numpy as np
 
 from protractile.dynamics.arrays import Array, are_finite, is_finite
 
+# Minimum number of sampling times, number per period of the fastest history, and maximum number.
+_TIMES, _PER_PERIOD, _MOST_TIMES = 2001, 100, 1_000_001
+# Two times closer than this fraction of the duration count as one.
+_SAME_TIME = 1.0e-9
+
 
 @runtime_checkable
 class History(Protocol):
@@ -492,6 +497,23 @@ def is_constant(history: History) -> bool:
     times = np.array([0.0, *ahead, 1.0 + max(ahead, default=0.0)])
     changes = history.fastest > 0.0 or bool(np.ptp(history(times)))
     return history.peak == 0.0 or not changes
+
+
+def resolving_times(histories: Sequence[History], duration: float) -> Array:
+    """Return ascending times (num_times,) in s, up to ``duration``, that resolve all histories.
+
+    >>> from protractile.dynamics.excitation import resolving_times
+    >>> 0.01 in resolving_times([pt.Ramp(0.01)], 1000.0)
+    True
+    """
+    times = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
+    kinks = np.unique(np.array(times))
+    cycles = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
+    number = int(np.clip(np.ceil(_PER_PERIOD * cycles) + 1.0, _TIMES, _MOST_TIMES))
+    uniform_times = np.linspace(0.0, duration, number)
+    nearest = np.clip(np.rint(kinks / uniform_times[1]), 1, number - 2).astype(np.int64)
+    same = np.abs(uniform_times[nearest] - kinks) <= _SAME_TIME * duration
+    return np.union1d(np.delete(uniform_times, nearest[same]), kinks)
 
 
 def _check_positive(name: str, value: float, unit: str) -> None:

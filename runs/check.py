@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.console import Console
 
+from protractile.analysis.plate_buckling import weakest_panels
 from protractile.beam_model.statics import StaticState
 from protractile.dynamics.damping import closed_contact_damping
 from protractile.dynamics.failure import NUMERICAL_ERRORS
@@ -34,7 +35,6 @@ from protractile.runs.pipeline.drives import drive_lines, stick_slip_lines
 from protractile.runs.pipeline.estimates import Preview, run_cost
 from protractile.runs.pipeline.largest_loads import BeamStates, beam_note, static_table
 from protractile.runs.pipeline.load_table import load_table
-from protractile.runs.pipeline.panels import panel_table, weakest_panels
 from protractile.runs.pipeline.statics import (
     Statics,
     contact_and_support_reactions,
@@ -47,6 +47,7 @@ from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.runs.report.boom_tables import (
     joint_table,
     mass_table,
+    panel_table,
     segment_table,
     stiffener_table,
 )

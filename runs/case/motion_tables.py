@@ -3,13 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from protractile.dynamics.arrays import Array
 from protractile.dynamics.excitation import (
     History,
     MotionLaw,
@@ -18,6 +16,7 @@ from protractile.dynamics.excitation import (
     Shaped,
     Spline,
     Stroke,
+    resolving_times,
 )
 from protractile.geometry.boom import BoomError
 from protractile.geometry.fields import (
@@ -35,11 +34,6 @@ from protractile.runs.case.load_tables import HistoryTable
 
 # Shorter times in s are input errors.
 _MIN_TIME = 1.0e-6
-
-# Minimum number of sampling times, number per period of the fastest history, and maximum number.
-_TIMES, _PER_PERIOD, _MOST_TIMES = 2001, 100, 1_000_001
-# Two times closer than this fraction of the duration count as one.
-_SAME_TIME = 1.0e-9
 
 Ratio = Annotated[float, Field(strict=True, ge=0.0, lt=1.0)]
 
@@ -166,23 +160,6 @@ def max_speed(history: History) -> float:
     """Return the largest speed in m/s of a travel in m that varies over time."""
     times = resolving_times([history], max(history.kinks))
     return float(np.abs(np.diff(history(times)) / np.diff(times)).max())
-
-
-def resolving_times(histories: Sequence[History], duration: float) -> Array:
-    """Return ascending times (num_times,) in s, up to ``duration``, that resolve all histories.
-
-    >>> from protractile.runs.case.motion_tables import resolving_times
-    >>> 0.01 in resolving_times([pt.Ramp(0.01)], 1000.0)
-    True
-    """
-    times = [kink for history in histories for kink in history.kinks if 0.0 < kink <= duration]
-    kinks = np.unique(np.array(times))
-    cycles = max((history.fastest for history in histories), default=0.0) * duration / (2.0 * np.pi)
-    number = int(np.clip(np.ceil(_PER_PERIOD * cycles) + 1.0, _TIMES, _MOST_TIMES))
-    uniform_times = np.linspace(0.0, duration, number)
-    nearest = np.clip(np.rint(kinks / uniform_times[1]), 1, number - 2).astype(np.int64)
-    same = np.abs(uniform_times[nearest] - kinks) <= _SAME_TIME * duration
-    return np.union1d(np.delete(uniform_times, nearest[same]), kinks)
 
 
 class LuffTable(TravelTable):

@@ -9,14 +9,14 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Self
 
+from protractile.analysis.plate_buckling import PanelBuckling
+from protractile.analysis.states import StaticResult
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.drives import StickSlipEstimate, stick_slip_estimates
 from protractile.runs.pipeline.largest_loads import BeamStates, StaticExtreme
 from protractile.runs.pipeline.pad_walls import wall_part
-from protractile.runs.pipeline.panels import PanelBuckling
-from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.pipeline.statics import boom_with_play
 
 if TYPE_CHECKING:

@@ -15,6 +15,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.path import Path
 
+from protractile.analysis.equilibria import equilibria, extended_equilibria, instants
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.motion_results import MotionResult
+from protractile.analysis.states import Diagram, StaticResult
+from protractile.analysis.stresses import FibreStress, fibre_forces, largest_stresses
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.trajectory import Trajectory
@@ -37,18 +42,7 @@ from protractile.runs.pipeline.estimates import Cost, motion_cost
 from protractile.runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
 from protractile.runs.pipeline.model_run import summarise_motion
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
-from protractile.runs.pipeline.motion_results import MotionResult
-from protractile.runs.pipeline.pads import pad_loads
-from protractile.runs.pipeline.results import Results, label
-from protractile.runs.pipeline.section_forces import LoadedModel
-from protractile.runs.pipeline.static_results import (
-    Diagram,
-    StaticResult,
-    extended_positions,
-    instants,
-    positions,
-)
-from protractile.runs.pipeline.strength import FibreStress, fibre_forces, largest_stresses
+from protractile.runs.pipeline.results import Results, label, pads_of_models
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.report import symbols, theme
 from protractile.runs.report.charts import Chart, Curve
@@ -114,22 +108,22 @@ def beam_results(
     loaded = loaded_model(boom, model, built)
     duration = case.time.duration
     check_current()
-    equilibria = positions(loaded.system, instants(loaded.system, duration))
-    if not equilibria:
+    rests = equilibria(loaded.system, instants(loaded.system, duration))
+    if not rests:
         raise NumericsError("the beam has no static equilibrium under the loads at t = 0")
     check_current()
     plan = MotionPlan.of(built.system, case, model)
     _check_cost(motion_cost(checked, model, plan.motion, built.system.num_modes), case, draft.file)
-    extended = extended_positions(loaded.system, duration)
-    design = results_at_rest(loaded, equilibria, extended)
+    extended = extended_equilibria(loaded.system, duration)
+    design = results_at_rest(loaded, rests, extended)
     forces = [[station.force for station in rest.stations] for rest in design.static]
     station_forces = xr.Dataset(
         {"contact_force_peak": (("model", "time", "station"), [forces])},
         coords={"model": [model.name]},
     )
-    fibres = MotionResult([], [], list(_fibres(loaded, [*equilibria.values()])), [])
+    fibres = MotionResult([], [], list(_fibres(loaded, [*rests.values()])), [])
     results = _results(case, replace(design, motion=fibres), station_forces)
-    results.summary.pads = list(pad_loads(case, boom, station_forces))
+    results.summary.pads = list(pads_of_models(case, boom, station_forces))
     farthest, table = design.farthest_static, summary_table(results)
     assert farthest is not None
     assert table is not None
@@ -152,7 +146,7 @@ def beam_results(
     ):
         trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
-        complete = with_motion(design, loaded, equilibria | extended, trajectory, case, model)
+        complete = with_motion(design, loaded, rests | extended, trajectory, case, model)
         results = _results(case, complete, label(boom, {model.name: trajectory}))
         summary = summarise_motion(
             model, plan.motion.system, trajectory, built.num_dofs, design.static[0].tip
@@ -204,9 +198,9 @@ def _results(case: Case, results_of_model: ModelDesignResults, data: xr.Dataset)
     ))  # fmt: skip
 
 
-def _fibres(loaded: LoadedModel, equilibria: Sequence[Any]) -> Iterator[FibreStress]:
+def _fibres(loaded: AnalysisModel, rests: Sequence[Any]) -> Iterator[FibreStress]:
     """Yield the largest fibre stress of each segment over static states (num_modes,)."""
-    states, times = np.array(equilibria), np.zeros(len(equilibria))
+    states, times = np.array(rests), np.zeros(len(rests))
     for segment, fibres, curves in fibre_forces(loaded, states, times):
         yield largest_stresses(segment, fibres, curves, curves, times)[0]
 

@@ -9,11 +9,11 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+from protractile.analysis.low_pass import slow_peaks
 from protractile.geometry.arrays import Array, Mask
 from protractile.runs.case.kinds.kantorovich import Kantorovich
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.schema import Case, Model
-from protractile.runs.pipeline.low_pass import slow_peaks
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import ModelSummary
 

@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from protractile.analysis.stresses import WallStress
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.typography import join_words
 from protractile.runs.case.build import build_boom
@@ -28,7 +29,6 @@ from protractile.runs.pipeline.largest_loads import (
     without_negligible,
 )
 from protractile.runs.pipeline.statics import boom_with_play
-from protractile.runs.pipeline.strength import WallStress
 from protractile.runs.pipeline.wall_buckling import WallBuckling
 from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.runs.report.formatting import amount

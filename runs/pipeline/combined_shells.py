@@ -15,6 +15,9 @@ from dataclasses import replace
 
 import numpy as np
 
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.plate_buckling import weakest_panels
+from protractile.analysis.stresses import wall_stresses
 from protractile.dynamics.excitation import InitialImpulse, PiecewiseLinear, ReleasedLoad, Step
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.axial import AxialChange
@@ -28,9 +31,6 @@ from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.combinations import CombinationState
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.model_output import force_places
-from protractile.runs.pipeline.panels import weakest_panels
-from protractile.runs.pipeline.section_forces import LoadedModel
-from protractile.runs.pipeline.strength import wall_stresses
 from protractile.runs.pipeline.wall_buckling import buckle_shell
 
 # History of a released load in static states: 1 at t = 0, then 0.
@@ -139,7 +139,7 @@ def _state(
     factor = None
     try:
         with np.errstate(all="ignore"):
-            loaded = LoadedModel.of(boom, system, lines)
+            loaded = AnalysisModel.of(boom, system, lines)
             beam = BeamStates.at_rest(loaded, combined.case.time.duration)
             if boom.compressed:
                 loads = map(system.load_at, beam.time.tolist())

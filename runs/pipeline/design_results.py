@@ -7,16 +7,16 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from math import hypot
 
+from protractile.analysis.fatigue import Life
+from protractile.analysis.modes import Mode, ModeComparison
+from protractile.analysis.motion_results import MotionResult
+from protractile.analysis.plate_buckling import PanelBuckling
+from protractile.analysis.states import StaticResult
 from protractile.runs.case.schema import Model
 from protractile.runs.pipeline.combinations import CombinationResult
-from protractile.runs.pipeline.modes import Mode, ModeComparison
-from protractile.runs.pipeline.motion_results import MotionResult
-from protractile.runs.pipeline.panels import PanelBuckling
 from protractile.runs.pipeline.proofs import Proofs
 from protractile.runs.pipeline.residual_vibration import ResidualVibration
-from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.pipeline.statics import Reaction
-from protractile.runs.pipeline.strength import Life
 from protractile.runs.pipeline.turning import CraneDrives, Hoisting
 from protractile.runs.pipeline.wall_buckling import WallBuckling
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from protractile.analysis.equilibria import equilibria, extended_equilibria, instants
 from protractile.beam_model.statics import telescoping_system
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.stick_slip import ElasticDrive
@@ -18,7 +19,6 @@ from protractile.geometry.units import System
 from protractile.runs.case.motion_tables import max_speed
 from protractile.runs.case.motions import elastic_drives, with_elastic_drives
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.static_results import extended_positions, instants, positions
 from protractile.runs.pipeline.statics import boom_with_play, statics
 
 # Upper limit of (R_s − R)/(v √(k m)) in the search for the critical speed.
@@ -112,7 +112,7 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
     from protractile.dynamics.time_step import axial_friction
 
     duration, most = case.time.duration, 0.0
-    rests = positions(system, instants(system, duration)) | extended_positions(system, duration)
+    rests = equilibria(system, instants(system, duration)) | extended_equilibria(system, duration)
     for time, position in rests.items():
         gaps = system.at_time(time).rows @ position
         forces = [law.force(gap) for law, gap in zip(system.laws, gaps, strict=True)]

@@ -9,10 +9,22 @@ from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
-from scipy.linalg import eigh, null_space
 
+from protractile.analysis.bonded import bonded_system
+from protractile.analysis.equilibria import (
+    equilibria,
+    extended_equilibria,
+    instants,
+    vibrating_state,
+)
+from protractile.analysis.fatigue import HAS_RAINFLOW, life
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.modes import ModeComparison, match_modes, modes
+from protractile.analysis.motion_results import evaluate_motion
+from protractile.analysis.plate_buckling import weakest_panels
+from protractile.analysis.states import static_results
+from protractile.analysis.stresses import wall_stresses
 from protractile.dynamics.failure import NUMERICAL_ERRORS
-from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
@@ -25,37 +37,22 @@ from protractile.runs.pipeline.design_results import DesignResults, ModelDesignR
 from protractile.runs.pipeline.model_quality import quality_notes, reference_of
 from protractile.runs.pipeline.model_run import ModelRun
 from protractile.runs.pipeline.models import MotionPlan, complete_system
-from protractile.runs.pipeline.modes import ModeComparison, match_modes, modes
-from protractile.runs.pipeline.motion_results import evaluate_motion
-from protractile.runs.pipeline.panels import weakest_panels
 from protractile.runs.pipeline.proofs import prove
 from protractile.runs.pipeline.residual_vibration import residual_vibration
-from protractile.runs.pipeline.section_forces import LoadedModel
-from protractile.runs.pipeline.static_results import (
-    extended_positions,
-    instants,
-    positions,
-    static_results,
-    vibrating_state,
-)
 from protractile.runs.pipeline.statics import reactions, statics
-from protractile.runs.pipeline.strength import HAS_RAINFLOW, life, wall_stresses
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.pipeline.turning import crane_drives, hoisting
 
-# Modes with ω² below this fraction of the smallest positive ω² of the segments count as rigid.
-_RIGID_FRACTION = 1.0e-6
 
-
-def loaded_model(boom: Boom, model: Model, built: BuiltModel) -> LoadedModel:
+def loaded_model(boom: Boom, model: Model, built: BuiltModel) -> AnalysisModel:
     """Return a built model of a boom under all constant loads."""
     boom_of_model = boom.bonded if model.bonded else boom
-    return LoadedModel.of(boom_of_model, built.system, model.lines(boom, built))
+    return AnalysisModel.of(boom_of_model, built.system, model.lines(boom, built))
 
 
 def results_at_rest(
-    loaded: LoadedModel,
-    equilibria: Mapping[float, Array],
+    loaded: AnalysisModel,
+    rests: Mapping[float, Array],
     extended: Mapping[float, Array] = MappingProxyType({}),
 ) -> ModelDesignResults:
     """Return modes and static states at equilibria.
@@ -67,28 +64,29 @@ def results_at_rest(
         static_results(loaded, np.array([*positions]), np.array([*positions.values()]))
         if positions
         else []
-        for positions in (equilibria, extended)
+        for positions in (rests, extended)
     )
     first = []
-    if equilibria:
-        still, rest = vibrating_state(loaded.system, equilibria)
+    if rests:
+        still, rest = vibrating_state(loaded.system, rests)
         first = modes(replace(loaded, system=still), rest)
     return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
 
 
 def with_motion(
     results: ModelDesignResults,
-    loaded: LoadedModel,
-    equilibria: Mapping[float, Array],
+    loaded: AnalysisModel,
+    rests: Mapping[float, Array],
     trajectory: Trajectory,
     case: Case,
     model: Model,
 ) -> ModelDesignResults:
     """Return static results, completed by results of the motion and by fatigue damage."""
-    rest_positions = np.array([*equilibria.values()]).reshape(-1, loaded.system.num_modes)
+    rest_positions = np.array([*rests.values()]).reshape(-1, loaded.system.num_modes)
     static = [*results.static, *results.static_extended]
     motion, varying = evaluate_motion(loaded, trajectory, rest_positions, static, not model.smooth)
-    lives = [life(one, case.life) for one in varying] if HAS_RAINFLOW else []
+    fatigue = case.life.detail_category, case.life.partial_factor, case.life.repeats
+    lives = [life(one, *fatigue) for one in varying] if HAS_RAINFLOW else []
     return replace(results, motion=motion, life=lives)
 
 
@@ -97,10 +95,10 @@ def evaluate_model(boom: Boom, case: Case, ran: ModelRun, bonded: bool) -> Model
     model, trajectory, shell = ran.model, ran.motion.trajectory, ran.shell
     loaded, duration = loaded_model(boom, model, ran.built), case.time.duration
     times = instants(loaded.system, duration)
-    equilibria = positions(loaded.system, times)
-    extended = extended_positions(loaded.system, duration)
-    results = results_at_rest(loaded, equilibria, extended)
-    results = with_motion(results, loaded, equilibria | extended, trajectory, case, model)
+    rests = equilibria(loaded.system, times)
+    extended = extended_equilibria(loaded.system, duration)
+    results = results_at_rest(loaded, rests, extended)
+    results = with_motion(results, loaded, rests | extended, trajectory, case, model)
     if shell is not None:
         assert results.motion is not None
         motion = replace(results.motion, walls=wall_stresses(loaded.boom, shell.stresses))
@@ -117,7 +115,7 @@ def evaluate_model(boom: Boom, case: Case, ran: ModelRun, bonded: bool) -> Model
     if not bonded or model.bonded or not boom.joints:
         return results
     try:
-        without_play = _bonded_model(boom, case, model, loaded, equilibria)
+        without_play = _bonded_model(boom, case, model, loaded, rests)
         return _add_bonded(results, boom, case, model, without_play, times)
     except NUMERICAL_ERRORS:
         # Rigid segments without play, for example, have no degree of freedom.
@@ -129,12 +127,12 @@ def _add_bonded(
     boom: Boom,
     case: Case,
     model: Model,
-    bonded: LoadedModel,
+    bonded: AnalysisModel,
     times: Sequence[float],
 ) -> ModelDesignResults:
     """Return design results, completed by static results at ``times`` and a motion without play."""
-    equilibria = positions(bonded.system, times)
-    other = results_at_rest(bonded, equilibria)
+    rests = equilibria(bonded.system, times)
+    other = results_at_rest(bonded, rests)
     results = replace(
         results,
         static_bonded=[state for state in other.static if _at_initial_extension(boom, state.time)],
@@ -146,7 +144,7 @@ def _add_bonded(
         return results
     try:
         motion = MotionPlan.of(bonded.system, case, model).trajectory()
-        other = with_motion(other, bonded, equilibria, motion, case, model)
+        other = with_motion(other, bonded, rests, motion, case, model)
     except NUMERICAL_ERRORS:
         # The static results remain valid.
         return results
@@ -154,20 +152,18 @@ def _add_bonded(
 
 
 def _bonded_model(
-    boom: Boom, case: Case, model: Model, loaded: LoadedModel, equilibria: Mapping[float, Array]
-) -> LoadedModel:
+    boom: Boom, case: Case, model: Model, loaded: AnalysisModel, rests: Mapping[float, Array]
+) -> AnalysisModel:
     """Return the model with all joints bonded, without play."""
     without = boom.bonded
     if (bonded := model.system_without_play(boom)) is not None:
         lines = bonded[1]
-        return LoadedModel.of(without, complete_system(bonded[0], case, without, lines), lines)
-    initial = [
-        position for time, position in equilibria.items() if _at_initial_extension(boom, time)
-    ]
+        return AnalysisModel.of(without, complete_system(bonded[0], case, without, lines), lines)
+    initial = [position for time, position in rests.items() if _at_initial_extension(boom, time)]
     initial_system = loaded.system.at_time(0.0) if boom.telescopes else loaded.system
     system, basis = bonded_system(initial_system, initial)
     system = with_initial_slack(system, case)
-    return LoadedModel(without, system, [line.transform(basis) for line in loaded.lines])
+    return AnalysisModel(without, system, [line.transform(basis) for line in loaded.lines])
 
 
 def _at_initial_extension(boom: Boom, time: float) -> bool:
@@ -212,59 +208,3 @@ def _compare_modes(
     reference_modes = models[reference].modes
     matches = {name: match_modes(boom, reference_modes, models[name].modes) for name in others}
     return ModeComparison(reference, matches)
-
-
-def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem, Array]:
-    """Return the bonded system, and its modes (num_modes, num_bonded_modes) in those of ``system``.
-
-    Contacts that are closed in a static state are bonded. At a station without closed contacts, all
-    contacts are bonded. So are those of a lateral station, since walls that bulge under vertical
-    pads press on both lateral pads. Local compliance, for example of a shell's walls, remains. The
-    contacts of stops on the ground are kept.
-
-    >>> from protractile.runs.pipeline.evaluation import bonded_system
-    >>> pair = replace(ball, omega2=np.array([0.0, 4.0]), load=np.zeros(2), stations=[1.0],
-    ...     rows=np.array([[1.0, -1.0]]), observers={}, damping=np.zeros(2),
-    ...     released_load=np.zeros(2), initial_impulse=np.zeros(2), dashpots=np.zeros((0, 2)),
-    ...     friction_rows=np.zeros((0, 2)))
-    >>> bonded_system(pair, [np.zeros(2)])[0].omega2.round(6)
-    array([2.])
-
-    Args:
-        system: gap system with its contacts; no segment telescopes.
-        rests: equilibria (num_modes,); contacts that are closed in one of them are bonded.
-    """
-    on_ground = np.isin(system.station_of_row, system.grounded)
-    closed_contacts = np.zeros(len(system.laws), dtype=bool)
-    for rest in rests:
-        gaps = system.rows @ rest
-        closed_contacts |= [bool(law.force(y)) for law, y in zip(system.laws, gaps, strict=True)]
-    closed_stations = np.isin(system.station_of_row, system.station_of_row[closed_contacts])
-    lateral = np.array(system.station_directions)[system.station_of_row] == "y"
-    bonded_rows = system.rows[~on_ground & (closed_contacts | ~closed_stations | lateral)]
-    free = null_space(bonded_rows) if bonded_rows.size else np.eye(system.num_modes)
-    omega2, shapes = eigh(free.T @ system.stiffness @ free)
-    least = _RIGID_FRACTION * min(system.omega2[system.omega2 > 0.0], default=0.0)
-    omega2[np.abs(omega2) <= least] = 0.0
-    basis = free @ shapes
-    grounded = list(system.grounded)
-    stays = np.flatnonzero(on_ground)
-    moved, place_of = system.transform(omega2, basis), {row: k for k, row in enumerate(stays)}
-    bonded = replace(
-        moved,
-        rows=system.rows[stays] @ basis,
-        laws=[system.laws[row] for row in stays],
-        station_of_row=np.array(
-            [grounded.index(system.station_of_row[row]) for row in stays], dtype=np.int64
-        ),
-        stations=[system.stations[station] for station in grounded],
-        station_directions=[system.station_directions[station] for station in grounded],
-        grounded=range(len(grounded)),
-        friction_rows=np.zeros((0, omega2.size)),
-        frictions=(),
-        travels=[
-            replace(one, moved_rows=[("rows", place_of[row]) for _, row in one.moved_rows])
-            for one in moved.travels
-        ],
-    )
-    return bonded, basis

@@ -12,6 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from protractile.analysis.fatigue import HAS_RAINFLOW, MEGA, count_stress_ranges, endurance
+from protractile.analysis.stresses import Fibres
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.runs.case.build import build_boom
@@ -19,13 +21,6 @@ from protractile.runs.case.combinations import combine
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.statics import boom_with_play
-from protractile.runs.pipeline.strength import (
-    HAS_RAINFLOW,
-    MEGA,
-    Fibres,
-    count_stress_ranges,
-    endurance,
-)
 
 # Number of cross-sections of a segment at which the worst weld is sought.
 _SECTIONS = 41

@@ -14,6 +14,10 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
+from protractile.analysis.equilibria import equilibria, instants
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.states import StaticResult, StationLoad, static_results, station_loads
+from protractile.analysis.stresses import Utilisation, fibre_forces, largest_stresses
 from protractile.beam_model.boom_modes import BoomModes
 from protractile.beam_model.lines import lines_of_modes
 from protractile.beam_model.statics import Elements, loaded_system, static_theory
@@ -29,16 +33,6 @@ from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.load_table import release_note
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
-from protractile.runs.pipeline.section_forces import LoadedModel
-from protractile.runs.pipeline.static_results import (
-    StaticResult,
-    StationLoad,
-    instants,
-    positions,
-    static_results,
-    station_loads,
-)
-from protractile.runs.pipeline.strength import Utilisation, fibre_forces, largest_stresses
 from protractile.runs.report.formatting import amount, without_round_off
 from protractile.runs.report.tables import Column, Table
 
@@ -79,7 +73,7 @@ class StaticExtreme(NamedTuple):
 class BeamStates:
     """States of a boom without drives under the loads at several times, at rest or in motion."""
 
-    model: LoadedModel  #: the model of the boom
+    model: AnalysisModel  #: the model of the boom
     time: Array  #: (num_states,) in s
     positions: Array  #: modal coordinates (num_states, num_modes)
 
@@ -130,10 +124,10 @@ class BeamStates:
         )
         # The coordinates of wall springs come after the coordinates of the segments.
         along = [line.extend(system.num_modes) for line in lines_of_modes(boom, modes)]
-        return cls.at_rest(LoadedModel.of(boom, system, along), case.time.duration)
+        return cls.at_rest(AnalysisModel.of(boom, system, along), case.time.duration)
 
     @classmethod
-    def at_rest(cls, model: LoadedModel, duration: float) -> BeamStates:
+    def at_rest(cls, model: AnalysisModel, duration: float) -> BeamStates:
         """Return the static states of a model at t = 0 and under extreme loads.
 
         ``duration`` in s is that of the histories of the loads.
@@ -141,10 +135,10 @@ class BeamStates:
         Raises:
             NumericsError: the boom has no equilibrium at t = 0.
         """
-        equilibria = positions(model.system, instants(model.system, duration))
-        if not equilibria:
+        rests = equilibria(model.system, instants(model.system, duration))
+        if not rests:
             raise NumericsError("the boom has no static equilibrium under the loads at t = 0")
-        return cls(model, np.array([*equilibria]), np.array([*equilibria.values()]))
+        return cls(model, np.array([*rests]), np.array([*rests.values()]))
 
     @classmethod
     def in_motion(cls, case: Case) -> BeamStates:
@@ -160,7 +154,7 @@ class BeamStates:
         joined = model.model_boom(build_boom(case))
         built = build_on(joined, case, model)
         trajectory = MotionPlan.of(built.system, case, model).trajectory()
-        loaded = LoadedModel.of(joined.boom, built.system, model.lines(joined.boom, built))
+        loaded = AnalysisModel.of(joined.boom, built.system, model.lines(joined.boom, built))
         return cls(loaded, trajectory.time, trajectory.states)
 
     def at_extremes(self) -> BeamStates:

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from protractile.analysis.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.integrator import FixedStep
@@ -19,7 +20,6 @@ from protractile.dynamics.motion import Motion
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.boom import Boom
 from protractile.runs.case.schema import TimeTable
-from protractile.runs.pipeline.low_pass import CUTOFF_SHARE, SlowPeaks, slow_peaks
 from protractile.runs.pipeline.summary import StepsForPeaks, Trial
 
 if TYPE_CHECKING:

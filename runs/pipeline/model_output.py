@@ -17,14 +17,14 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from protractile.analysis.equilibria import equilibria
+from protractile.analysis.modes import MODES
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.line import Line, Quantity
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
-from protractile.runs.pipeline.modes import MODES
 from protractile.runs.pipeline.results import CONVENTIONS
-from protractile.runs.pipeline.static_results import positions
 from protractile.runs.pipeline.wall_buckling import BuckledShell
 from protractile.shell_model.stress.history import StressSummary, stress_near_places, summarise
 from protractile.shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
@@ -162,7 +162,7 @@ def _modes(reduced: ReducedShell) -> dict[str, Any]:
     """Return dataset variables of the modes with closed contacts, scaled to a maximum of 1 m."""
     assert reduced.fields is not None
     system = reduced.system.gather_loads()
-    rest = positions(system)
+    rest = equilibria(system)
     if not rest:
         return {}
     omega, shapes = closed_contact_modes(system, rest[0.0])

@@ -11,10 +11,10 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 import xarray as xr
 
+from protractile.analysis.comparison import Distributions, PeakDifferences, compare
 from protractile.dynamics.trajectory import PointwiseDifferences
 from protractile.geometry.typography import TO_PERCENT, join_words
 from protractile.runs.case.schema import Case, Model, TimeTable
-from protractile.runs.pipeline.comparison import Distributions, PeakDifferences, compare
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
 from protractile.runs.pipeline.summary import Comparisons, Summary, WholeRun
 from protractile.runs.report.formatting import number, signed_percent

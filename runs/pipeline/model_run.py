@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from protractile.analysis.low_pass import SlowPeaks
 from protractile.beam_model.calibration import Calibration, Stiffness
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
@@ -33,7 +34,6 @@ from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.folder.cache import Cache, key
 from protractile.runs.pipeline import members
-from protractile.runs.pipeline.low_pass import SlowPeaks
 from protractile.runs.pipeline.model_output import ShellOutput
 from protractile.runs.pipeline.models import MotionPlan, build, reduction_error
 from protractile.runs.pipeline.summary import (

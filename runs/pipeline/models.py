@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from scipy.linalg import block_diag
 
+from protractile.analysis.equilibria import instants
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.hanging_load import HangingLoad
@@ -24,7 +25,6 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext, BuiltModel, ModelBoom, ModelTable
 from protractile.runs.case.motions import hanging_load, with_elastic_drives, with_hanging_load
 from protractile.runs.case.schema import Case, Model
-from protractile.runs.pipeline.static_results import instants
 from protractile.runs.process.terminal import NOTICES, shorten
 
 if TYPE_CHECKING:

@@ -13,9 +13,14 @@ from typing import NamedTuple
 
 import numpy as np
 
+from protractile.analysis.plate_buckling import (
+    nominal_wall_stresses,
+    reduced_stress,
+    reduction_factors,
+    relative_slenderness,
+)
 from protractile.beam_model.statics import estimate_critical_factor
 from protractile.dynamics.failure import NumericsError
-from protractile.geometry.arrays import Array
 from protractile.geometry.cylinder import force_name
 from protractile.geometry.units import System
 from protractile.runs.case.load_tables import CombinationTable
@@ -23,12 +28,6 @@ from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.combinations import CombinationState
 from protractile.runs.pipeline.fatigue import detail_damages
 from protractile.runs.pipeline.largest_loads import BeamStates
-from protractile.runs.pipeline.panels import (
-    WallStresses,
-    nominal_wall_stresses,
-    panel_factor,
-    stress_ratio,
-)
 from protractile.runs.report.formatting import amount
 from protractile.runs.report.tables import Column, Table
 from protractile.shell_model.stress.history import BAND
@@ -257,69 +256,6 @@ def _wall_text(name: str) -> str:
     return f"{side} side, wall {number} from below" if number else f"{side} wall"
 
 
-def reduced_stress(
-    wall: WallStresses, strength: float, curve: Sequence[tuple[float, float]] = ()
-) -> Array:
-    """Return the equivalent stress (num_places,) of a wall in Pa, increased for buckling.
-
-    √((σ/ρ)² + 3 (τ/χ)²) with the largest compression σ of the mid-line (EN 1993-1-5, 10 (5) b).
-
-    Args:
-        wall: stresses of a wall.
-        strength: yield strength in Pa.
-        curve: pairs of slenderness and reduction factor, for ρ and χ; if empty, :func:`winter` and
-            :func:`shear_reduction` apply.
-    """
-    largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
-    slenderness = _slenderness(wall, strength)
-    along, across = _reductions(slenderness, stress_ratio(wall.edges), curve)
-    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * wall.shear / across))
-
-
-def _slenderness(wall: WallStresses, strength: float) -> Array:
-    """Return the slenderness λ̄ (num_places,) of a wall with a yield strength in Pa."""
-    largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
-    equivalent = np.sqrt(largest_compression**2 + 3.0 * wall.shear**2)
-    critical = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
-    with np.errstate(divide="ignore"):
-        # Without stress the factor is infinite, and the slenderness zero.
-        relative = np.where(equivalent > 0.0, strength / equivalent, 0.0) / critical
-    return np.asarray(np.sqrt(relative))
-
-
-def _reductions(
-    slenderness: float | Array, ratio: float | Array, curve: Sequence[tuple[float, float]]
-) -> tuple[Array, Array]:
-    """Return the reduction factors ρ and χ, both by the curve if it is not empty.
-
-    Beyond the curve they fall as the stress of elastic buckling, with 1/λ̄². Postbuckling strength
-    falls less steeply, so that this is safe.
-    """
-    if curve:
-        beyond = np.maximum(slenderness, curve[-1][0]) / curve[-1][0]
-        both = np.asarray(np.interp(slenderness, *np.transpose(curve)) / beyond**2)
-        return both, both
-    return winter(slenderness, ratio), shear_reduction(slenderness)
-
-
-def winter(slenderness: float | Array, ratio: float | Array = 1.0) -> Array:
-    """Return the reduction factor ρ of an internal wall (Winter 1947; EN 1993-1-5, (4.2)).
-
-    Args:
-        slenderness: λ̄, the square root of strength over critical stress.
-        ratio: ψ, the stress at the other edge over the largest compression.
-    """
-    slenderness, ratio = np.asarray(slenderness, dtype=float), np.maximum(ratio, -3.0)
-    stocky = slenderness <= 0.5 + np.sqrt(0.085 - 0.055 * ratio)
-    square = np.where(stocky, 1.0, slenderness**2)
-    return np.asarray(np.where(stocky, 1.0, (slenderness - 0.055 * (3.0 + ratio)) / square))
-
-
-def shear_reduction(slenderness: float | Array) -> Array:
-    """Return the factor χ of a wall in shear, 0.83/λ̄ ≤ 1 (EN 1993-1-5, table 5.1, η = 1)."""
-    return np.asarray(0.83 / np.maximum(slenderness, 0.83))
-
-
 def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
     """Yield the proofs that use wall stresses and buckling factors of a shell."""
     beam, factors = state.beam, state.combined.combination.resistance
@@ -345,7 +281,7 @@ def _shell_proofs(state: CombinationState, case: Case) -> Iterator[Proof]:
             for wall in walls
         )
         slenderness = float(np.sqrt(strength / (stress * one.factors[0])))
-        reduction = float(min(_reductions(slenderness, 1.0, curve)))
+        reduction = float(min(reduction_factors(slenderness, 1.0, curve)))
         place = f"{one.segment}, {_wall_text(one.walls[0])}"
         resistance = reduction * strength / factors.stability
         yield Proof("buckling", one.segment, place, one.x[0], stress, resistance, "Pa")
@@ -415,7 +351,7 @@ def _curve_note(case: Case, states: Sequence[CombinationState]) -> Iterator[str]
         for wall in nominal_wall_stresses(state.beam.boom.segments, state.beam.rests)
     ]
     slender = [
-        (float(_slenderness(wall, strength).max()), wall)
+        (float(relative_slenderness(wall, strength).max()), wall)
         for wall in walls
         if (strength := wall.segment.material.strength(wall.plate.thickness)) is not None
     ]

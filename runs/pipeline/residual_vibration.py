@@ -15,12 +15,12 @@ from typing import Annotated
 import numpy as np
 
 from protractile.dynamics.equilibrium import equilibrium_at
+from protractile.dynamics.excitation import resolving_times
 from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.trajectory import Trajectory
 from protractile.dynamics.travel import Travel
 from protractile.geometry.arrays import Array, Indices
-from protractile.runs.case.motion_tables import resolving_times
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.metrics import Metric, Record
 from protractile.runs.pipeline.models import MotionPlan

@@ -14,6 +14,8 @@ import numpy as np
 import xarray as xr
 from pydantic import ValidationError
 
+from protractile.analysis.motion_results import MotionResult
+from protractile.analysis.pads import PadLoad, pad_loads
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import forces
@@ -37,8 +39,6 @@ from protractile.runs.folder.files import (
 from protractile.runs.pipeline.design_results import ModelDesignResults, PlayEffect
 from protractile.runs.pipeline.metrics import metrics, records
 from protractile.runs.pipeline.model_quality import main_models, reference_of
-from protractile.runs.pipeline.motion_results import MotionResult
-from protractile.runs.pipeline.pads import pad_loads
 from protractile.runs.pipeline.quantities import (
     QUANTITIES,
     RECORD_CLASSES,
@@ -131,7 +131,7 @@ class Results:
     def conclude(self) -> None:
         """Add pad loads and cautions to the summary."""
         case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
-        summary.pads = list(pad_loads(case, boom, data))
+        summary.pads = list(pads_of_models(case, boom, data))
         summary.cautions = cautions(Context.of_run(case, boom, data, summary))
 
     def save(self, folder: Path | str) -> None:
@@ -276,6 +276,18 @@ class Results:
             for name in self.main_models
             if name in designs and (moved := designs[name].motion) is not None
         }
+
+
+def pads_of_models(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
+    """Yield the pad loads of all models with play in the trajectories."""
+    if not any(joint.padded for joint in boom.joints):
+        return
+    with_play = (model for model in case.models if not model.bonded)
+    for model in (model for model in with_play if model.name in data["model"].values):
+        peaks = data["contact_force_peak"].sel(model=model.name).transpose("time", "station").values
+        yield from pad_loads(
+            model.name, model.model_boom(boom).boom, peaks, net=not model.needs_shell
+        )
 
 
 def prepare(out: str, file: str) -> Path:

@@ -29,8 +29,7 @@ from protractile.runs.pipeline.model_run import (
     failure_reason,
     run_model,
 )
-from protractile.runs.pipeline.pads import pad_loads
-from protractile.runs.pipeline.results import CONVENTIONS, Results, label
+from protractile.runs.pipeline.results import CONVENTIONS, Results, label, pads_of_models
 from protractile.runs.pipeline.summary import Ensembles, Summary, check_finite
 
 
@@ -74,7 +73,7 @@ class Run:
         """Add pad forces and the design results with play to the summary."""
         results, summary = self.results, self.results.summary
         summary.design = DesignResults(models=self._evaluate_models(bonded=False))
-        summary.pads = list(pad_loads(results.case, results.boom, results.trajectories))
+        summary.pads = list(pads_of_models(results.case, results.boom, results.trajectories))
         check_finite(summary)
 
     def _evaluate_models(self, bonded: bool) -> dict[str, ModelDesignResults]:

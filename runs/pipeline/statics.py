@@ -11,6 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from protractile.analysis.equilibria import vibrating_system
+from protractile.analysis.states import station_loads
 from protractile.beam_model.statics import Elements, StaticState, net_reactions, static_state
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.excitation import Step
@@ -24,7 +26,6 @@ from protractile.geometry.cylinder import force_name
 from protractile.geometry.load import Load
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.models import complete_system
-from protractile.runs.pipeline.static_results import station_loads, vibrating_system
 
 # Elements of the longest segment; a frequency has an error below 0.01 %.
 _ELEMENTS = 8

@@ -16,16 +16,16 @@ from typing import Annotated, NamedTuple, Self
 from pydantic import BaseModel, BeforeValidator, ConfigDict
 from pydantic_core import to_jsonable_python
 
+from protractile.analysis.comparison import Comparison
+from protractile.analysis.low_pass import SlowPeaks
+from protractile.analysis.pads import PadLoad
+from protractile.analysis.stresses import Utilisation
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.predictability import Horizons
 from protractile.dynamics.stick_slip import StickSlip
 from protractile.runs.case.schema import EnsembleTable
-from protractile.runs.pipeline.comparison import Comparison
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
-from protractile.runs.pipeline.low_pass import SlowPeaks
 from protractile.runs.pipeline.metrics import Metric
-from protractile.runs.pipeline.pads import PadLoad
-from protractile.runs.pipeline.strength import Utilisation
 from protractile.shell_model.stress.history import StressSummary
 
 # Number in JSON: None replaces NaN and infinity.

@@ -11,13 +11,12 @@ import numpy as np
 
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
-from protractile.dynamics.excitation import HistorySum, MotionLaw, Shaped
+from protractile.dynamics.excitation import HistorySum, MotionLaw, Shaped, resolving_times
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.axial import lumped_masses
 from protractile.geometry.boom import Boom
 from protractile.geometry.telescoping import drives_of
-from protractile.runs.case.motion_tables import resolving_times
 from protractile.runs.case.motions import frame_motion, hanging_load
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.metrics import Metric, Record

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from protractile.analysis.equilibria import equilibria, extended_equilibria, instants
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.boom import Boom
 from protractile.geometry.telescoping import travel
 from protractile.runs.case.kinds.model import BuiltModel
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.static_results import extended_positions, instants, positions
 
 # Relative difference below which two displacements of a mode count as equal.
 _MIRRORED = 1.0e-3
@@ -92,13 +92,13 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> ShellState | No
     from protractile.shell_model.buckling import ShellState
 
     system, duration = built.system.gather_loads(), case.time.duration
-    equilibria = positions(system, instants(system, duration))
-    equilibria |= extended_positions(system, duration)
-    if not equilibria:
+    rests = equilibria(system, instants(system, duration))
+    rests |= extended_equilibria(system, duration)
+    if not rests:
         return None
     names = [name for name in ("tip", "tip_lateral") if name in system.observers]
     tips = np.array([system.observers[name].row for name in names])
-    time = max(equilibria, key=lambda time: float(np.linalg.norm(tips @ equilibria[time])))
+    time = max(rests, key=lambda time: float(np.linalg.norm(tips @ rests[time])))
     distances = [travel(boom, number, time) for number in range(len(boom.segments))]
     extensions = {
         number: distances[joint.inner] - distances[joint.outer]
@@ -106,9 +106,7 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> ShellState | No
     }
     assert built.shell is not None
     assert built.shell.fields is not None
-    return ShellState.from_fields(
-        built.shell.fields, system.at_time(time), equilibria[time], extensions
-    )
+    return ShellState.from_fields(built.shell.fields, system.at_time(time), rests[time], extensions)
 
 
 def with_locations(name: str, buckling: SegmentBuckling) -> WallBuckling:

@@ -16,11 +16,11 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
+from protractile.analysis.states import StaticResult
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import join_words
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.results import Results
-from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve
 

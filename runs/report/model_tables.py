@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
+from protractile.analysis.stresses import utilisation
 from protractile.dynamics.predictability import SHARES
 from protractile.geometry.boom import Boom
 from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
 from protractile.runs.pipeline.metrics import metrics
 from protractile.runs.pipeline.results import Results
-from protractile.runs.pipeline.strength import utilisation
 from protractile.runs.pipeline.summary import CalibrationCard, ModelSummary
 from protractile.runs.report.formatting import number, percent
 from protractile.runs.report.tables import Cell, Column, Table

@@ -8,10 +8,10 @@ from functools import partial
 
 import numpy as np
 
+from protractile.analysis.comparison import Comparison, PeakDifferences
+from protractile.analysis.low_pass import SlowPeaks
 from protractile.dynamics.predictability import SHARES
 from protractile.geometry.typography import TO_MILLI, with_minus_signs
-from protractile.runs.pipeline.comparison import Comparison, PeakDifferences
-from protractile.runs.pipeline.low_pass import SlowPeaks
 from protractile.runs.pipeline.model_quality import SCOPES
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import Ensembles, ModelSummary, Predictability, WholeRun

@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from protractile.analysis.states import StaticResult
 from protractile.geometry.typography import TO_MILLI, with_minus_signs
 from protractile.runs.pipeline.design_results import ModelDesignResults
-from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.report import formatting, theme
 from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.figure_context import (

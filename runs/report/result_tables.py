@@ -8,16 +8,16 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from protractile.analysis.motion_results import Peak
+from protractile.analysis.states import StaticResult
 from protractile.geometry.cylinder import force_name
 from protractile.runs.case.motions import frame_motion
 from protractile.runs.pipeline.combinations import combination_tables
 from protractile.runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from protractile.runs.pipeline.metrics import records
-from protractile.runs.pipeline.motion_results import Peak
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
 from protractile.runs.pipeline.proofs import proof_table
 from protractile.runs.pipeline.results import Results
-from protractile.runs.pipeline.static_results import StaticResult
 from protractile.runs.report.figure_context import extension_note
 from protractile.runs.report.formatting import ROUND_OFF, amount, number, without_round_off
 from protractile.runs.report.model_tables import metric_columns

@@ -8,6 +8,10 @@ from textwrap import fill
 
 import numpy as np
 
+from protractile.analysis.low_pass import mean_period
+from protractile.analysis.motion_results import Peak
+from protractile.analysis.pads import PadLoad
+from protractile.analysis.stresses import Utilisation
 from protractile.geometry.typography import (
     TO_MEGA,
     TO_MILLI,
@@ -17,14 +21,10 @@ from protractile.geometry.typography import (
 )
 from protractile.runs.pipeline.design_results import ModelDesignResults, PlayDifference
 from protractile.runs.pipeline.load_table import release_note
-from protractile.runs.pipeline.low_pass import mean_period
 from protractile.runs.pipeline.model_quality import static_deviation
-from protractile.runs.pipeline.motion_results import Peak
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
-from protractile.runs.pipeline.pads import PadLoad
 from protractile.runs.pipeline.quantities import decay_time
 from protractile.runs.pipeline.results import Results
-from protractile.runs.pipeline.strength import Utilisation
 from protractile.runs.report.figure_context import farthest, tip_directions
 from protractile.runs.report.formatting import (
     NONE,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from protractile.analysis.low_pass import mean_period
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.predictability import SHARES, EnsembleMember, Vary, horizon, run_members
 from protractile.geometry.arrays import Array
@@ -20,7 +21,6 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.folder.cache import Cache
-from protractile.runs.pipeline.low_pass import mean_period
 from protractile.runs.pipeline.metrics import Metric
 from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.pipeline.quantities import Quantities

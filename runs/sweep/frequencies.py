@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import xarray as xr
 
+from protractile.analysis.equilibria import vibrating_system
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.arrays import Array
@@ -25,7 +26,6 @@ from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
 from protractile.runs.pipeline.models import build_on
 from protractile.runs.pipeline.results import CONVENTIONS
-from protractile.runs.pipeline.static_results import vibrating_system
 from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.runs.report.tables import Column, Table
 from protractile.runs.sweep.figures import draw_frequencies

@@ -9,6 +9,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
+from protractile.analysis.model import AnalysisModel
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.folder.cache import Cache
@@ -16,7 +17,6 @@ from protractile.runs.pipeline.combinations import CombinationState
 from protractile.runs.pipeline.combined_shells import shell_states
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.proofs import prove
-from protractile.runs.pipeline.section_forces import LoadedModel
 from tests.runs.case_texts import read_case
 from tests.runs.test_combinations import CASES, FACTORS, LIFT
 from tests.system.run_folder import protractile
@@ -65,7 +65,7 @@ def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationSta
         joined = shell.model_boom(boom)
         built = shell.build(joined, BuildContext(MPI.COMM_WORLD))
         lines = shell.lines(joined.boom, built)
-        loaded = LoadedModel.of(joined.boom, built.system, lines)
+        loaded = AnalysisModel.of(joined.boom, built.system, lines)
         alone = BeamStates.at_rest(loaded, case.time.duration)
         expected = {one.name: one.largest for one in alone.extremes(case.system)}
         for one in state.result.extremes:

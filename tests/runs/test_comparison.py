@@ -10,6 +10,8 @@ import pytest
 import xarray as xr
 from scipy.stats import norm
 
+from protractile.analysis.comparison import Distributions, PeakDifferences, compare
+from protractile.analysis.low_pass import SlowPeaks, filter_low_pass, slow_peaks
 from protractile.cases import change
 from protractile.dynamics.motion import Motion
 from protractile.dynamics.predictability import integrate_ensemble
@@ -17,8 +19,6 @@ from protractile.dynamics.trajectory import PointwiseDifferences
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.schema import Case, StopTable
 from protractile.runs.paper.run_query import final_differences, peak_distances
-from protractile.runs.pipeline.comparison import Distributions, PeakDifferences, compare
-from protractile.runs.pipeline.low_pass import SlowPeaks, filter_low_pass, slow_peaks
 from protractile.runs.pipeline.model_quality import compare_models, reference_of
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.additions import Addition

@@ -10,13 +10,13 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure as Sheet
 
+from protractile.analysis.low_pass import mean_period
 from protractile.cases import change, run_case
 from protractile.dynamics.predictability import measure_horizons
 from protractile.runs import CASES
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.folder.cache import Cache
-from protractile.runs.pipeline.low_pass import mean_period
 from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.sweep import output
 from protractile.runs.sweep import run as sweep_run

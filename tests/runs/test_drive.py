@@ -10,10 +10,9 @@ from matplotlib import rc_context
 
 from protractile.cases import change, run_case
 from protractile.dynamics.equilibrium import equilibrium
-from protractile.dynamics.excitation import PiecewiseLinear
+from protractile.dynamics.excitation import PiecewiseLinear, resolving_times
 from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
-from protractile.runs.case.motion_tables import resolving_times
 from protractile.runs.pipeline.drives import drive_lines
 from protractile.runs.pipeline.models import build
 from protractile.runs.report import theme

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from protractile.analysis.bonded import bonded_system
 from protractile.cases import change, run_case
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
@@ -22,7 +23,6 @@ from protractile.runs.case.reading import CheckedCase, select
 from protractile.runs.case.schema import Case, EnsembleTable
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.combinations import combination_results, combination_states
-from protractile.runs.pipeline.evaluation import bonded_system
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.models import build, initial_motion
 from protractile.runs.pipeline.statics import boom_with_play, state_at_rest

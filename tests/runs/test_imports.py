@@ -27,9 +27,10 @@ ROOMS = {
     "dynamics": set[str](),
     "beam_model": BELOW,
     "shell_model": BELOW,
-    "runs": BELOW | {"beam_model", "shell_model"},
-    "protractile": BELOW | {"beam_model", "shell_model", "runs"},
-    "studies": BELOW | {"beam_model", "shell_model", "runs", "protractile"},
+    "analysis": BELOW | {"beam_model", "shell_model"},
+    "runs": BELOW | {"beam_model", "shell_model", "analysis"},
+    "protractile": BELOW | {"beam_model", "shell_model", "analysis", "runs"},
+    "studies": BELOW | {"beam_model", "shell_model", "analysis", "runs", "protractile"},
 }
 OF_RUNS = {
     "basix", "dolfinx", "gmsh", "matplotlib", "mpi4py", "numba", "pandas", "petsc4py", "pyvista",

@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from protractile.analysis.model import section_forces
+from protractile.analysis.stresses import Fibres, outer_corners
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.lines import lines
 from protractile.beam_model.segment_model import gap_system
@@ -29,9 +31,7 @@ from protractile.runs.pipeline.largest_loads import (
 )
 from protractile.runs.pipeline.load_table import load_table
 from protractile.runs.pipeline.pad_walls import wall_part
-from protractile.runs.pipeline.section_forces import section_forces
 from protractile.runs.pipeline.statics import boom_with_play, reactions, statics
-from protractile.runs.pipeline.strength import Fibres, outer_corners
 from studies.reference_models.statics import static_response
 from tests.runs.case_texts import (
     CLAMPED,

@@ -9,9 +9,9 @@ import pytest
 
 pytest.importorskip("rainflow", reason="the cycles are counted by it")
 
+from protractile.analysis.fatigue import count_stress_ranges, endurance, life
+from protractile.analysis.stresses import StressCurve
 from protractile.cases import run_case
-from protractile.runs.case.schema import LifeTable
-from protractile.runs.pipeline.strength import StressCurve, count_stress_ranges, endurance, life
 from tests.runs.case_texts import CLAMPED, STEEL, box, elements, read_case
 
 
@@ -30,9 +30,7 @@ def test_a_repetition_of_loading_also_unloads() -> None:
     rise = 100e6 * np.minimum(np.linspace(0.0, 2.0, 401), 1.0)
     noise = 1e4 * np.resize([0.0, 1.0], 200)
     rise[-200:] -= noise
-    found = life(
-        StressCurve("a", (0.0, 0.0, 0.1), rise), LifeTable(detail_category=71.0, repeats=20_000)
-    )
+    found = life(StressCurve("a", (0.0, 0.0, 0.1), rise), 71.0, 1.0, 20_000)
     assert found.cycles == 1.0
     assert found.life_damage == pytest.approx(20_000 / 2e6 * (100.0 / 71.0) ** 3, rel=1e-6)
 
@@ -88,8 +86,7 @@ def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
     """Reference: by hand, 10/2e6 (115/71)³ for a run, and the equivalent range 10^⅓ 100 MPa."""
     time = np.linspace(0.0, 10.0, 10 * 400 + 1)
     stress = 50e6 * np.cos(2.0 * np.pi * time)
-    table = LifeTable(detail_category=71.0, partial_factor=1.15, repeats=20_000)
-    found = life(StressCurve("arm", (2.0, 0.0, 0.1), stress), table)
+    found = life(StressCurve("arm", (2.0, 0.0, 0.1), stress), 71.0, 1.15, 20_000)
     assert (found.segment, found.x, found.z) == ("arm", 2.0, 0.1)
     assert found.cycles == pytest.approx(10.0)
     assert found.damage == pytest.approx(10.0 / 2e6 * (115.0 / 71.0) ** 3, rel=1e-9)
@@ -98,5 +95,5 @@ def test_damage_of_a_sine_equals_the_damage_of_its_cycles() -> None:
     assert found.counts[-1] == pytest.approx(10.0)
     assert sum(found.counts) == pytest.approx(found.cycles)
     # Without a category ranges are counted alone.
-    still = life(StressCurve("arm", (2.0, 0.0, 0.1), np.zeros(5)), LifeTable())
+    still = life(StressCurve("arm", (2.0, 0.0, 0.1), np.zeros(5)), None, 1.0, 1.0)
     assert (still.cycles, still.largest, still.equivalent, still.damage) == (0.0, 0.0, 0.0, None)

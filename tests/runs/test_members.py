@@ -10,6 +10,7 @@ import pytest
 import xarray as xr
 from matplotlib.figure import Figure as Sheet
 
+from protractile.analysis.low_pass import SlowPeaks, slow_peaks
 from protractile.cases import change
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import AdaptiveStep
@@ -17,7 +18,6 @@ from protractile.dynamics.motion import Motion
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case, EnsembleTable
-from protractile.runs.pipeline.low_pass import SlowPeaks, slow_peaks
 from protractile.runs.pipeline.members import PEAKS, slow_cutoff, steps_for_peaks
 from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.models import build

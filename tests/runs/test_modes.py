@@ -8,6 +8,8 @@ from typing import get_args
 import numpy as np
 import pytest
 
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.modes import Mode, match_modes, modes
 from protractile.beam_model.component import SegmentModel
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.kantorovich import kantorovich_segments
@@ -18,8 +20,6 @@ from protractile.dynamics.damping import closed_contact_modes
 from protractile.geometry.boom import Boom, Material, Segment, Support
 from protractile.geometry.section import BoxSection
 from protractile.runs.case.kinds import KINDS
-from protractile.runs.pipeline.modes import Mode, match_modes, modes
-from protractile.runs.pipeline.section_forces import LoadedModel
 from tests.runs.case_texts import COARSE, read_case, refusal
 from tests.runs.test_actions import CANTILEVER
 from tests.runs.test_statics import ball
@@ -41,7 +41,7 @@ def arm(spatial_boom: Boom, steel: Material) -> Boom:
 
 def found(boom: Boom, models: list[SegmentModel]) -> list[Mode]:
     system = gap_system(boom.bonded, models)
-    return modes(LoadedModel.of(boom, system, lines(boom, models)), np.zeros(system.num_modes))
+    return modes(AnalysisModel.of(boom, system, lines(boom, models)), np.zeros(system.num_modes))
 
 
 def test_modes_are_those_of_an_exact_beam(arm: Boom) -> None:

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from protractile.analysis.motion_results import Peak
 from protractile.cases import change, run_case
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.integrator import AdaptiveStep, FixedStep
@@ -13,7 +14,6 @@ from protractile.runs.case.reading import select
 from protractile.runs.case.schema import DampingTable
 from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.model_run import RunContext
-from protractile.runs.pipeline.motion_results import Peak
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.run import run_case as run_models
 from tests.runs.case_texts import shipped

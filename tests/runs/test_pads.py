@@ -6,6 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from protractile.analysis.equilibria import equilibria
+from protractile.analysis.states import station_loads
 from protractile.cases import run_case
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.contact_table import TableContact
@@ -16,7 +18,6 @@ from protractile.runs.case.contact import JointTable
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.pipeline.results import Results
-from protractile.runs.pipeline.static_results import positions, station_loads
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.report.result_tables import pad_table
 from protractile.runs.report.summary_table import summary_table
@@ -134,7 +135,7 @@ def test_governing_pad_at_rest_is_named(tmp_path: Path, shim: float) -> None:
     case = case_with(tmp_path, several(above, *below))
     boom = build_boom(case)
     system = build(case, boom, case.models[0]).system.gather_loads()
-    position = positions(system)[0.0]
+    position = equilibria(system)[0.0]
     ((tail, head),) = station_loads(boom, system, position[None])
     of_rows = [
         abs(law.force(y)) for law, y in zip(system.laws, system.rows @ position, strict=True)

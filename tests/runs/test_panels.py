@@ -8,6 +8,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from protractile.analysis.equilibria import equilibria
+from protractile.analysis.plate_buckling import normal_coefficient, panel_factor, weakest_panels
+from protractile.analysis.states import Diagram, StaticResult, station_loads
 from protractile.geometry.material import Material
 from protractile.geometry.section import BoxSection
 from protractile.geometry.segment import Segment
@@ -21,13 +24,6 @@ from protractile.runs.cautions.response import bulges
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.models import build
-from protractile.runs.pipeline.panels import normal_coefficient, panel_factor, weakest_panels
-from protractile.runs.pipeline.static_results import (
-    Diagram,
-    StaticResult,
-    positions,
-    station_loads,
-)
 from protractile.runs.pipeline.statics import boom_with_play
 from tests.runs import case_texts
 from tests.runs.case_texts import read_case, shipped
@@ -127,7 +123,7 @@ def test_bulging_walls_give_a_caution() -> None:
     case = shipped("spatial")
     boom, model = build_boom(case), next(m for m in case.models if m.name == "timoshenko")
     system = build(case, boom, model).system.gather_loads()
-    position = positions(system)[0.0]
+    position = equilibria(system)[0.0]
     (plain,) = station_loads(boom, system, position[None])
     assert [one.closed for one in plain] == pytest.approx([0.0] * 4, abs=1e-12)
 

@@ -7,20 +7,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from protractile.analysis.plate_buckling import (
+    WallStresses,
+    reduced_stress,
+    shear_reduction,
+    winter,
+)
 from protractile.cases import run_case
 from protractile.geometry.material import Material
 from protractile.geometry.section import BoxSection
 from protractile.geometry.segment import Segment
 from protractile.runs.pipeline.combinations import combination_results, combination_states
-from protractile.runs.pipeline.panels import WallStresses
-from protractile.runs.pipeline.proofs import (
-    Proof,
-    Proofs,
-    prove,
-    reduced_stress,
-    shear_reduction,
-    winter,
-)
+from protractile.runs.pipeline.proofs import Proof, Proofs, prove
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render

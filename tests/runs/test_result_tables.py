@@ -8,12 +8,13 @@ from typing import Any
 import numpy as np
 import pytest
 
+from protractile.analysis.fatigue import HAS_RAINFLOW, Life
+from protractile.analysis.pads import PadLoad
+from protractile.analysis.stresses import WallStress
 from protractile.cases import change, run_case
 from protractile.runs.pipeline.design_results import DesignResults, PlayDifference, PlayEffect
-from protractile.runs.pipeline.pads import PadLoad
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.statics import Reaction
-from protractile.runs.pipeline.strength import HAS_RAINFLOW, Life, WallStress
 from protractile.runs.report.formatting import signed_percent
 from protractile.runs.report.result_tables import (
     mode_table,

@@ -11,6 +11,7 @@ import pytest
 import xarray as xr
 from PIL import Image
 
+from protractile.analysis.model import section_forces
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.lines import lines
 from protractile.beam_model.segment_model import gap_system
@@ -27,7 +28,6 @@ from protractile.runs.case.schema import Case
 from protractile.runs.case.toml import dumps
 from protractile.runs.pipeline.design_results import DesignResults
 from protractile.runs.pipeline.results import Results
-from protractile.runs.pipeline.section_forces import section_forces
 from protractile.runs.report import theme
 from protractile.runs.report.figure_context import FigureContext
 from protractile.runs.report.force_figures import stress_history

@@ -11,6 +11,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
+from protractile.analysis.bonded import bonded_system
+from protractile.analysis.equilibria import (
+    equilibria,
+    extended_equilibria,
+    extended_instants,
+    instants,
+)
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.states import static_results
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
@@ -23,17 +32,8 @@ from protractile.runs.case.reading import select
 from protractile.runs.case.schema import Case, StopTable, TimeTable
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.design_results import DesignResults, PlayDifference
-from protractile.runs.pipeline.evaluation import bonded_system
 from protractile.runs.pipeline.model_quality import quality_notes
 from protractile.runs.pipeline.models import build
-from protractile.runs.pipeline.section_forces import LoadedModel
-from protractile.runs.pipeline.static_results import (
-    extended_instants,
-    extended_positions,
-    instants,
-    positions,
-    static_results,
-)
 from studies.reference_models.statics import static_response
 from tests.modal import modal_system
 from tests.runs.case_texts import (
@@ -197,11 +197,11 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     case = case.model_copy(update={"loads": (late,)})
     boom, model = build_boom(case), case.models[1]
     built = build(case, boom, model)
-    loaded = LoadedModel.of(boom, built.system, model.lines(boom, built))
+    loaded = AnalysisModel.of(boom, built.system, model.lines(boom, built))
     system = loaded.system
-    found = positions(system, instants(system, case.time.duration))
+    found = equilibria(system, instants(system, case.time.duration))
     assert list(found) == [0.0, 6.0]
-    assert list(extended_positions(system, case.time.duration)) == [5.0]
+    assert list(extended_equilibria(system, case.time.duration)) == [5.0]
     (rest,) = static_results(loaded, np.array([6.0]), found[6.0][None])
     outer = rest.diagrams[0]
     moment = np.interp(2.0, outer.x, outer.curves["moment"])
@@ -215,10 +215,10 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
 
 def test_an_instant_without_rest_is_left_out() -> None:
     """Reference: by hand. 9.81 µm at rest; none under 20 N upwards; under 29.81 N again."""
-    found = positions(ball(Sine(1.0)), instants(ball(Sine(1.0)), 1.0))
+    found = equilibria(ball(Sine(1.0)), instants(ball(Sine(1.0)), 1.0))
     assert list(found) == pytest.approx([0.0, 0.75], abs=1e-3)
     np.testing.assert_allclose(np.ravel(list(found.values())), [-9.81e-6, -29.81e-6], rtol=1e-5)
-    assert positions(replace(ball(), rows=-np.ones((1, 1)))) == {}
+    assert equilibria(replace(ball(), rows=-np.ones((1, 1)))) == {}
 
 
 if TYPE_CHECKING:

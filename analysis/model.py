@@ -41,7 +41,7 @@ def round_values(values: Array | Sequence[float]) -> list[float]:
 
 
 @dataclass(frozen=True)
-class LoadedModel:
+class AnalysisModel:
     """A model under all constant loads, with lines along its segments."""
 
     boom: Boom  #: boom with the play of the model

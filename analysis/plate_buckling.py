@@ -13,14 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
+from protractile.analysis.states import StaticResult
+from protractile.analysis.stresses import outer_corners
 from protractile.geometry.arrays import Array
 from protractile.geometry.material import Material
 from protractile.geometry.section import Plate, Section
 from protractile.geometry.segment import Segment
-from protractile.geometry.units import System
-from protractile.runs.pipeline.static_results import StaticResult
-from protractile.runs.pipeline.strength import outer_corners
-from protractile.runs.report.tables import Table
 
 # Coefficient k of a long plate in shear (Southwell and Skan 1924).
 SHEAR = 5.34
@@ -164,13 +162,64 @@ def _walls(
         yield WallStresses(segment, plate, x, edges, fibres, flow / plate.thickness)
 
 
-def panel_table(panels: Sequence[PanelBuckling], system: System) -> Table:
-    """Return the table of the wall of each segment that buckles first by panel formulas."""
-    columns = "segment", "wall", f"x\n{system.label('m')}", ("buckling factor", ".3g")
-    rows = [(one.segment, one.wall, f"{system.of(one.x, 'm'):.4g}", one.factor) for one in panels]
-    note = (
-        "Static state under the maximum loads. Walls are long panels on simple supports, with "
-        "k = 4 in compression, 23.9 in bending, 5.34 in shear, and their interaction; pad forces "
-        "are neglected."
-    )
-    return Table.of_rows("", "Buckling of walls, estimate", columns, rows, [note])
+def reduced_stress(
+    wall: WallStresses, strength: float, curve: Sequence[tuple[float, float]] = ()
+) -> Array:
+    """Return the equivalent stress (num_places,) of a wall in Pa, increased for buckling.
+
+    √((σ/ρ)² + 3 (τ/χ)²) with the largest compression σ of the mid-line (EN 1993-1-5, 10 (5) b).
+
+    Args:
+        wall: stresses of a wall.
+        strength: yield strength in Pa.
+        curve: pairs of slenderness and reduction factor, for ρ and χ; if empty, :func:`winter` and
+            :func:`shear_reduction` apply.
+    """
+    largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
+    slenderness = relative_slenderness(wall, strength)
+    along, across = reduction_factors(slenderness, stress_ratio(wall.edges), curve)
+    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * wall.shear / across))
+
+
+def relative_slenderness(wall: WallStresses, strength: float) -> Array:
+    """Return the slenderness λ̄ (num_places,) of a wall with a yield strength in Pa."""
+    largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
+    equivalent = np.sqrt(largest_compression**2 + 3.0 * wall.shear**2)
+    critical = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
+    with np.errstate(divide="ignore"):
+        # Without stress the factor is infinite, and the slenderness zero.
+        relative = np.where(equivalent > 0.0, strength / equivalent, 0.0) / critical
+    return np.asarray(np.sqrt(relative))
+
+
+def reduction_factors(
+    slenderness: float | Array, ratio: float | Array, curve: Sequence[tuple[float, float]]
+) -> tuple[Array, Array]:
+    """Return the reduction factors ρ and χ, both by the curve if it is not empty.
+
+    Beyond the curve they fall as the stress of elastic buckling, with 1/λ̄². Postbuckling strength
+    falls less steeply, so that this is safe.
+    """
+    if curve:
+        beyond = np.maximum(slenderness, curve[-1][0]) / curve[-1][0]
+        both = np.asarray(np.interp(slenderness, *np.transpose(curve)) / beyond**2)
+        return both, both
+    return winter(slenderness, ratio), shear_reduction(slenderness)
+
+
+def winter(slenderness: float | Array, ratio: float | Array = 1.0) -> Array:
+    """Return the reduction factor ρ of an internal wall (Winter 1947; EN 1993-1-5, (4.2)).
+
+    Args:
+        slenderness: λ̄, the square root of strength over critical stress.
+        ratio: ψ, the stress at the other edge over the largest compression.
+    """
+    slenderness, ratio = np.asarray(slenderness, dtype=float), np.maximum(ratio, -3.0)
+    stocky = slenderness <= 0.5 + np.sqrt(0.085 - 0.055 * ratio)
+    square = np.where(stocky, 1.0, slenderness**2)
+    return np.asarray(np.where(stocky, 1.0, (slenderness - 0.055 * (3.0 + ratio)) / square))
+
+
+def shear_reduction(slenderness: float | Array) -> Array:
+    """Return the factor χ of a wall in shear, 0.83/λ̄ ≤ 1 (EN 1993-1-5, table 5.1, η = 1)."""
+    return np.asarray(0.83 / np.maximum(slenderness, 0.83))

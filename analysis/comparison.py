@@ -9,10 +9,10 @@ from typing import ClassVar
 import numpy as np
 import xarray as xr
 
+from protractile.analysis.low_pass import Number, Numbers, SlowPeaks
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.predictability import ensemble_horizons
 from protractile.dynamics.trajectory import PointwiseDifferences
-from protractile.runs.pipeline.low_pass import Number, Numbers, SlowPeaks
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,6 +9,15 @@ from typing import NamedTuple
 
 import numpy as np
 
+from protractile.analysis.model import AnalysisModel, round_values
+from protractile.analysis.states import StaticResult
+from protractile.analysis.stresses import (
+    Fibres,
+    FibreStress,
+    StressCurve,
+    WallStress,
+    largest_stresses,
+)
 from protractile.dynamics.line import Quantity
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
@@ -16,15 +25,6 @@ from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import forces
 from protractile.geometry.section import Direction
-from protractile.runs.pipeline.section_forces import LoadedModel, round_values
-from protractile.runs.pipeline.static_results import StaticResult
-from protractile.runs.pipeline.strength import (
-    Fibres,
-    FibreStress,
-    StressCurve,
-    WallStress,
-    largest_stresses,
-)
 
 # Smallest static value for which a dynamic factor is given, as a fraction of the maximum in motion.
 LEAST_STATIC = 1.0e-3
@@ -91,7 +91,7 @@ _PLANES = (
 
 
 def evaluate_motion(
-    model: LoadedModel,
+    model: AnalysisModel,
     trajectory: Trajectory,
     positions: Array,
     rests: Sequence[StaticResult],
@@ -167,7 +167,7 @@ def _output_peaks(
 
 
 def _reactions(
-    model: LoadedModel, number: int, trajectory: Trajectory, positions: Array, rest_times: Array
+    model: AnalysisModel, number: int, trajectory: Trajectory, positions: Array, rest_times: Array
 ) -> Iterator[Peak]:
     """Yield the peaks of the support reactions of a segment, from jumps of its section forces.
 

@@ -8,11 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from protractile.analysis.model import AnalysisModel, round_values
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.line import Quantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Segment
-from protractile.runs.pipeline.section_forces import LoadedModel, round_values
 
 # Number of modes of each model.
 MODES = 8
@@ -72,7 +72,7 @@ class ModeComparison:
     matches: dict[str, list[Match | None]]
 
 
-def modes(model: LoadedModel, rest: Array) -> list[Mode]:
+def modes(model: AnalysisModel, rest: Array) -> list[Mode]:
     """Return the first modes, in ascending order of frequency.
 
     The dominant motion of a mode has the largest share of the kinetic energy, in which rotary

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -15,10 +14,6 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.joint import PADS_OF_SIDE, SIDES, PadSide, PadSize
 from protractile.geometry.section import EACH_SIDE
 from protractile.geometry.station import Station
-from protractile.runs.case.schema import Case
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # Name of each side, by direction.
 _SIDE_NAMES = {on: side for side, on in SIDES.items()}
@@ -42,28 +37,26 @@ class PadLoad:
     utilisation: float | None
 
 
-def pad_loads(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
-    """Yield the governing pad on each side of each station with play, in each model.
+def pad_loads(model: str, boom: Boom, peaks: Array, net: bool) -> Iterator[PadLoad]:
+    """Yield the governing pad on each side of each station with play.
 
-    ``data`` has the trajectories of all models.
+    Args:
+        model: name of the model.
+        boom: boom with the contact laws of the model.
+        peaks: contact forces (num_times, num_stations) in N.
+        net: True if the forces are those of both sides together, as those of a beam.
     """
-    if not any(joint.padded for joint in boom.joints):
-        return
-    with_play = (model for model in case.models if not model.bonded)
-    for model in (model for model in with_play if model.name in data["model"].values):
-        peak_forces = data["contact_force_peak"].sel(model=model.name)
-        ends = np.stack([peak_forces.min("time").values, peak_forces.max("time").values], axis=1)
-        for station in model.model_boom(boom).boom.stations:
-            if station.joint is None:
-                continue
-            ends_of_joint = station.joint.outer, station.joint.inner
-            outer, inner = (boom.segments[number].name for number in ends_of_joint)
-            forces = _largest_forces(station, ends[station.index], net=not model.needs_shell)
-            for pad, side, both in forces:
-                force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
-                pressure = force / pad.area
-                used = None if allowable is None else pressure / allowable
-                yield PadLoad(model.name, outer, inner, station.x, side, force, pressure, used)
+    ends = np.stack([peaks.min(axis=0), peaks.max(axis=0)], axis=1)
+    for station in boom.stations:
+        if station.joint is None:
+            continue
+        ends_of_joint = station.joint.outer, station.joint.inner
+        outer, inner = (boom.segments[number].name for number in ends_of_joint)
+        for pad, side, both in _largest_forces(station, ends[station.index], net):
+            force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
+            pressure = force / pad.area
+            used = None if allowable is None else pressure / allowable
+            yield PadLoad(model, outer, inner, station.x, side, force, pressure, used)
 
 
 def _largest_forces(
