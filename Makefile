@@ -11,10 +11,9 @@ ROOMS := $(patsubst %/__init__.py,%,$(wildcard */__init__.py))
 SOURCES := pyproject.toml $(wildcard runs/*/templates/*) \
     $(shell find $(ROOMS) -path runs/out -prune -o -name '*.py' -print)
 REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
-VARY_drawn-out := joint.drive.time=0.5,0.7,1,1.2,1.4,1.7,2,3,5
 VARY_hoist := hoist.speed=0.2,0.3,0.4,0.5,0.6
 VARY_slew := slew.speed=2,4,6,8,10
-SWEEPS := $(patsubst %,runs/out/%-sweep/sweep.csv,drawn-out hoist slew)
+SWEEPS := $(patsubst %,runs/out/%-sweep/sweep.csv,hoist slew)
 
 # Instructions that `make imitate` hides from numpy.
 AVX512 := AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR
@@ -143,7 +142,7 @@ runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 	@echo "running the models of $< ..."
 	@$(BIN)/protractile run $< --out $(@D) >/dev/null || { [ $$? -eq 1 ] && [ -f $@ ]; }
 
-# How fast the boom may be drawn out, hoist and slew.
+# How fast a crane may hoist and slew.
 runs/out/%-sweep/sweep.csv: runs/cases/%.toml $(SOURCES) | $(READY)
 	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko --vary $(VARY_$*)
 

@@ -16,7 +16,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.line import Line, Quantity
+from protractile.dynamics.line import Line, LineQuantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import axial_force
 from protractile.geometry.boom import Boom
@@ -25,19 +25,10 @@ from protractile.geometry.cylinder import force_name
 # Distance by which both positions at a jump are moved away from it, as a fraction of the length.
 _ASIDE = 1.0e-9
 
-_ACROSS: tuple[tuple[Quantity, Quantity], ...] = (
+_ACROSS: tuple[tuple[LineQuantity, LineQuantity], ...] = (
     ("deflection", "shear"),
     ("lateral", "lateral_shear"),
 )
-
-
-# Number of digits of stored curves.
-_DIGITS = 5
-
-
-def round_values(values: Array | Sequence[float]) -> list[float]:
-    """Return values rounded to the number of digits of stored curves."""
-    return [float(f"{value:.{_DIGITS}g}") for value in np.asarray(values).tolist()]
 
 
 @dataclass(frozen=True)
@@ -47,9 +38,10 @@ class AnalysisModel:
     boom: Boom  #: boom with the play of the model
     system: GapSystem  #: gap system of the boom, whose ``load`` includes all constant loads
     lines: Sequence[Line]  #: lines along the segments, with normal forces by the cylinders
+    smooth: bool = False  #: True if section forces do not jump at point forces, as in a series
 
     @classmethod
-    def of(cls, boom: Boom, system: GapSystem, lines: Sequence[Line]) -> Self:
+    def of(cls, boom: Boom, system: GapSystem, lines: Sequence[Line], smooth: bool = False) -> Self:
         """Return the model under all constant loads, with normal forces by cylinders in lines."""
         extended = list(lines)
         for number, cylinder in enumerate(boom.cylinders, start=1):
@@ -59,21 +51,21 @@ class AnalysisModel:
             pull = np.outer(cylinder.normal_force(x, foot), row)
             normal = line.rows.get("normal", 0.0) + pull
             extended[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
-        return cls(boom, system.gather_loads(), extended)
+        return cls(boom, system.gather_loads(), extended, smooth)
 
     @cached_property
     def axes(self) -> list[CubicSpline]:
         """The rows (num_modes,) of the deflections along z of each segment, by x in m."""
         return [CubicSpline(*dict(line.deflections)["z"]) for line in self.lines]
 
-    def section_forces(self, number: int, states: Array, time: Array) -> dict[Quantity, Array]:
+    def section_forces(self, number: int, states: Array, time: Array) -> dict[LineQuantity, Array]:
         """Return deflections and section forces of a segment as :func:`section_forces`."""
         return section_forces(self.boom, number, self.lines[number], states, time)
 
 
 def section_forces(
     boom: Boom, number: int, line: Line, states: Array, time: Array
-) -> dict[Quantity, Array]:
+) -> dict[LineQuantity, Array]:
     """Return deflections and section forces (..., num_places) of a segment.
 
     Args:

@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from protractile.analysis.model import AnalysisModel, round_values
+from protractile.analysis.curves import Curve
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.rows import INITIAL, Row
 from protractile.dynamics.damping import closed_contact_modes
-from protractile.dynamics.line import Quantity
+from protractile.dynamics.line import LineQuantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Segment
 
@@ -20,8 +22,8 @@ MODES = 8
 # Number of points of a segment at which mode shapes are compared and stored.
 _PLACES = 21
 
-# Kinds of motion in a mode, with their names.
-_MOTIONS: Mapping[Quantity, str] = {
+#: Kinds of motion in a mode, with their names.
+MOTIONS: Mapping[LineQuantity, str] = {
     "deflection": "bending in z",
     "lateral": "bending in y",
     "twist": "twist",
@@ -32,15 +34,6 @@ MIN_ASSURANCE = 0.5
 
 
 @dataclass(frozen=True, slots=True)
-class Shape:
-    """Mode shape of a segment."""
-
-    segment: str  #: name of the segment
-    x: list[float]  #: positions (num_places) in m
-    curves: dict[str, list[float]]  #: ``deflection``; in space also ``lateral`` and ``twist``
-
-
-@dataclass(frozen=True, slots=True)
 class Mode:
     """Mode of the boom with the contacts that are closed in the static state."""
 
@@ -48,8 +41,9 @@ class Mode:
     motion: str  #: dominant motion, ``bending in z``, ``bending in y`` or ``twist``
     number: int  #: number among the modes of the model with this dominant motion, from 1 on
     share: float  #: fraction of the kinetic energy in the dominant motion, from 0 to 1
-    #: mode shapes of each segment; the dominant motion has a maximum of 1 m or 1 rad
-    shapes: list[Shape]
+    #: shapes (num_places,) of each segment, ``deflection``, in space ``lateral`` and ``twist``;
+    #: the dominant motion has a maximum of 1 m or 1 rad
+    shapes: list[Mapping[LineQuantity, Array]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,7 +74,7 @@ def modes(model: AnalysisModel, rest: Array) -> list[Mode]:
     """
     boom, system, lines = model.boom, model.system, model.lines
     omega, shapes = closed_contact_modes(system, rest)
-    motions: list[Quantity] = [name for name in _MOTIONS if name in lines[0].rows]
+    motions: list[LineQuantity] = [name for name in MOTIONS if name in lines[0].rows]
     even = [np.linspace(line.x[0], line.x[-1], _PLACES) for line in lines]
     modes_of_boom: list[Mode] = []
     for frequency, shape in zip(omega[:MODES] / (2.0 * np.pi), shapes.T, strict=False):
@@ -101,23 +95,16 @@ def modes(model: AnalysisModel, rest: Array) -> list[Mode]:
         modes_of_boom.append(
             Mode(
                 frequency=float(frequency),
-                motion=_MOTIONS[motion],
-                number=1 + sum(mode.motion == _MOTIONS[motion] for mode in modes_of_boom),
+                motion=MOTIONS[motion],
+                number=1 + sum(mode.motion == MOTIONS[motion] for mode in modes_of_boom),
                 share=energies[motion] / whole if whole else 0.0,
-                shapes=[
-                    Shape(
-                        segment.name,
-                        round_values(np.linspace(segment.start, segment.end, _PLACES)),
-                        {name: round_values(scale * curve) for name, curve in of.items()},
-                    )
-                    for segment, of in zip(boom.segments, curves, strict=True)
-                ],
+                shapes=[{name: scale * curve for name, curve in of.items()} for of in curves],
             )
         )
     return modes_of_boom
 
 
-def inertia(segment: Segment, motion: Quantity) -> float:
+def inertia(segment: Segment, motion: LineQuantity) -> float:
     """Return the mass per length in kg/m, or for twist the rotary inertia per length in kg·m."""
     if motion != "twist":
         return segment.mass_per_length
@@ -154,9 +141,26 @@ def match_modes(boom: Boom, reference: Sequence[Mode], other: Sequence[Mode]) ->
 def _weighted_shape(boom: Boom, mode: Mode) -> Array:
     """Return the mass-weighted mode shape (num_values,) in √kg·m."""
     parts = [
-        np.sqrt(inertia(segment, name) * segment.length / _PLACES) * np.array(shape.curves[name])
+        np.sqrt(inertia(segment, name) * segment.length / _PLACES) * shape[name]
         for segment, shape in zip(boom.segments, mode.shapes, strict=True)
-        for name in _MOTIONS
-        if name in shape.curves
+        for name in MOTIONS
+        if name in shape
     ]
     return np.concatenate(parts)
+
+
+def mode_rows(modes: Sequence[Mode], model: str, play: bool = True) -> Iterator[Row]:
+    """Yield the frequency of each mode, whose place is its dominant motion and number."""
+    for mode in modes:
+        yield Row(
+            model, INITIAL, play, "frequency", mode.motion, str(mode.number), mode.frequency
+        )  # fmt: skip
+
+
+def mode_curves(boom: Boom, modes: Sequence[Mode], model: str) -> Iterator[Curve]:
+    """Yield the shapes of each mode along the segments; the states are the numbers of the modes."""
+    for number, mode in enumerate(modes, start=1):
+        for segment, shape in zip(boom.segments, mode.shapes, strict=True):
+            x = np.linspace(segment.start, segment.end, _PLACES)
+            values = {str(name): along for name, along in shape.items()}
+            yield Curve(model, f"mode {number}", True, segment.name, np.nan, x, values)

@@ -4,13 +4,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from protractile.dynamics.contact import ContactLaw
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom
 from protractile.geometry.joint import PADS_OF_SIDE, SIDES, PadSide, PadSize
 from protractile.geometry.section import EACH_SIDE
 from protractile.geometry.station import Station
@@ -19,50 +17,10 @@ from protractile.geometry.station import Station
 _SIDE_NAMES = {on: side for side, on in SIDES.items()}
 
 
-@dataclass(frozen=True, slots=True)
-class PadLoad:
-    """Governing slide pad on one side of a station, in one model.
-
-    ``x`` is the position of the station in m, ``force`` in N, ``pressure`` in Pa. ``utilisation``
-    is None without an allowable pressure.
-    """
-
-    model: str
-    outer: str
-    inner: str
-    x: float
-    side: str
-    force: float
-    pressure: float
-    utilisation: float | None
-
-
-def pad_loads(model: str, boom: Boom, peaks: Array, net: bool) -> Iterator[PadLoad]:
-    """Yield the governing pad on each side of each station with play.
-
-    Args:
-        model: name of the model.
-        boom: boom with the contact laws of the model.
-        peaks: contact forces (num_times, num_stations) in N.
-        net: True if the forces are those of both sides together, as those of a beam.
-    """
-    ends = np.stack([peaks.min(axis=0), peaks.max(axis=0)], axis=1)
-    for station in boom.stations:
-        if station.joint is None:
-            continue
-        ends_of_joint = station.joint.outer, station.joint.inner
-        outer, inner = (boom.segments[number].name for number in ends_of_joint)
-        for pad, side, both in _largest_forces(station, ends[station.index], net):
-            force, allowable = both / PADS_OF_SIDE, pad.allowable_pressure
-            pressure = force / pad.area
-            used = None if allowable is None else pressure / allowable
-            yield PadLoad(model, outer, inner, station.x, side, force, pressure, used)
-
-
-def _largest_forces(
+def largest_forces(
     station: Station, pushes: Array, net: bool
-) -> Iterator[tuple[PadSize, PadSide, float]]:
-    """Yield the governing pads of a station, their side, and the force in N on both of a pair.
+) -> Iterator[tuple[PadSize, str, float]]:
+    """Yield the governing pads of a station, their name, and the force in N on both of a pair.
 
     The forces ``pushes`` are those of :func:`_pair_forces`, or the ``net`` forces of both sides.
     """
@@ -76,8 +34,15 @@ def _largest_forces(
             force = max(force, max(preloads) + 0.5 * force)
         side = _SIDE_NAMES[station.direction, 1 if largest > 0.0 else -1]
         yield station.joint.pad, side, force
-    for pad, force in zip(station.pads, _pair_forces(station, pushes), strict=True):
-        yield pad, pad.side, force
+    forces = _pair_forces(station, pushes)
+    for number, (pad, force) in enumerate(zip(station.pads, forces, strict=True)):
+        before = sum(other.side == pad.side for other in station.pads[:number])
+        yield pad, _name(pad.side, before), force
+
+
+def _name(side: PadSide, before: int) -> str:
+    """Return the name of a pad within its station: its side, and its number if not the first."""
+    return f"{side} {1 + before}" if before else side
 
 
 def _pair_forces(station: Station, pushes: Array) -> list[float]:
@@ -115,18 +80,20 @@ def _pair_forces(station: Station, pushes: Array) -> list[float]:
     return [float(most) for most in largest]
 
 
-def loaded_pads(station: Station, sides: Sequence[Array]) -> list[tuple[PadSize, Array]]:
-    """Return the pads of known size at a station, each with its forces (num_states,) in N.
+def loaded_pads(station: Station, sides: Sequence[Array]) -> Iterator[tuple[PadSize, str, Array]]:
+    """Yield the pads of known size at a station, each with its name and forces (num_states,) in N.
 
     ``sides`` are the forces (num_states,) on the two sides in N, in the order of ``EACH_SIDE``, not
     negative.
     """
-    joint, loads = station.joint, list[tuple[PadSize | None, Array]]()
+    joint = station.joint
     if joint is None or not joint.padded:
-        return []
+        return
     for side, force in zip(EACH_SIDE, sides, strict=True):
         # Pairs with thicker shims close first.
-        pairs = sorted(joint.pads_of(station.direction, side), key=lambda pair: -pair[2])
+        pairs = joint.pads_of(station.direction, side)
+        order = sorted(range(len(pairs)), key=lambda k: -pairs[k][2])
+        pairs = [pairs[k] for k in order]
         shares, shims = (np.array([pair[k] for pair in pairs]) for k in (1, 2))
         stiffnesses = [pad.stiffness for pad in station.pads if SIDES[pad.side][1] == side]
         stiffness = PADS_OF_SIDE * sum(stiffnesses) or 1.0
@@ -134,8 +101,11 @@ def loaded_pads(station: Station, sides: Sequence[Array]) -> list[tuple[PadSize,
         closing = force[:, None] / stiffness - np.cumsum(shares * shims)
         compression = (closing / np.cumsum(shares)).min(axis=1, keepdims=True)
         forces = stiffness * (shares * np.maximum(compression + shims, 0.0)) / PADS_OF_SIDE
-        loads += [(pair[0], of_pad) for pair, of_pad in zip(pairs, forces.T, strict=True)]
-    return [(pad, force) for pad, force in loads if pad is not None]
+        for number, (pad, *_), of_pad in sorted(
+            zip(order, pairs, forces.T, strict=True), key=lambda entry: entry[0]
+        ):
+            if pad is not None:
+                yield pad, _name(_SIDE_NAMES[station.direction, side], number), of_pad
 
 
 def side_force(law: ContactLaw, side: int, gaps: Array) -> Array:

@@ -8,13 +8,15 @@ linear and the shear stress constant. Restraint by adjacent walls and pad forces
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from protractile.analysis.states import StaticResult
+from protractile.analysis.measure import Measured
+from protractile.analysis.rows import Row, Rows
+from protractile.analysis.states import States
 from protractile.analysis.stresses import outer_corners
+from protractile.dynamics.line import LineQuantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.material import Material
 from protractile.geometry.section import Plate, Section
@@ -23,27 +25,20 @@ from protractile.geometry.segment import Segment
 # Coefficient k of a long plate in shear (Southwell and Skan 1924).
 SHEAR = 5.34
 
-
-@dataclass(frozen=True, slots=True)
-class PanelBuckling:
-    """Wall of a segment with the lowest buckling factor by panel formulas."""
-
-    segment: str  #: name of the segment
-    wall: str  #: name of the wall
-    x: float  #: x of the cross-section in m
-    factor: float  #: buckling factor of the section forces
+# Relative difference below which buckling factors are equal.
+_EQUAL = 1.0e-9
 
 
-class WallStresses(NamedTuple):
-    """Stresses of a wall in a static state."""
+class PlateStress(NamedTuple):
+    """Stresses of a plate in static states."""
 
     segment: Segment  #: the segment
     plate: Plate  #: the wall
     x: Array  #: (num_places,) x of the cross-sections in m
-    #: (2, num_places) axial stress at the ends of the mid-line in Pa, positive in tension
+    #: (2, num_states, num_places) axial stress at the ends of the mid-line in Pa, in tension
     edges: Array
-    fibres: Array  #: (2, num_places) axial stress at the outer corners in Pa
-    shear: Array  #: (num_places,) mean shear stress in Pa, not negative
+    fibres: Array  #: (2, num_states, num_places) axial stress at the outer corners in Pa
+    shear: Array  #: (num_states, num_places) mean shear stress in Pa, not negative
 
     @property
     def slenderness(self) -> float:
@@ -101,50 +96,52 @@ def panel_factor(
     return np.asarray(np.divide(1.0, part, out=np.full_like(part, np.inf), where=part > 0.0))
 
 
-def weakest_panels(segments: Sequence[Segment], *rests: StaticResult) -> list[PanelBuckling]:
-    """Return the wall that buckles first in the states, of each segment with a known section."""
-    weakest: dict[str, PanelBuckling] = {}
-    for wall in nominal_wall_stresses(segments, rests):
-        name = wall.segment.name
-        factors = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
-        least = int(factors.argmin())
-        one = PanelBuckling(name, wall.plate.name, float(wall.x[least]), float(factors[least]))
-        if np.isfinite(one.factor) and one.factor < getattr(weakest.get(name), "factor", np.inf):
-            weakest[name] = one
+def measure_plates(states: States) -> Iterator[Measured]:
+    """Yield the buckling factors of each plate in static states, by panel formulas.
+
+    Plates without compression and shear have none.
+    """
+    for plate in plate_stresses(states):
+        factors = panel_factor(plate.segment.material, plate.slenderness, plate.edges, plate.shear)
+        if np.isfinite(factors).any():
+            at = plate.x, None, None
+            name, of = plate.segment.name, plate.plate.name
+            yield Measured("plate_buckling", name, of, factors, states.time, at)
+
+
+def weakest_plates(rows: Rows) -> list[Row]:
+    """Return the lowest buckling factor of each segment in the rows of a model."""
+    weakest: dict[str, Row] = {}
+    for row in rows.where(quantity="plate_buckling"):
+        # Walls that mirror each other are equal; the first one counts.
+        if row.value < (1.0 - _EQUAL) * weakest.setdefault(row.part, row).value:
+            weakest[row.part] = row
     return [*weakest.values()]
 
 
-def nominal_wall_stresses(
-    segments: Sequence[Segment], rests: Sequence[StaticResult]
-) -> Iterator[WallStresses]:
-    """Yield the stresses of each wall in static states, for segments with known sections.
+def plate_stresses(states: States) -> Iterator[PlateStress]:
+    """Yield the stresses of each plate of segments with known sections.
 
-    The places of a wall are those of the first state, then those of the next one.
+    A tapered segment has a section of its own at each place.
     """
-    for segment, *diagrams in zip(segments, *(rest.diagrams for rest in rests), strict=True):
-        if segment.section is None or "moment" not in diagrams[0].curves:
+    for number, segment in enumerate(states.boom.segments):
+        x, curves = states.model.lines[number].x, states.section_forces(number)
+        if segment.section is None or "moment" not in curves:
             continue
-        x = np.tile(diagrams[0].x, len(diagrams))
-        curves = {
-            name: np.concatenate([one.curves[name] for one in diagrams])
-            for name in diagrams[0].curves
-        }
-        curves["normal"] = np.concatenate([one.normal for one in diagrams])
-        parts = [slice(None)]
-        if segment.head_section is not None:
-            count = len(diagrams[0].x)
-            parts = [slice(place, None, count) for place in range(count)]
-        for part in parts:
+        tapered = segment.head_section is not None
+        for part in [slice(k, k + 1) for k in range(x.size)] if tapered else [slice(None)]:
+            of_part = {name: values[:, part] for name, values in curves.items()}
             section = segment.section_at(float(x[part][0]))
-            of_part = {name: values[part] for name, values in curves.items()}
-            yield from _walls(segment, section, x[part], of_part)
+            yield from _plates(segment, section, x[part], of_part)
 
 
-def _walls(
-    segment: Segment, section: Section, x: Array, curves: Mapping[str, Array]
-) -> Iterator[WallStresses]:
-    """Yield the stresses of each wall of a section under section forces at x (num_places,)."""
-    names = ("moment", "lateral_moment", "shear", "lateral_shear", "torque")
+def _plates(
+    segment: Segment, section: Section, x: Array, curves: Mapping[LineQuantity, Array]
+) -> Iterator[PlateStress]:
+    """Yield the stresses of each plate under section forces (num_states, num_places)."""
+    names: tuple[LineQuantity, ...] = (
+        "moment", "lateral_moment", "shear", "lateral_shear", "torque",
+    )  # fmt: skip
     moment, lateral, shear, aside, torque = (curves.get(name, np.zeros(x.size)) for name in names)
     mean = curves["normal"] / section.area
     along_y = lateral / section.lateral_second_moment_of_area
@@ -159,33 +156,33 @@ def _walls(
         )
         along = sum(np.abs(force * shares.get(k, 0.0)) for force, shares in forces)
         flow = along / plate.length + np.abs(torque) / (2.0 * section.enclosed_area)
-        yield WallStresses(segment, plate, x, edges, fibres, flow / plate.thickness)
+        yield PlateStress(segment, plate, x, edges, fibres, flow / plate.thickness)
 
 
 def reduced_stress(
-    wall: WallStresses, strength: float, curve: Sequence[tuple[float, float]] = ()
+    plate: PlateStress, strength: float, curve: Sequence[tuple[float, float]] = ()
 ) -> Array:
-    """Return the equivalent stress (num_places,) of a wall in Pa, increased for buckling.
+    """Return the equivalent stress (num_states, num_places) of a plate in Pa, with buckling.
 
     √((σ/ρ)² + 3 (τ/χ)²) with the largest compression σ of the mid-line (EN 1993-1-5, 10 (5) b).
 
     Args:
-        wall: stresses of a wall.
+        plate: stresses of a plate.
         strength: yield strength in Pa.
         curve: pairs of slenderness and reduction factor, for ρ and χ; if empty, :func:`winter` and
             :func:`shear_reduction` apply.
     """
-    largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
-    slenderness = relative_slenderness(wall, strength)
-    along, across = reduction_factors(slenderness, stress_ratio(wall.edges), curve)
-    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * wall.shear / across))
+    largest_compression = np.maximum(-plate.edges.min(axis=0), 0.0)
+    slenderness = relative_slenderness(plate, strength)
+    along, across = reduction_factors(slenderness, stress_ratio(plate.edges), curve)
+    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * plate.shear / across))
 
 
-def relative_slenderness(wall: WallStresses, strength: float) -> Array:
-    """Return the slenderness λ̄ (num_places,) of a wall with a yield strength in Pa."""
-    largest_compression = np.maximum(-wall.edges.min(axis=0), 0.0)
-    equivalent = np.sqrt(largest_compression**2 + 3.0 * wall.shear**2)
-    critical = panel_factor(wall.segment.material, wall.slenderness, wall.edges, wall.shear)
+def relative_slenderness(plate: PlateStress, strength: float) -> Array:
+    """Return the slenderness λ̄ (num_states, num_places) of a plate with a yield strength in Pa."""
+    largest_compression = np.maximum(-plate.edges.min(axis=0), 0.0)
+    equivalent = np.sqrt(largest_compression**2 + 3.0 * plate.shear**2)
+    critical = panel_factor(plate.segment.material, plate.slenderness, plate.edges, plate.shear)
     with np.errstate(divide="ignore"):
         # Without stress the factor is infinite, and the slenderness zero.
         relative = np.where(equivalent > 0.0, strength / equivalent, 0.0) / critical

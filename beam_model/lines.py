@@ -19,7 +19,7 @@ from scipy.interpolate import interp1d
 
 from protractile.beam_model.boom_modes import BoomModes
 from protractile.beam_model.component import SegmentModel
-from protractile.dynamics.line import Line, Quantity
+from protractile.dynamics.line import Line, LineQuantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Direction
 from protractile.geometry.contact_places import load_places
@@ -30,7 +30,7 @@ _PIECES = 40
 # Relative positions in a piece of the points of a linear curvature.
 _EARLY, _LATE = 0.25, 0.75
 
-_NAMES: dict[Direction, tuple[Quantity, Quantity, Quantity]] = {
+_NAMES: dict[Direction, tuple[LineQuantity, LineQuantity, LineQuantity]] = {
     "z": ("deflection", "moment", "shear"),
     "y": ("lateral", "lateral_moment", "lateral_shear"),
 }
@@ -58,7 +58,7 @@ def _line(boom: Boom, number: int, modes: BoomModes) -> Line:
         breaks = np.unique(np.concatenate([even, sorted(places)]).round(9))
     starts, lengths = breaks[:-1], np.diff(breaks)
     midpoints = 0.5 * (breaks[1:] + breaks[:-1])
-    rows: dict[Quantity, Array] = {}
+    rows: dict[LineQuantity, Array] = {}
     beam = modes.beams[number]
     for direction in boom.directions:
         deflection, moment, shear = _NAMES[direction]

@@ -44,12 +44,12 @@ Completion = Callable[[GapSystem, Sequence[Line]], GapSystem]
 
 
 class NodeReaction(NamedTuple):
-    """Reaction on a segment: force in N along z, and moment in N·m, positive for larger slopes."""
+    """Reaction of the ground, or at a joint the force of the outer segment, on a segment."""
 
-    segment: int
-    x: float
-    force: float
-    moment: float
+    segment: int  #: index of the segment
+    x: float  #: position in m
+    force: float  #: force along z in N
+    moment: float  #: moment in N·m, positive towards a larger slope
 
 
 @dataclass(frozen=True)
@@ -69,11 +69,19 @@ class StaticState:
         """The reactions on each segment, from its start to its end."""
         loaded = replace(self.boom, loads=(*self.boom.loads, *self._hung))
         position = self.position[: self._modes.omega2.size]
-        return [
-            reaction
+        net = {
+            reaction[:2]: reaction
             for number, component in enumerate(self._elements.unsupported)
             for reaction in _reactions(loaded, number, component, self._modes, position, self._time)
-        ]
+        }
+        # At a joint, the residual of the outer segment includes the force on the inner one.
+        for joint in sorted(self.boom.joints, key=lambda joint: -joint.inner):
+            for x in chain.from_iterable(contact_centres(self.boom, joint)):
+                inner, outer = net[joint.inner, x], net[joint.outer, x]
+                net[joint.outer, x] = outer._replace(
+                    force=outer.force + inner.force, moment=outer.moment + inner.moment
+                )
+        return [*net.values()]
 
     @property
     def tip(self) -> float:
@@ -206,23 +214,6 @@ def telescoping_system(boom: Boom) -> GapSystem:
     return gap_system(boom, Elements(boom).segments).gather_loads()
 
 
-def net_reactions(boom: Boom, reactions: Sequence[NodeReaction]) -> list[NodeReaction]:
-    """Return the forces between segments at joints, and the ground's reactions elsewhere.
-
-    Args:
-        reactions: reactions of all segments, from :class:`StaticState`. At a joint, the reaction on
-            the outer segment also includes the force of the inner segment.
-    """
-    net = {reaction[:2]: reaction for reaction in reactions}
-    for joint in sorted(boom.joints, key=lambda joint: -joint.inner):
-        for x in chain.from_iterable(contact_centres(boom, joint)):
-            inner, outer = net[joint.inner, x], net[joint.outer, x]
-            net[joint.outer, x] = outer._replace(
-                force=outer.force + inner.force, moment=outer.moment + inner.moment
-            )
-    return [net[reaction[:2]] for reaction in reactions]
-
-
 def _reaction_places(boom: Boom, number: int) -> set[float]:
     """Return the x in m of all possible supports of a segment."""
     places = {support.x for support in boom.segments[number].supports}
@@ -234,7 +225,7 @@ def _reaction_places(boom: Boom, number: int) -> set[float]:
 def _reactions(
     boom: Boom, number: int, component: Component, modes: BoomModes, position: Array, time: float
 ) -> list[NodeReaction]:
-    """Return the reactions on a segment at all its possible supports."""
+    """Return the residuals of a segment at all its possible supports."""
     nodes = component.breaks
     displacements = [
         row @ position

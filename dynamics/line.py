@@ -15,7 +15,7 @@ from protractile.dynamics.arrays import Array
 # along and across the straight axis. A positive normal force is tension; a positive moment causes
 # tension at larger z, a lateral one at larger y. So the slope of a moment is the shear force less
 # the normal force times the slope of the deflection.
-Quantity = Literal[
+LineQuantity = Literal[
     "deflection",
     "normal",
     "shear",
@@ -34,19 +34,19 @@ class Line:
 
     #: positions (num_places,) in m, ascending; a position with a possible jump occurs twice
     x: Array
-    rows: Mapping[Quantity, Array]  #: rows (num_places, num_modes) of each available quantity
+    rows: Mapping[LineQuantity, Array]  #: rows (num_places, num_modes) of each available quantity
     paired: bool  #: True if positions are both ends of each element, False if they are midpoints
 
     @property
     def deflections(self) -> Iterator[tuple[Literal["y", "z"], tuple[Array, Array]]]:
         """Each direction, with ascending x (num_places,) in m, and rows (num_places, num_modes)."""
         x, index = np.unique(self.x, return_index=True)
-        names: dict[Quantity, Literal["y", "z"]] = {"deflection": "z", "lateral": "y"}
+        names: dict[LineQuantity, Literal["y", "z"]] = {"deflection": "z", "lateral": "y"}
         for name, direction in names.items():
             if name in self.rows:
                 yield direction, (x, self.rows[name][index])
 
-    def read(self, states: Array) -> dict[Quantity, Array]:
+    def read(self, states: Array) -> dict[LineQuantity, Array]:
         """Return each quantity (..., num_places) for modal coordinates (..., num_modes).
 
         Further coordinates, such as the coordinate of a load on a rope, are ignored.
@@ -69,7 +69,7 @@ class Line:
         }
         return replace(self, rows=rows)
 
-    def one_sided_row(self, name: Quantity, x: float, side: int) -> Array:
+    def one_sided_row(self, name: LineQuantity, x: float, side: int) -> Array:
         """Return the row (num_modes,) of a quantity at x from one side; 0 outside the segment.
 
         Args:

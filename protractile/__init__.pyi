@@ -54,6 +54,14 @@ from protractile.runs.case.kinds.kantorovich import Kantorovich as Kantorovich
 from protractile.runs.case.kinds.kantorovich import Rigid as Rigid
 from protractile.runs.case.kinds.shell import Shell as Shell
 
+# Results of a boom
+from protractile.analysis.beams import modes as modes
+from protractile.analysis.beams import prove as prove
+from protractile.analysis.beams import statics as statics
+from protractile.analysis.curves import Curves as Curves
+from protractile.analysis.proofs import Resistance as Resistance
+from protractile.analysis.rows import Rows as Rows
+
 # Case files, and what their runs leave
 from protractile.cases import change as change
 from protractile.cases import check as check
@@ -70,4 +78,4 @@ from protractile.runs.pipeline.results import Results as Results
 # Errors
 from protractile.dynamics.failure import NumericsError as NumericsError
 from protractile.geometry.fields import BoomError as BoomError
-from protractile.runs.case.messages import BadInput as BadInput
+from protractile.runs.process.bad_input import BadInput as BadInput

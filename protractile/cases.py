@@ -16,15 +16,17 @@ import xarray as xr
 from protractile.geometry.fields import format_value
 from protractile.runs.case import reading
 from protractile.runs.case.build import hold_ground
-from protractile.runs.case.messages import BadInput, refusing
+from protractile.runs.case.messages import refusing
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
+from protractile.runs.cautions.rules import add_cautions
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import atomic_folder
 from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.results import Results, prepare
 from protractile.runs.pipeline.run import run_case as run_models
 from protractile.runs.process import workers
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.ranks import single_rank
 from protractile.runs.process.terminal import ignore_progress
 from protractile.runs.report.additions import judge
@@ -137,9 +139,11 @@ def run_case(
     """
     chosen = reading.select(_checked(case), _CASE, _names(models))
     path = None if folder is None else prepare(str(folder), _CASE)
-    run = run_models(chosen, _CASE, RunContext(single_rank(chosen), cache=Cache.of_user()))
+    comm = single_rank(chosen.first_shell)
+    run = run_models(chosen, _CASE, RunContext(comm, cache=Cache.of_user()))
     assert run is not None
     run.evaluate()
+    add_cautions(run.results)
     if path is not None:
         from protractile.runs.report.output import write
 
@@ -254,7 +258,7 @@ def frequencies(
 
     plan = points.plan(_CASE, _options(vary or {}), _names(models), None, whole=_checked(case))
     cases = [point.case for point in plan.points]
-    results = frequencies.measure(cases, single_rank(cases[0]), Cache.of_user())
+    results = frequencies.measure(cases, single_rank(cases[0].first_shell), Cache.of_user())
     return frequencies.gather(plan, results)
 
 

@@ -16,7 +16,19 @@ from typing import TYPE_CHECKING
 import numpy as np
 from rich.console import Console
 
-from protractile.analysis.plate_buckling import weakest_panels
+from protractile.analysis.measure import measure_boom
+from protractile.analysis.plate_buckling import measure_plates, weakest_plates
+from protractile.analysis.rows import (
+    BEAM,
+    FARTHEST,
+    INITIAL,
+    REST,
+    Row,
+    Rows,
+    extremes,
+    static_rows,
+)
+from protractile.analysis.states import States
 from protractile.beam_model.statics import StaticState
 from protractile.dynamics.damping import closed_contact_damping
 from protractile.dynamics.failure import NUMERICAL_ERRORS
@@ -25,21 +37,20 @@ from protractile.dynamics.motion import constant_load_equilibrium
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import axial_force, moving_force_places
 from protractile.geometry.boom import Boom
+from protractile.geometry.typography import milli, number, without_round_off
 from protractile.geometry.units import System
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.cautions.context import Context, State
 from protractile.runs.cautions.rules import cautions
-from protractile.runs.pipeline.combinations import combination_results, combination_tables
+from protractile.runs.pipeline.combinations import combination_rows
 from protractile.runs.pipeline.drives import drive_lines, stick_slip_lines
 from protractile.runs.pipeline.estimates import Preview, run_cost
-from protractile.runs.pipeline.largest_loads import BeamStates, beam_note, static_table
-from protractile.runs.pipeline.load_table import load_table
 from protractile.runs.pipeline.statics import (
     Statics,
-    contact_and_support_reactions,
     cylinder_force,
     first_frequency,
+    reaction_rows,
     statics,
 )
 from protractile.runs.pipeline.turning import shaper_lines, turning_lines
@@ -51,7 +62,8 @@ from protractile.runs.report.boom_tables import (
     segment_table,
     stiffener_table,
 )
-from protractile.runs.report.formatting import milli, number, without_round_off
+from protractile.runs.report.load_table import load_table
+from protractile.runs.report.static_tables import beam_note, combination_tables, static_table
 from protractile.runs.report.tables import WIDE, Cell, Column, Table, print_text
 
 if TYPE_CHECKING:
@@ -63,9 +75,8 @@ SHOWN_MODES = 3
 # Distance of a section from a jump of the axial force, as a fraction of the segment length.
 _BESIDE = 1.0e-9
 
-# Damping ratio, and moment as a fraction of the largest force times the length of the boom, below
-# which values count as zero.
-_ROUND_OFF, _NO_MOMENT = 1.0e-12, 1.0e-7
+# Damping ratio below which values count as zero.
+_ROUND_OFF = 1.0e-12
 
 _BEAMS = "in the beam estimate"
 
@@ -107,8 +118,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     case, boom, preview = checked.case, checked.boom, Preview(checked)
     static, context = statics(case, boom), Context(case, boom)
     beam = None if static is None else context.beam
-    extremes = [] if beam is None else beam.extremes(case.system)
-    panels = [] if beam is None else weakest_panels(beam.boom.segments, *beam.rests)
+    context.rows = Rows() if beam is None else _beam_rows(beam)
     factors = {
         _beam_name(model): model.coarsen(boom).critical_factor(checked.model_boom(model))
         for model in (case.models if boom.compressed else ())
@@ -125,25 +135,29 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
         _damping_ratios(preview),
         *([_reactions(static.with_play, case.system)] if static else []),
         *([_cylinders(static.with_play, case.system)] if static else []),
-        static_table(case, boom if static is None else static.with_play.boom, extremes),
-        panel_table(panels, case.system),
-        *combination_tables(combination_results(case, progress), case),
+        static_table(case, boom if static is None else static.with_play.boom, context.rows),
+        panel_table(weakest_plates(context.rows), case.system),
+        *combination_tables(combination_rows(case, progress), case),
     ]
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(context.drives, case.system)]
     lines += [*turning_lines(case), *_shaper_lines(preview)]
-    context.extremes, context.panels = extremes, panels
     context.states = [State(f"in {name}", factor) for name, factor in factors.items()]
     if static is None or beam is None:
         lines.append("There is no static equilibrium under the loads at t = 0.")
     else:
         hertz = [first_frequency(case, one) for one in static]
         lines += _static_lines(static, beam, hertz)
-        rest = State(_BEAMS, None, static.with_play.tip, hertz[:1], beam.rests[0])
-        context.states.append(rest)
+        closed = context.rows.where(state=INITIAL, quantity="closed_play")
+        context.states.append(State(_BEAMS, None, static.with_play.tip, hertz[:1], closed))
     lines += cautions(context)
     lines.append(f"A run may take {run_cost(case, preview)}.")
     lines = [case.system.convert(line) for line in lines]
     return Check(case.title, [table for table in tables if table.rows], lines)
+
+
+def _beam_rows(beam: States) -> Rows:
+    """Return the static results of the beam, with the buckling factors of its plates."""
+    return Rows([*static_rows(beam, BEAM), *extremes(measure_plates(beam), BEAM, REST)])
 
 
 def _beam_name(model: Model) -> str:
@@ -225,7 +239,7 @@ def _buckling(case: Case, boom: Boom, factors: Mapping[str, float | None]) -> Ta
         "The factor of a shell is estimated by a beam with the contacts that are closed at t = 0, "
         f"and with elastic {boom.yielding}."
     )
-    notes = [walls] if boom.yielding and any(m.needs_shell for m in case.models) else []
+    notes = [walls] if boom.yielding and case.first_shell else []
     return Table("Buckling under the axial forces, joints in contact", columns, notes)
 
 
@@ -280,21 +294,23 @@ def _shaper_lines(preview: Preview) -> Iterator[str]:
 
 def _reactions(state: StaticState, system: System) -> Table:
     """Return the table of support reactions, contact forces and contact penetrations."""
-    reactions = list(contact_and_support_reactions(state).values())
-    forces = [one.force for one in reactions]
-    least = _NO_MOMENT * max(map(abs, forces), default=0.0) * state.boom.length
-    moments: list[Cell] = [one.moment if abs(one.moment) > least else "" for one in reactions]
-    along: list[Cell] = [one or "" for one in without_round_off([one.along for one in reactions])]
-    depths: list[Cell] = ["" if one.depth is None else one.depth for one in reactions]
-    lugs = {(state.boom.segments[one.segment].name, one.x) for one in state.boom.cylinders}
-    places = [one.segment + ", lug" * ((one.segment, one.x) in lugs) for one in reactions]
+    at_place: dict[tuple[str, str], dict[str, Row]] = {}
+    for row in reaction_rows(state):
+        at_place.setdefault((row.part, row.place), {})[row.quantity] = row
+    reactions = [rows["reaction"] for rows in at_place.values()]
+
+    def cells(quantity: str) -> list[Cell]:
+        rows = [of.get(quantity) for of in at_place.values()]
+        return ["" if row is None else row.value for row in rows]
+
+    along, forces = cells("axial_reaction"), [one.value for one in reactions]
     columns = [
-        Column("segment", places),
-        Column(f"x\n{system.label('m')}", [f"{system.of(one.x, 'm'):g}" for one in reactions]),
+        Column("segment", [one.part + ", lug" * one.place.startswith("lug") for one in reactions]),
+        Column(f"x\n{system.label('m')}", [f"{system.of(one.x or 0, 'm'):g}" for one in reactions]),
         Column("transverse\nforce", without_round_off(forces), ".4g", "kN"),
         *([Column("axial\nforce", along, ".4g", "kN")] if any(along) else []),
-        Column("moment", moments, ".4g", "kN m"),
-        Column("contact\npenetration", depths, ".3g", "mm"),
+        Column("moment", cells("support_moment"), ".4g", "kN m"),
+        Column("contact\npenetration", cells("penetration"), ".3g", "mm"),
     ]
     title = "Reactions of supports and contacts at rest, t = 0"
     signs = (
@@ -319,7 +335,7 @@ def _cylinders(state: StaticState, system: System) -> Table:
     return Table.of_rows("", "Cylinders at rest, t = 0", columns, rows, notes)
 
 
-def _static_lines(static: Statics, beam: BeamStates, hertz: Sequence[float]) -> Iterator[str]:
+def _static_lines(static: Statics, beam: States, hertz: Sequence[float]) -> Iterator[str]:
     """Yield sentences on the static tip, the first frequencies in Hz, and joint rotations."""
     state, bonded = static
     soft = state.boom.yielding
@@ -334,9 +350,11 @@ def _static_lines(static: Statics, beam: BeamStates, hertz: Sequence[float]) -> 
         f"{without} {number(hertz[1], 4)} Hz."
     )
     causes = f"Play and the {soft} rotate" if soft else "Play rotates"
-    rest = beam.farthest
-    for tilt in rest.tilts:
+    tilts = Rows(extremes(measure_boom(beam.largest("tip")), BEAM, FARTHEST))
+    rotations, tips = (tilts.where(quantity=name) for name in ("rotation", "rotation_tip"))
+    for angle, tip in zip(rotations, tips, strict=True):
+        outer = angle.place.removeprefix("in ")
         yield (
-            f"{causes} {tilt.inner!r} by {milli(tilt.rotation)} mrad in {tilt.outer!r}, which "
-            f"moves the tip by {milli(tilt.tip)} mm, under the loads at t = {rest.time:.4g} s."
+            f"{causes} {angle.part!r} by {milli(angle.value)} mrad in {outer!r}, which moves the "
+            f"tip by {milli(tip.value)} mm, under the loads at t = {angle.time:.4g} s."
         )

@@ -22,6 +22,7 @@ import typer
 # Each command imports its own libraries, since all libraries together take seconds to load.
 from protractile.runs import clients, options
 from protractile.runs.process import ending, ranks, terminal
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import Terminal, printable
 
 app = typer.Typer(
@@ -83,9 +84,10 @@ def run(
     from protractile.runs.report import opengl
 
     with workers.helper(opengl.silence_stderr) as helper:
-        if helper and not ending.launched_rank() and any(m.needs_shell for m in effective.models):
+        if helper and not ending.launched_rank() and effective.first_shell:
             # The helper imports FEniCSx while this process imports other modules.
             helper.submit(import_module, "protractile.shell_model.reduced_shell")
+        from protractile.runs.cautions.rules import add_cautions
         from protractile.runs.folder.cache import Cache
         from protractile.runs.folder.files import atomic_folder
         from protractile.runs.pipeline import estimates
@@ -99,7 +101,7 @@ def run(
         if not large:
             estimates.refuse_large(estimates.run_cost(effective), case)
         cache = None if no_cache else Cache.of_user()
-        comm = ranks.enter_mpi(effective, case)
+        comm = ranks.enter_mpi(effective.first_shell, case)
         if comm is None and effective.ensemble is not None:
             comm = ranks.launched_ranks(case)
         with ranks.end_all_ranks_on_error(comm):
@@ -120,6 +122,7 @@ def run(
                 assert finished is not None
                 with output.write_in_two_steps(finished, part, not no_pictures, helper) as write:
                     finished.evaluate()
+                    add_cautions(finished.results)
                     judged = judge(finished.results)
                     report_progress("report", "pictures and figures", 0.0)
                     write(judged)
@@ -156,7 +159,6 @@ def snapshot(
     ] = None,
 ) -> int:
     """Render the deformed shells of a run, and add the pictures to its report."""
-    from protractile.runs.case.messages import BadInput
     from protractile.runs.pipeline.results import TRAJECTORIES
     from protractile.runs.report import snapshots
     from protractile.runs.report.opengl import RenderingUnavailable
@@ -200,7 +202,6 @@ def sweep(
     the case file, not with a varied play. Under mpirun all ranks except the first run points;
     otherwise all cores run them. Ensembles are not run.
     """
-    from protractile.runs.case.messages import BadInput
     from protractile.runs.folder.cache import Cache
     from protractile.runs.pipeline import estimates, members
     from protractile.runs.process import workers
@@ -227,7 +228,7 @@ def sweep(
     bound = None if until is None else search.parse_bound(until, plan)
     if not large:
         estimates.refuse_large(estimates.sweep_cost([point.case for point in plan.points]), case)
-    comm = ranks.enter_mpi(plan.points[0].case, case) or ranks.launched_ranks(case)
+    comm = ranks.enter_mpi(plan.points[0].case.first_shell, case) or ranks.launched_ranks(case)
     with ranks.end_all_ranks_on_error(comm):
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         if comm is None or comm.rank == 0:
@@ -256,13 +257,13 @@ def frequencies(
     no_cache: options.NoCache = False,
     large: options.Large = False,
 ) -> int:
-    """Chart the first natural frequencies over the values of keys.
+    """Compute the first natural frequencies over the values of keys.
 
     The joints are once in contact where they touch at rest under the loads, and once bonded.
     """
     from protractile.runs.folder.cache import Cache
     from protractile.runs.pipeline import estimates
-    from protractile.runs.sweep import frequencies as charts
+    from protractile.runs.sweep import frequencies as measured
     from protractile.runs.sweep import points
     from protractile.runs.sweep import run as sweep_runs
 
@@ -270,20 +271,20 @@ def frequencies(
     cases = [point.case for point in plan.points]
     if not large:
         estimates.refuse_large(estimates.frequencies_cost(cases), case)
-    comm = ranks.enter_mpi(cases[0], case)
+    comm = ranks.enter_mpi(cases[0].first_shell, case)
     cache = None if no_cache else Cache.of_user()
     with ranks.end_all_ranks_on_error(comm):
         if ending.launched_rank() if comm is None else comm.rank:
             if comm is not None:
-                charts.measure(cases, comm, cache)
+                measured.measure(cases, comm, cache)
             return 0
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         sweep_runs.prepare(folder, case)
         with terminal.display() as report_progress:
-            data = charts.gather(plan, charts.measure(cases, comm, cache, report_progress))
-        charts.write(data, folder)
-        print(printable(str(folder / f"{charts.NAME}.csv")))
-        charts.table(data).show(Terminal())
+            data = measured.gather(plan, measured.measure(cases, comm, cache, report_progress))
+        measured.write(data, folder)
+        print(printable(str(folder / f"{measured.NAME}.csv")))
+        measured.table(data).show(Terminal())
     return 0
 
 
@@ -324,7 +325,6 @@ def prove(
     The exit status is 1 where a proof fails.
     """
     from protractile.runs.case.kinds.shell import Shell
-    from protractile.runs.case.messages import BadInput
     from protractile.runs.case.reading import load
     from protractile.runs.pipeline import estimates
     from protractile.runs.report.terminal_tables import print_proofs
@@ -341,7 +341,7 @@ def prove(
     if shell not in shells:
         what = f"{shell!r} is not a shell of the case; leave it out for beam elements"
         raise BadInput(case, "--shell", what)
-    comm = ranks.enter_mpi(checked, case)
+    comm = ranks.enter_mpi(checked.first_shell, case)
     assert comm is not None
     from protractile.runs.case.kinds.model import BuildContext
     from protractile.runs.folder.cache import Cache

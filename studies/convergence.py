@@ -23,11 +23,11 @@ from matplotlib.figure import Figure as Sheet
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
 from rich.console import Console
 
+from protractile.geometry.typography import fixed, number
 from protractile.runs.folder.files import atomic_folder, write_atomically
 from protractile.runs.process.terminal import show_notices
 from protractile.runs.report import theme
 from protractile.runs.report.figure_context import Figure
-from protractile.runs.report.formatting import fixed, number
 from protractile.runs.report.pages import page
 from protractile.runs.report.tables import Table, write
 from studies.study import Plot, Study, Verification, wide_console

@@ -8,10 +8,13 @@ from collections.abc import Iterator
 import numpy as np
 from mpi4py import MPI
 
+from protractile.analysis.curves import Curve
+from protractile.analysis.rows import BEAM, INITIAL, REST
+from protractile.dynamics.line import LineQuantity
 from protractile.runs import CASES
 from protractile.runs.case import reading as case_file
-from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
 from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import run_case
 from studies.study import Criterion, Progress, Verification, define_study
 
@@ -32,16 +35,18 @@ LEVERS: Criterion = ("analytic", "lever rule", EXACT)
 def study(progress: Progress) -> Iterator[Verification]:
     """Compare the paper's boom at rest with closed forms."""
     progress("the paper's boom at rest")
-    answers = design_results_at_rest()
+    results = results_at_rest()
     for name in MODELS:
-        yield from _at_rest(name, answers.models[name])
-    for held, force in zip(answers.reactions, support_forces(), strict=True):
+        yield from _at_rest(name, results)
+    reactions = results.rows.where(model=BEAM, state=INITIAL, play=True, quantity="reaction")
+    supports = [row for row in reactions if not row.place.startswith("contact")]
+    for held, force in zip(supports, support_forces(), strict=True):
         what = f"reaction at {held.x:g} m"
-        yield Verification(what, 1e-3 * held.force, 1e-3 * force, "kN", *LEVERS)
+        yield Verification(what, 1e-3 * held.value, 1e-3 * force, "kN", *LEVERS)
 
 
-def design_results_at_rest() -> DesignResults:
-    """Return the design results of the paper's boom from a very short run."""
+def results_at_rest() -> Results:
+    """Return the results of the paper's boom from a very short run."""
     case = case_file.load(str(CASES / "coarse.toml"))
     time = case.time.model_copy(update={"duration": 0.01})
     models = tuple(model for model in case.models if model.name in MODELS)
@@ -49,7 +54,7 @@ def design_results_at_rest() -> DesignResults:
     run = run_case(short, "coarse.toml", RunContext(MPI.COMM_SELF))
     assert run is not None
     run.evaluate()
-    return run.results.summary.design
+    return run.results
 
 
 def station_forces() -> tuple[float, float]:
@@ -69,8 +74,8 @@ def support_forces() -> tuple[float, float]:
     return -OUTER * HEAD - tail - head - far, far
 
 
-def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Verification]:
-    (rest,) = own.static
+def _at_rest(name: str, results: Results) -> Iterator[Verification]:
+    rows = results.rows.where(model=name, state=REST, play=True)
     tail, head = station_forces()
     tilt = (PLAY + (abs(tail) + head) / STIFF) / (HEAD - TAIL)
     criterion: Criterion = (
@@ -78,21 +83,24 @@ def _at_rest(name: str, own: ModelDesignResults) -> Iterator[Verification]:
         "2 Δ and the compression of contacts, over the overlap",
         CLOSE,
     )
-    turned = 1e3 * rest.tilts[0].rotation
+    (rotation,) = rows.where(quantity="rotation")
+    turned = 1e3 * rotation.value
     yield Verification(f"tilt of the joint, {name}", turned, 1e3 * tilt, "mrad", *criterion)
-    for pressed, force in zip(rest.stations, (tail, head), strict=True):
+    contacts = rows.where(quantity="contact_force")
+    for pressed, force in zip(contacts, (tail, head), strict=True):
         what = f"contact force at {pressed.x:g} m, {name}"
-        yield Verification(what, 1e-3 * pressed.force, 1e-3 * force, "kN", *LEVERS)
+        yield Verification(what, 1e-3 * pressed.value, 1e-3 * force, "kN", *LEVERS)
     at_foot, far = support_forces()
     x, s = ALONG_OUTER, TIP - ALONG_INNER
-    outer, inner = rest.diagrams
+    outer, inner = results.curves.where(model=name, state=REST, play=True)
     bent = -(at_foot * x + far * (x - SUPPORT) + 0.5 * OUTER * x**2)
-    for diagram, place, what, unit, force in (
+    comparisons: tuple[tuple[Curve, float, LineQuantity, str, float], ...] = (
         (outer, x, "shear", "kN", -(at_foot + far + OUTER * x)),
         (outer, x, "moment", "kN m", bent),
         (inner, ALONG_INNER, "shear", "kN", INNER * s),
         (inner, ALONG_INNER, "moment", "kN m", -0.5 * INNER * s**2),
-    ):
-        found = 1e-3 * float(np.interp(place, diagram.x, diagram.curves[what]))
-        named = f"{what} at {place:g} m, {name}"
+    )
+    for curve, place, quantity, unit, force in comparisons:
+        found = 1e-3 * float(np.interp(place, curve.x, curve.values[quantity]))
+        named = f"{quantity} at {place:g} m, {name}"
         yield Verification(named, found, 1e-3 * force, unit, "analytic", "by hand", OF_PIECES)

@@ -3,7 +3,7 @@
 
 ``python -m studies.gallery`` writes docs/gallery from the folders ``paper``, ``spatial``,
 ``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` writes, and
-``drawn-out-sweep``, ``hoist-sweep`` and ``slew-sweep``, which ``make gallery`` writes.
+``hoist-sweep`` and ``slew-sweep``, which ``make gallery`` writes.
 """
 
 from __future__ import annotations
@@ -22,12 +22,12 @@ from matplotlib.patches import Patch
 from PIL import Image
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import TO_MILLI, digits
+from protractile.geometry.typography import TO_MILLI, amount
 from protractile.runs import CASES
 from protractile.runs.case import reading as case_file
-from protractile.runs.case.messages import BadInput
 from protractile.runs.folder.files import atomic_path
 from protractile.runs.pipeline.results import FIELDS, Results, read_fields
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import show_notices
 from protractile.runs.report import theme
 from protractile.runs.report.boom_drawing import draw_boom_of
@@ -41,7 +41,6 @@ from protractile.runs.report.scene import (
     round_scale,
 )
 from protractile.runs.report.sheet import MATTE, MESHED, SHEET, Camera, Sheet, stage, surface
-from protractile.runs.report.snapshots import TITLES, characteristic_instants
 
 RUNS, GALLERY = Path("runs/out"), Path("docs/gallery")
 MODEL = "shell"
@@ -55,16 +54,10 @@ CHANGE_DRAWN = 0.05
 # Run and file of each picture of the gallery.
 COPIED = {
     "boom-first-peak": ("paper", "snapshots/boom-first-peak.png"),
-    "overlap-largest-force": ("paper", "snapshots/overlap-largest-force.png"),
-    "stress-largest-force": ("paper", "snapshots/stress-largest-force.png"),
     "stress-history": ("paper", f"figures/stress-{MODEL}.png"),
     "space-from-the-side": ("spatial", "snapshots/boom-first-peak.png"),
     "space-from-above": ("spatial", "snapshots/boom-above-first-peak.png"),
-    "space-overlap": ("spatial", "snapshots/overlap-above-first-peak.png"),
     "three-segments": ("three-segments", "snapshots/boom-first-peak.png"),
-    "three-segments-overlap": ("three-segments", "snapshots/overlap-2-first-peak.png"),
-    "three-segments-stress": ("three-segments", "snapshots/stress-2-first-peak.png"),
-    "drawn-out-swing": ("drawn-out-sweep", "figures/sweep-residual-vibration.png"),
     "benchmarks": ("convergence", "figures/benchmarks.png"),
 }
 
@@ -94,8 +87,8 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
     require_opengl()
     with rc_context(theme.PAGE_RC):
         yield "mesh", draw_mesh(scene, overlap)
-        time = characteristic_instants(motion)["largest-force"]
-        instant = Instant(time, TITLES["largest-force"])
+        force = abs(motion["contact_force_peak"]).max("station")
+        instant = Instant(float(force["time"][force.argmax()]), "largest contact force")
         yield "sections-largest-force", draw_sections(scene, instant, overlap)
 
 
@@ -187,7 +180,7 @@ def draw_sections(scene: Scene, instant: Instant, overlap: Overlap) -> Image.Ima
             name = scene.boom.segments[number].name
             panel.plot(*drawn.T, color=color, linewidth=4.0, label=name)
         where = "above" if force > 0.0 else "below"
-        touch = f"contact {where} with {digits(1e-3 * abs(force))} kN" if force else "no contact"
+        touch = f"contact {where} with {amount(abs(force), 'N')}" if force else "no contact"
         panel.set_title(f"x = {x:g} m: {touch}")
         panel.set(aspect="equal", xlabel="y (mm)")
     panels[0].set_ylabel("z (mm)")

@@ -22,6 +22,7 @@ import numpy as np
 from protractile.beam_model.kantorovich import Base
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.predictability import perturbations
+from protractile.geometry.typography import number
 from protractile.runs import CASES
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.kinds.kantorovich import Kantorovich
@@ -33,7 +34,6 @@ from protractile.runs.paper.verdicts import MARKS, Judgement
 from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import run_case
-from protractile.runs.report.formatting import number
 from protractile.runs.report.tables import Table
 from studies.study import Progress, define_study
 

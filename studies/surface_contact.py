@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 
 from protractile.dynamics.gap_system import GapSystem
+from protractile.geometry.typography import number
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
-from protractile.runs.report.formatting import number
 from protractile.runs.report.tables import Table
 from studies.motions import (
     friction_case,

@@ -336,7 +336,7 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
     where = f"segment[{index + 1}]"
     if table.height_to_width is not None:
         raise BoomError(f"{where}.height_to_width", "the section is given; leave one of them out")
-    if not any(model.needs_shell for model in case.models):
+    if not case.first_shell:
         return
     density = material_of(case, index).density
     for key, case_value, plate_value in (

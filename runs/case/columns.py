@@ -21,8 +21,8 @@ import numpy as np
 
 from protractile.geometry.units import Unit
 from protractile.runs.case.limits import MOST_TIMES
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.user_files import read_any_text
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import shorten
 
 _SEPARATOR = re.compile(r"sep=(.)", re.IGNORECASE)

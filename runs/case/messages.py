@@ -30,6 +30,7 @@ from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.limits import key_of
 from protractile.runs.case.load_tables import AxialTable, HistoryTable
 from protractile.runs.case.sections import SHAPES
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import shorten
 
 # Key of the case file for each attribute of a boom.
@@ -55,45 +56,31 @@ _ADVICE = {
 }
 
 
-class BadInput(Exception):
-    """An input error, with its file, its key and a message that tells the valid input."""
-
-    def __init__(self, file: str, key: str, what: str) -> None:
-        super().__init__(" ".join(f"{shorten(file)}: {shorten(key)}: {what}".split()))
-        self.file = file
-        self.key = key
-        self.what = what
-
-    @classmethod
-    def from_validation(cls, file: str, error: ValidationError) -> BadInput:
-        """Return the most informative error of a validation.
-
-        If a misspelled key causes two errors, this is the unknown key, not the missing one.
-        """
-        faults = error.errors(include_url=False)
-        first = next((f for f in faults if f["type"] in UNKNOWN), faults[0])
-        return cls(file, *_explain(first["type"], first["loc"], first["input"], first.get("ctx")))
-
-    @classmethod
-    def from_boom(cls, file: str, error: BoomError) -> BadInput:
-        """Return the error at its key: ``segment[2].span`` for attribute ``segments[1].start``."""
-        part = re.split(r"\W", error.where)[0]
-        if part not in _PARTS:
-            return cls(file, error.where, error.what)
-        key = _PARTS[part] + error.where.removeprefix(part)
-        key = re.sub(r"\[(\d+)\]", lambda match: f"[{int(match[1]) + 1}]", key)
-        return cls(file, re.sub(r"\.start$", ".span", key), error.what)
-
-
 @contextmanager
 def refusing(file: str) -> Iterator[None]:
-    """Raise errors in the tables and in the boom of a case file as :class:`BadInput`."""
+    """Raise errors in the tables and in the boom of a case file as :class:`BadInput`.
+
+    If a misspelled key causes two errors, the message is on the unknown key, not the missing one.
+    """
     try:
         yield
     except ValidationError as error:
-        raise BadInput.from_validation(file, error) from None
+        faults = error.errors(include_url=False)
+        first = next((f for f in faults if f["type"] in UNKNOWN), faults[0])
+        told = _explain(first["type"], first["loc"], first["input"], first.get("ctx"))
+        raise BadInput(file, *told) from None
     except BoomError as error:
-        raise BadInput.from_boom(file, error) from None
+        raise BadInput(file, _key_of_part(error.where), error.what) from None
+
+
+def _key_of_part(where: str) -> str:
+    """Return the key of a boom's part: ``segment[2].span`` for ``segments[1].start``."""
+    part = re.split(r"\W", where)[0]
+    if part not in _PARTS:
+        return where
+    key = _PARTS[part] + where.removeprefix(part)
+    key = re.sub(r"\[(\d+)\]", lambda match: f"[{int(match[1]) + 1}]", key)
+    return re.sub(r"\.start$", ".span", key)
 
 
 def _explain(

@@ -40,11 +40,12 @@ from protractile.runs.case.limits import (
     units_of,
 )
 from protractile.runs.case.load_tables import HistoryTable
-from protractile.runs.case.messages import BadInput, refusing
+from protractile.runs.case.messages import refusing
 from protractile.runs.case.motion_tables import TravelTable
 from protractile.runs.case.sanity import check_ranges, usual_ranges
 from protractile.runs.case.schema import Case, EnsembleTable, Model, TimeTable
 from protractile.runs.case.user_files import read_text
+from protractile.runs.process.bad_input import BadInput
 
 _NOTICES = logging.getLogger("protractile")
 

@@ -351,6 +351,12 @@ class Case(ClientKeys, CaseHeading):
         return System(self.shown_units or self.units)
 
     @property
+    def first_shell(self) -> int:
+        """The number of the first model that needs a shell; 0 without one."""
+        numbered = enumerate(self.models, start=1)
+        return next((number for number, model in numbered if model.needs_shell), 0)
+
+    @property
     def spatial(self) -> bool:
         """True if the boom bends in both planes."""
         return any(joint.lateral_play is not None for joint in self.joints)

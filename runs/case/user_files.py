@@ -9,8 +9,8 @@ import os
 import stat
 from pathlib import Path
 
-from protractile.runs.case.messages import BadInput
 from protractile.runs.folder.files import resolve_path
+from protractile.runs.process.bad_input import BadInput
 
 # Maximum size of a text file; a case with the largest permitted tables is smaller.
 MAX_BYTES = 16_000_000

@@ -9,20 +9,21 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple, Self
 
-from protractile.analysis.plate_buckling import PanelBuckling
-from protractile.analysis.states import StaticResult
+from protractile.analysis.rows import INITIAL, REST, Row, Rows
+from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.drives import StickSlipEstimate, stick_slip_estimates
-from protractile.runs.pipeline.largest_loads import BeamStates, StaticExtreme
+from protractile.runs.pipeline.largest_loads import static_states
 from protractile.runs.pipeline.pad_walls import wall_part
 from protractile.runs.pipeline.statics import boom_with_play
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from protractile.runs.pipeline.summary import ModelSummary, Summary
+    from protractile.runs.pipeline.results import Results
+    from protractile.runs.pipeline.summary import ModelSummary
 
 
 class State(NamedTuple):
@@ -33,7 +34,7 @@ class State(NamedTuple):
     critical_factor: float | None = None
     tip: float | None = None  #: static tip deflection in m
     frequencies: Sequence[float] = ()  #: natural frequencies in Hz, with closed contacts
-    rest: StaticResult | None = None  #: the state at t = 0
+    closed: Sequence[Row] = ()  #: lateral plays that bulging walls close at t = 0
 
 
 @dataclass
@@ -43,26 +44,31 @@ class Context:
     case: Case
     boom: Boom
     states: Sequence[State] = ()
-    #: extremes of the beam of ``check``, empty without an equilibrium; None after a run
-    extremes: Sequence[StaticExtreme] | None = None
-    panels: Sequence[PanelBuckling] = ()  #: weakest walls of this beam
+    #: results of the beam of ``check``, empty without an equilibrium; None after a run
+    rows: Rows | None = None
     #: trajectories of a run, with the dimensions ``model`` and ``time``
     data: Mapping[Hashable, xr.DataArray] = field(default_factory=dict)
     models: Mapping[str, ModelSummary] = field(default_factory=dict)  #: models of a run
     failures: Mapping[str, str] = field(default_factory=dict)  #: reasons of failed models
 
     @classmethod
-    def of_run(cls, case: Case, boom: Boom, data: xr.Dataset, summary: Summary) -> Self:
-        """Return the results of a run, from the trajectories of its models and its summary."""
-        states = []
+    def of_run(cls, results: Results) -> Self:
+        """Return what is known after a run."""
+        summary, states = results.summary, list[State]()
         for name, model in summary.models.items():
-            design = summary.design.models.get(name)
-            rests, modes = (design.static, design.modes) if design else ([], [])
-            tip = max((rest.tip for rest in rests), key=abs, default=model.static_tip)
-            hertz = [mode.frequency for mode in modes]
-            rest = next(iter(rests), None)
-            states.append(State(f"in {name}", model.critical_factor, tip, hertz, rest))
-        return cls(case, boom, states, data=data, models=summary.models, failures=summary.failures)
+            of_model = results.rows.where(model=name, play=True)
+            tip = of_model.where(state=REST, quantity="tip").largest
+            at_start = of_model.where(state=INITIAL)
+            state = State(
+                f"in {name}",
+                model.critical_factor,
+                model.static_tip if tip is None else tip.value,
+                [row.value for row in at_start.where(quantity="frequency")],
+                at_start.where(quantity="closed_play"),
+            )
+            states.append(state)
+        known = results.trajectories, summary.models, summary.failures
+        return cls(results.case, results.boom, states, None, *known)
 
     @cached_property
     def drives(self) -> list[StickSlipEstimate]:
@@ -70,10 +76,10 @@ class Context:
         return list(stick_slip_estimates(self.case, self.boom))
 
     @cached_property
-    def beam(self) -> BeamStates | None:
+    def beam(self) -> States | None:
         """The static states of a beam; None without an equilibrium."""
         with suppress(*NUMERICAL_ERRORS):
-            return BeamStates.of(self.case, boom_with_play(self.case, self.boom))
+            return static_states(self.case, boom_with_play(self.case, self.boom))
         return None
 
     @cached_property

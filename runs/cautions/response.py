@@ -9,17 +9,18 @@ from math import inf
 
 import numpy as np
 
+from protractile.analysis.plate_buckling import weakest_plates
+from protractile.analysis.rows import REST, Rows
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.axial import moving_force
-from protractile.geometry.typography import TO_MILLI, TO_PERCENT
+from protractile.geometry.typography import TO_MILLI, TO_PERCENT, milli, number, percent
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context, Sentence
 from protractile.runs.pipeline.hoisting_error import straight_path_error
-from protractile.runs.pipeline.pad_walls import remedies, rigid_wall_note
+from protractile.runs.pipeline.pad_walls import largest_tip, remedies, rigid_wall_note
 from protractile.runs.pipeline.turning import fastest_turn, motion_laws, pendulum_frequency
-from protractile.runs.report.formatting import milli, number, percent
 
 # Share of the tip deflection below which walls do not matter, share above which remedies are
 # listed, and share above which walls under pads govern it.
@@ -52,7 +53,7 @@ MAX_RELATIVE_ERROR = 0.01
 
 def walls(context: Context) -> Iterator[str]:
     """Yield the share of soft walls in the tip deflection of the beam, remedies, and a note."""
-    if not context.extremes or context.beam is None:
+    if not context.rows or context.beam is None:
         return
     yield from wall_shares(context)
     # A negative share, of lateral pads that close the play, needs no remedy.
@@ -72,12 +73,11 @@ def wall_shares(context: Context) -> Iterator[str]:
     beam, part = context.beam, context.wall_part
     if beam is None or part is None or abs(part) < NO_SHARE:
         return
-    (what, where), rest = beam.boom.yielding.split(maxsplit=1), beam.farthest
+    (what, where), (time, tip) = beam.boom.yielding.split(maxsplit=1), largest_tip(beam)
     how, source = ("distort", "a frame of plates") if what == "sections" else ("bend", "plates")
     told = (
-        f"{what} {how} {where}, which moves the tip by {milli(part * rest.tip)} of "
-        f"{milli(rest.tip)} mm, {percent(part, 2)}, under the loads at t = {rest.time:.4g} s "
-        f"(estimate from {source})."
+        f"{what} {how} {where}, which moves the tip by {milli(part * tip)} of {milli(tip)} mm, "
+        f"{percent(part, 2)}, under the loads at t = {time:.4g} s (estimate from {source})."
     )
     yield told if abs(part) > GOVERNING_SHARE else Sentence(f"{told[0].upper()}{told[1:]}")
 
@@ -155,9 +155,9 @@ def _deflections(context: Context) -> Iterator[tuple[str, str, float]]:
     for state in context.states:
         if state.tip is not None:
             yield state.where, "rests at", state.tip
-    for one in context.extremes or ():
-        if one.kind == "tip" and one.time > 0.0:
-            yield f"under the loads at t = {one.time:.4g} s", "rests at", one.largest
+    for row in (context.rows or Rows()).where(state=REST, quantity="tip"):
+        if row.time:
+            yield f"under the loads at t = {row.time:.4g} s", "rests at", row.value
     if "tip" in context.data:
         tips = context.data["tip"]
         moves = np.abs(tips.values).max(axis=1).tolist()
@@ -227,17 +227,10 @@ def axial_stresses(context: Context) -> Iterator[str]:
 def bulges(context: Context) -> Iterator[str]:
     """Yield a caution for each model at rest whose bulging walls reduce lateral plays."""
     for state in context.states:
-        # A bonded model has no loads of stations.
-        loads = state.rest.stations if state.rest else ()
-        plays = [
-            (station.joint.lateral_play or 0.0, load)
-            for station, load in zip(context.boom.stations, loads, strict=False)
-            if station.joint is not None and station.direction == "y"
-        ]
         parts = [
-            f"{TO_MILLI * load.closed:.2g} of {TO_MILLI * play:g} mm at x = {load.x:g} m"
-            for play, load in plays
-            if load.closed > BULGED * play
+            f"{TO_MILLI * row.value:.2g} of {TO_MILLI * row.limit:g} mm at x = {row.x:g} m"
+            for row in state.closed
+            if row.limit is not None and row.value > BULGED * row.limit
         ]
         if parts:
             yield (
@@ -262,37 +255,40 @@ def straight_path(context: Context) -> Iterator[str]:
 
 def utilisations(context: Context) -> Iterator[str]:
     """Yield a caution for each static utilisation above 1."""
-    for one in context.extremes or ():
-        if one.utilisation is not None and (one.utilisation.value or 0.0) > 1.0:
-            loads = f"under the loads at t = {one.time:.4g} s"
-            yield f"static utilisation {loads}: {one.utilisation}"
+    for row in (context.rows or Rows()).where(state=REST):
+        if (used := row.utilisation or 0.0) > 1.0 and row.of.limit:
+            yield (
+                f"static utilisation under the loads at t = {row.time:.4g} s: {100.0 * used:.3g} % "
+                f"by {row.of.title} ({row.part}, x = {row.x:.4g} m): exceeds {row.of.limit}"
+            )
 
 
 def panels(context: Context) -> Iterator[str]:
     """Yield a caution for each wall that buckles under the loads at rest."""
-    for one in context.panels:
-        if one.factor < 1.0:
+    for row in weakest_plates(context.rows or Rows()):
+        if row.value < 1.0:
             yield (
-                f"the wall {one.wall!r} of {one.segment!r} buckles at {number(one.factor, 3)} "
-                f"times the loads at rest, at x = {context.case.system.text(one.x, 'm')} (panel "
+                f"the wall {row.place!r} of {row.part!r} buckles at {number(row.value, 3)} times "
+                f"the loads at rest, at x = {context.case.system.text(row.x or 0.0, 'm')} (panel "
                 "formulas)"
             )
 
 
 def limits(context: Context) -> Iterator[str]:
     """Yield a sentence on each limit of a case, a caution if a static result exceeds it."""
-    if context.extremes is None or context.case.limits is None:
+    if context.rows is None or context.case.limits is None:
         return
     # Imported late, since the results of a run take half a second.
-    from protractile.runs.pipeline.quantities import STATIC_KINDS, case_limits
+    from protractile.runs.pipeline.quantities import case_limits
 
     for limit in case_limits(context.case.limits):
-        kind, at_rest = STATIC_KINDS.get(limit.quantity.name), limit.quantity.name == "tip_at_rest"
-        values = [abs(one.largest) for one in context.extremes if one.kind == kind]
-        if not values:
+        at_rest = limit.quantity.name == "tip_at_rest"
+        name = "tip" if at_rest else limit.quantity.name
+        row = context.rows.where(state=REST, quantity=name).largest
+        if row is None:
             yield Sentence(f"Limit {limit}: a run decides.")
             continue
-        largest, title = max(values), limit.quantity.title
+        largest, title = abs(row.value), limit.quantity.title
         what = title if at_rest else f"static {title} (maximum load)"
         static = f"the {what} is {limit.format(largest)}"
         if not limit.is_met_by(largest):

@@ -4,9 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 from protractile.runs.cautions import inputs, loads, response
 from protractile.runs.cautions.context import Context, Rule, Sentence
+
+if TYPE_CHECKING:
+    from protractile.runs.pipeline.results import Results
 
 # Rules that need no result.
 OF_INPUTS: Sequence[Rule] = (
@@ -28,3 +32,8 @@ def cautions(context: Context, rules: Sequence[Rule] = RULES) -> list[str]:
     lines = (line for rule in rules for line in rule(context))
     texts = (f"{'' if isinstance(line, Sentence) else 'caution: '}{line}" for line in lines)
     return [context.case.system.convert(text) for text in texts]
+
+
+def add_cautions(results: Results) -> None:
+    """Add the cautions of a run to the summary of its results."""
+    results.summary.cautions = cautions(Context.of_run(results))

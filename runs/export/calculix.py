@@ -24,11 +24,11 @@ from protractile.geometry.typography import choices
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext, select_kind
 from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import write_atomically
 from protractile.runs.pipeline.models import build
+from protractile.runs.process.bad_input import BadInput
 
 if TYPE_CHECKING:
     from mpi4py import MPI

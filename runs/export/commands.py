@@ -32,8 +32,8 @@ def export(
     """Write beam elements as a script for OpenSees, or a shell at rest as a deck for CalculiX."""
     from protractile.geometry.typography import choices
     from protractile.runs.case import reading
-    from protractile.runs.case.messages import BadInput
     from protractile.runs.folder.cache import Cache
+    from protractile.runs.process.bad_input import BadInput
 
     suffixes = {"opensees": "py", "calculix": "inp"}
     if to not in suffixes:
@@ -42,7 +42,7 @@ def export(
     checked = reading.load(case)
     selected = reading.select(checked, case, [program.select_model(checked, case, model).name])
     path = Path(out or f"{Path(case).stem}.{suffixes[to]}")
-    comm = ranks.enter_mpi(selected, case, "export another one with --model")
+    comm = ranks.enter_mpi(selected.first_shell, case, "export another one with --model")
     if comm is None and ending.launched_rank():
         return 0
     program.write(selected, case, comm, path, Cache.of_user())

@@ -28,11 +28,12 @@ from protractile.geometry.typography import choices
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import BuildContext, ModelBoom, select_kind
-from protractile.runs.case.messages import BadInput
+from protractile.runs.case.messages import refusing
 from protractile.runs.case.schema import Case
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import write_atomically
 from protractile.runs.pipeline.models import build
+from protractile.runs.process.bad_input import BadInput
 
 if TYPE_CHECKING:
     from mpi4py import MPI
@@ -301,8 +302,6 @@ def write(
     if model.needs_shell:
         assert comm is not None
         calibration = build(case, boom, model, BuildContext(comm, cache=cache)).calibration
-    try:
+    with refusing(file):
         text = script(case, model.model_boom(boom), model, calibration)
-    except BoomError as error:
-        raise BadInput.from_boom(file, error) from None
     write_atomically(path, text)

@@ -15,22 +15,19 @@ import numpy as np
 import xarray as xr
 from matplotlib.path import Path
 
-from protractile.analysis.equilibria import equilibria, extended_equilibria, instants
-from protractile.analysis.model import AnalysisModel
-from protractile.analysis.motion_results import MotionResult
-from protractile.analysis.states import Diagram, StaticResult
-from protractile.analysis.stresses import FibreStress, fibre_forces, largest_stresses
-from protractile.dynamics.failure import NumericsError
+from protractile.analysis.curves import Curves, diagrams
+from protractile.analysis.equilibria import extended_equilibria
+from protractile.analysis.rows import REST, Rows
+from protractile.analysis.states import States
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
-from protractile.geometry.typography import TO_MILLI
+from protractile.geometry.typography import TO_MILLI, number
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.calibration import OF_MOTION, CalibratedTable
 from protractile.runs.case.kinds.model import BuiltModel
 from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context
@@ -39,14 +36,14 @@ from protractile.runs.folder.cache import Cache, key
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
 from protractile.runs.pipeline.estimates import Cost, motion_cost
-from protractile.runs.pipeline.evaluation import loaded_model, results_at_rest, with_motion
+from protractile.runs.pipeline.evaluation import evaluate_motion, evaluate_rest, loaded_model
 from protractile.runs.pipeline.model_run import summarise_motion
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
-from protractile.runs.pipeline.results import Results, label, pads_of_models
+from protractile.runs.pipeline.results import Results, label
 from protractile.runs.pipeline.summary import Summary
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import symbols, theme
 from protractile.runs.report.charts import Chart, Curve
-from protractile.runs.report.formatting import number
 from protractile.runs.report.rest_figures import chart_along, rest_curves
 from protractile.runs.report.summary_table import summary_table, utilisation_verdict
 
@@ -106,28 +103,19 @@ def beam_results(
     case, built, stiffness = build_beam(checked, draft.case, draft.shells)
     boom, (model,) = checked.boom, case.models
     loaded = loaded_model(boom, model, built)
-    duration = case.time.duration
     check_current()
-    rests = equilibria(loaded.system, instants(loaded.system, duration))
-    if not rests:
-        raise NumericsError("the beam has no static equilibrium under the loads at t = 0")
+    rests = States.at_rest(loaded, case.time.duration)
     check_current()
     plan = MotionPlan.of(built.system, case, model)
     _check_cost(motion_cost(checked, model, plan.motion, built.system.num_modes), case, draft.file)
-    extended = extended_equilibria(loaded.system, duration)
-    design = results_at_rest(loaded, rests, extended)
-    forces = [[station.force for station in rest.stations] for rest in design.static]
-    station_forces = xr.Dataset(
-        {"contact_force_peak": (("model", "time", "station"), [forces])},
-        coords={"model": [model.name]},
-    )
-    fibres = MotionResult([], [], list(_fibres(loaded, [*rests.values()])), [])
-    results = _results(case, replace(design, motion=fibres), station_forces)
-    results.summary.pads = list(pads_of_models(case, boom, station_forces))
-    farthest, table = design.farthest_static, summary_table(results)
-    assert farthest is not None
+    extended = States.of(loaded, extended_equilibria(loaded.system, case.time.duration))
+    static = evaluate_rest(model.name, rests, extended, case.buckling is not None)
+    none = xr.Dataset(coords={"model": [model.name]})
+    results = _results(case, none, Rows(static.rows), Curves(static.curves))
+    table, farthest = summary_table(results), (rests + extended).farthest
     assert table is not None
-    hertz = ", ".join(number(mode.frequency) for mode in design.modes[1:3])
+    shown = Curves(diagrams(farthest, model.name, REST))
+    hertz = ", ".join(number(mode.frequency) for mode in static.modes[1:3])
     more = [("Second and third natural frequency, Hz", hertz), ("Stiffness of the beam", stiffness)]
     utilisation = utilisation_verdict(results, model.name)
     yield {
@@ -135,8 +123,8 @@ def beam_results(
         "rows": [*table.rows, *more],
         "utilisation": utilisation and f"At rest: {utilisation}",
         "cautions": cautions(Context(case, boom), OF_INPUTS),
-        "boom": boom_figure(case, boom, farthest),
-        "forces": _plotly_figure(chart_along(rest_curves(farthest, "", theme.PALETTE[0]))),
+        "boom": boom_figure(case, boom, shown, float(farthest.observed("tip")[0])),
+        "forces": _plotly_figure(chart_along(rest_curves(shown, "", theme.PALETTE[0]))),
     }
     check_current()
     # A constant step gives a preview long before the motion with error control.
@@ -146,13 +134,12 @@ def beam_results(
     ):
         trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
-        complete = with_motion(design, loaded, rests | extended, trajectory, case, model)
-        results = _results(case, complete, label(boom, {model.name: trajectory}))
-        summary = summarise_motion(
-            model, plan.motion.system, trajectory, built.num_dofs, design.static[0].tip
-        )
+        rows, _ = evaluate_motion(States.in_motion(loaded, trajectory), model.name, case.life)
+        data = label(boom, {model.name: trajectory})
+        results = _results(case, data, Rows([*static.rows, *rows]), Curves(static.curves))
+        tip = float(rests.observed("tip")[0])
+        summary = summarise_motion(model, plan.motion.system, trajectory, built.num_dofs, tip)
         results.summary.models = {model.name: summary}
-        results.conclude()
         whole = summary_table(results)
         assert whole is not None
         limits = [
@@ -165,7 +152,7 @@ def beam_results(
             "rows": [*(row for row in whole.rows if row not in table.rows), *limits],
             "notes": whole.notes,
             "utilisation": utilisation_verdict(results),
-            "cautions": results.summary.cautions,
+            "cautions": cautions(Context.of_run(results)),
             "tip": _tip_chart(trajectory),
         }
 
@@ -190,19 +177,13 @@ def _check_cost(cost: Cost, case: Case, file: str) -> None:
         )
 
 
-def _results(case: Case, results_of_model: ModelDesignResults, data: xr.Dataset) -> Results:
+def _results(case: Case, data: xr.Dataset, rows: Rows, curves: Curves) -> Results:
     """Return the results of a run with one model."""
-    return Results(case, data, Summary(
-        title=case.title, case_hash="", versions={}, models={}, failures={},
-        design=DesignResults({case.models[0].name: results_of_model}),
-    ))  # fmt: skip
-
-
-def _fibres(loaded: AnalysisModel, rests: Sequence[Any]) -> Iterator[FibreStress]:
-    """Yield the largest fibre stress of each segment over static states (num_modes,)."""
-    states, times = np.array(rests), np.zeros(len(rests))
-    for segment, fibres, curves in fibre_forces(loaded, states, times):
-        yield largest_stresses(segment, fibres, curves, curves, times)[0]
+    design = DesignResults({case.models[0].name: ModelDesignResults()})
+    summary = Summary(
+        title=case.title, case_hash="", versions={}, models={}, failures={}, design=design
+    )
+    return Results(case, data, summary, rows=rows, curves=curves)
 
 
 def _plotly_figure(chart: Chart) -> Any:
@@ -266,15 +247,18 @@ def _calibration(beam: CalibratedTable, shell: Shell, boom: Boom) -> Calibration
     return _LAST.get(name)
 
 
-def boom_figure(case: Case, boom: Boom, rest: StaticResult) -> dict[str, Any]:
-    """Return the figure of the deflected boom at its luffing angle, from results of a beam."""
-    visible = _SHOWN * boom.length / max(abs(rest.tip), 1e-12)
+def boom_figure(case: Case, boom: Boom, shown: Curves, tip: float) -> dict[str, Any]:
+    """Return the figure of the deflected boom at its luffing angle.
+
+    ``shown`` has the curves of all segments in a static state, ``tip`` is its deflection in m.
+    """
+    visible = _SHOWN * boom.length / max(abs(tip), 1e-12)
     factor = max(1.0, float(f"{min(visible, 1e6):.1g}"))
     angle = 0.0 if case.gravity is None else case.gravity.angle
     traces = [
-        *_segments(boom, rest, factor),
+        *_segments(boom, shown, factor),
         *_cylinders(boom),
-        *_symbols(case, boom, rest, factor),
+        *_symbols(case, boom, shown, factor),
     ]
     turn = np.radians(angle)
     matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
@@ -297,7 +281,7 @@ def boom_figure(case: Case, boom: Boom, rest: StaticResult) -> dict[str, Any]:
     return {"data": traces, "layout": layout}
 
 
-def _segments(boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[str, Any]]:
+def _segments(boom: Boom, shown: Curves, factor: float) -> Iterator[dict[str, Any]]:
     """Yield the traces of the undeformed axis, then of each segment from tip to base."""
     yield {
         "along": [boom.segments[0].start, boom.tip],
@@ -307,10 +291,10 @@ def _segments(boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[st
         "hoverinfo": "skip",
     }
     for index in reversed(range(len(boom.segments))):
-        segment, diagram = boom.segments[index], rest.diagrams[index]
-        x = np.array(diagram.x)
+        segment, x = boom.segments[index], shown[index].x
         ends = np.array([symbols.edges(boom, segment, end) for end in segment.ends])
-        low, high = (_deflection(diagram, factor) + np.interp(x, segment.ends, z) for z in ends.T)
+        axis = _deflections(shown, index, factor)
+        low, high = (axis + np.interp(x, segment.ends, z) for z in ends.T)
         color = theme.segment_color(index)
         yield {
             "along": [*x, *x[::-1], x[0]],
@@ -326,8 +310,9 @@ def _segments(boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[st
         }
 
 
-def _deflection(diagram: Diagram, factor: float) -> Array:
-    return factor * np.array(diagram.curves.get("deflection", [0.0] * len(diagram.x)))
+def _deflections(shown: Curves, index: int, factor: float) -> Array:
+    curve = shown[index]
+    return factor * curve.values.get("deflection", np.zeros(curve.x.size))
 
 
 def _cylinders(boom: Boom) -> Iterator[dict[str, Any]]:
@@ -342,10 +327,12 @@ def _cylinders(boom: Boom) -> Iterator[dict[str, Any]]:
         }
 
 
-def _symbols(case: Case, boom: Boom, rest: StaticResult, factor: float) -> Iterator[dict[str, Any]]:
+def _symbols(case: Case, boom: Boom, shown: Curves, factor: float) -> Iterator[dict[str, Any]]:
     for symbol in symbols.boom_symbols(case, boom):
-        diagram, x = rest.diagrams[symbol.segment], np.array(symbol.places)
-        shift = np.interp(x, diagram.x, _deflection(diagram, 0.0 if symbol.grounded else factor))
+        number, x = symbol.segment, np.array(symbol.places)
+        shift = np.interp(
+            x, shown[number].x, _deflections(shown, number, 0.0 if symbol.grounded else factor)
+        )
         shape, rotation = _MARKERS[symbol.path]
         yield {
             "along": x,

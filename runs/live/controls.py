@@ -21,10 +21,11 @@ from protractile.runs.case.build import build_boom, hold_ground
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.messages import BadInput, refusing
+from protractile.runs.case.messages import refusing
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.sanity import usual_ranges
 from protractile.runs.case.schema import Case
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.sweep.points import hold_plates, infer_plates
 from protractile.runs.sweep.variation import Place, Tables, innermost, numbers, unit_of, with_size
 

@@ -29,7 +29,6 @@ import numpy as np
 
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.runs.case import toml
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import check
 from protractile.runs.case.schema import Case
 from protractile.runs.live.beam import beam_results
@@ -37,6 +36,7 @@ from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.estimates import run_cost
 from protractile.runs.pipeline.model_run import failure_reason
 from protractile.runs.pipeline.results import Results
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.ending import when_interrupted
 from protractile.runs.report.output import REPORT
 from protractile.runs.report.pages import page

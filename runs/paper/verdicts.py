@@ -11,12 +11,12 @@ from typing import Literal
 from rich.console import Console
 from rich.text import Text
 
+from protractile.geometry.typography import NONE, number
 from protractile.runs.case.schema import Case
 from protractile.runs.paper.keys import Keys
 from protractile.runs.paper.statements import STATEMENTS
 from protractile.runs.process.terminal import message, say, shorten
 from protractile.runs.report.additions import Addition
-from protractile.runs.report.formatting import NONE, number
 from protractile.runs.report.tables import as_json
 
 Judgement = Literal["reproduced", "contradicted", "undecided"]

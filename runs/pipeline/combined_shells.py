@@ -15,11 +15,14 @@ from dataclasses import replace
 
 import numpy as np
 
+from protractile.analysis.measure import measure_walls
 from protractile.analysis.model import AnalysisModel
-from protractile.analysis.plate_buckling import weakest_panels
-from protractile.analysis.stresses import wall_stresses
+from protractile.analysis.plate_buckling import measure_plates
+from protractile.analysis.states import States
+from protractile.analysis.wall_buckling import buckle_shell
 from protractile.dynamics.excitation import InitialImpulse, PiecewiseLinear, ReleasedLoad, Step
 from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.geometry.arrays import Array
 from protractile.geometry.axial import AxialChange
 from protractile.geometry.boom import Boom
 from protractile.geometry.load import Load
@@ -29,9 +32,7 @@ from protractile.runs.case.kinds.model import BuildContext, BuiltModel, ModelBoo
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.combinations import CombinationState
-from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.model_output import force_places
-from protractile.runs.pipeline.wall_buckling import buckle_shell
 
 # History of a released load in static states: 1 at t = 0, then 0.
 _RELEASE = PiecewiseLinear((0.0, 1.0e-6), (1.0, 0.0))
@@ -140,21 +141,21 @@ def _state(
     try:
         with np.errstate(all="ignore"):
             loaded = AnalysisModel.of(boom, system, lines)
-            beam = BeamStates.at_rest(loaded, combined.case.time.duration)
+            states = States.at_rest(loaded, combined.case.time.duration)
             if boom.compressed:
-                loads = map(system.load_at, beam.time.tolist())
+                loads = map(system.load_at, states.time.tolist())
                 factor = min(shell.critical_factor_at(system, load) for load in loads)
     except NUMERICAL_ERRORS:
-        return CombinationState(combined, None)
+        return CombinationState(combined, None, model.name)
     assert shell.fields is not None
     fields = shell.fields.assign(
-        state=(("time", "mode"), beam.positions.astype(np.float32)),
-        time=("time", beam.time),
+        state=(("time", "mode"), states.positions.astype(np.float32)),
+        time=("time", states.time),
     )
     names = [segment.name for segment in boom.segments]
     stresses = stress_near_places(ShellStress.from_fields(fields), force_places(boom), names)
-    walls = wall_stresses(boom, stresses)
-    return CombinationState(combined, beam, walls, critical_factor=factor)
+    walls = [*measure_walls(boom, stresses)]
+    return CombinationState(combined, states, model.name, walls, critical_factor=factor)
 
 
 def _with_buckling(
@@ -177,18 +178,25 @@ def _with_buckling(
     states, state, governing = list(states), None, 0
     if context.comm.rank == 0 and built.shell.fields is not None:
         factors = [
-            (min((one.factor for one in weakest_panels(shared[0].segments, rest)), default=np.inf),
-             number, one.beam.positions[k])
+            (float(factor), number, one.states.positions[step])
             for number, one in enumerate(states)
-            if one.beam
-            for k, rest in enumerate(one.beam.rests)
-        ]  # fmt: skip
+            if one.states is not None
+            for step, factor in enumerate(_lowest_factors(one.states))
+        ]
         if factors:
             _, governing, position = min(factors, key=lambda entry: entry[0])
             shell = with_plays_and_loads(built.shell, shared[1 + governing])
             extensions = dict.fromkeys(range(len(shared[0].joints)), 0.0)
             state = ShellState.from_fields(built.shell.fields, shell.system, position, extensions)
-    buckled = buckle_shell(shared[0], model, built, state, case.buckling.modes, context.comm)
+    count, meshes = case.buckling.modes, built.shell.meshes
+    buckled = buckle_shell(shared[0], meshes, state, model.options(), count, context.comm)
     if buckled is not None:
-        states[governing] = states[governing]._replace(buckling=buckled.segments)
+        states[governing] = replace(states[governing], buckling=buckled.segments)
     return states
+
+
+def _lowest_factors(states: States) -> Array:
+    """Return the lowest buckling factor (num_states,) by panel formulas; infinite without one."""
+    none = np.full(states.time.size, np.inf)
+    lowest = [none, *(one.values.min(axis=1) for one in measure_plates(states))]
+    return np.asarray(np.min(lowest, axis=0))

@@ -21,10 +21,10 @@ from protractile.dynamics.motion import MOST_STEPS, Motion
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import ModelTable
 from protractile.runs.case.load_tables import CombinationTable
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.models import build_on, initial_motion
+from protractile.runs.process.bad_input import BadInput
 
 # Memory in bytes and time in s of runs that need no confirmation.
 MAX_MEMORY, MAX_TIME = 4.0e9, 3600.0
@@ -112,8 +112,7 @@ class Preview:
 
 def run_cost(case: Case, preview: Preview | None = None) -> Cost:
     """Return the cost of a run of a checked case, estimated from its preview."""
-    shell = any(model.needs_shell for model in case.models)
-    report = (_SHELL_REPORT if shell else _REPORT) + _OF_SEGMENT * len(case.segments)
+    report = (_SHELL_REPORT if case.first_shell else _REPORT) + _OF_SEGMENT * len(case.segments)
     states = _combined_time(case, proofs=True) if case.load_cases or case.combinations else 0.0
     return models_cost(preview or Preview(CheckedCase(case))) + Cost(0.0, report + states)
 
@@ -121,8 +120,7 @@ def run_cost(case: Case, preview: Preview | None = None) -> Cost:
 def models_cost(preview: Preview) -> Cost:
     """Return the cost of a run without its report."""
     case = preview.checked.case
-    shell = any(model.needs_shell for model in case.models)
-    total = Cost(_SHELL_LIBRARIES if shell else _LIBRARIES, 0.0)
+    total = Cost(_SHELL_LIBRARIES if case.first_shell else _LIBRARIES, 0.0)
     # Overflow is ignored here: the run detects it.
     with np.errstate(all="ignore"):
         for model in case.models:

@@ -3,167 +3,200 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from types import MappingProxyType
-
-import numpy as np
+from typing import NamedTuple
 
 from protractile.analysis.bonded import bonded_system
+from protractile.analysis.curves import Curve, Curves, diagrams, envelope, histories
 from protractile.analysis.equilibria import (
     equilibria,
     extended_equilibria,
     instants,
     vibrating_state,
 )
-from protractile.analysis.fatigue import HAS_RAINFLOW, life
+from protractile.analysis.fatigue import HAS_RAINFLOW, life_rows
+from protractile.analysis.measure import measure_boom, measure_segment, measure_walls
 from protractile.analysis.model import AnalysisModel
-from protractile.analysis.modes import ModeComparison, match_modes, modes
-from protractile.analysis.motion_results import evaluate_motion
-from protractile.analysis.plate_buckling import weakest_panels
-from protractile.analysis.states import static_results
-from protractile.analysis.stresses import wall_stresses
+from protractile.analysis.modes import (
+    Mode,
+    ModeComparison,
+    match_modes,
+    mode_curves,
+    mode_rows,
+    modes,
+)
+from protractile.analysis.plate_buckling import measure_plates
+from protractile.analysis.rows import (
+    EXTENDED,
+    FARTHEST,
+    MOTION,
+    REST,
+    Row,
+    Rows,
+    extremes,
+    static_rows,
+)
+from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
-from protractile.dynamics.trajectory import Trajectory
-from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.telescoping import travel
 from protractile.runs.case.kinds.model import BuiltModel
 from protractile.runs.case.motions import with_initial_slack
-from protractile.runs.case.schema import Case, Model
+from protractile.runs.case.schema import Case, LifeTable, Model
 from protractile.runs.pipeline.combinations import combination_states
-from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults, play_effects
+from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
 from protractile.runs.pipeline.model_quality import quality_notes, reference_of
 from protractile.runs.pipeline.model_run import ModelRun
 from protractile.runs.pipeline.models import MotionPlan, complete_system
 from protractile.runs.pipeline.proofs import prove
 from protractile.runs.pipeline.residual_vibration import residual_vibration
-from protractile.runs.pipeline.statics import reactions, statics
-from protractile.runs.pipeline.summary import Summary
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.statics import reaction_rows, statics
 from protractile.runs.pipeline.turning import crane_drives, hoisting
+
+
+class Evaluation(NamedTuple):
+    """Results of a model after its motion."""
+
+    rows: Sequence[Row]  #: extremes at rest and in motion, with and without play
+    curves: Sequence[Curve]  #: diagrams, envelopes and mode shapes
+    modes: Sequence[Mode]  #: the first modes about the equilibrium; empty without an equilibrium
+    design: ModelDesignResults  #: other design results
 
 
 def loaded_model(boom: Boom, model: Model, built: BuiltModel) -> AnalysisModel:
     """Return a built model of a boom under all constant loads."""
     boom_of_model = boom.bonded if model.bonded else boom
-    return AnalysisModel.of(boom_of_model, built.system, model.lines(boom, built))
+    return AnalysisModel.of(boom_of_model, built.system, model.lines(boom, built), model.smooth)
 
 
-def results_at_rest(
-    loaded: AnalysisModel,
-    rests: Mapping[float, Array],
-    extended: Mapping[float, Array] = MappingProxyType({}),
-) -> ModelDesignResults:
-    """Return modes and static states at equilibria.
+def evaluate_rest(name: str, rests: States, extended: States, panels: bool) -> Evaluation:
+    """Return modes and results of static states.
 
-    Equilibria are (num_modes,), by time in s; ``extended`` are those at the largest and smallest
-    extension.
+    Args:
+        name: name of the model.
+        rests: states under the loads at t = 0 and extreme loads; empty without an equilibrium.
+        extended: states at the largest and smallest extension.
+        panels: True for buckling factors of plates by panel formulas.
     """
-    static, static_extended = (
-        static_results(loaded, np.array([*positions]), np.array([*positions.values()]))
-        if positions
-        else []
-        for positions in (rests, extended)
+    if not rests.time.size:
+        return Evaluation([], [], [], ModelDesignResults())
+    rows, curves = [*static_rows(rests, name)], [*diagrams(rests, name, REST)]
+    if extended.time.size:
+        rows += static_rows(extended, name, EXTENDED)
+        curves += diagrams(extended, name, EXTENDED)
+    farthest = (rests + extended).farthest
+    rows += extremes(measure_boom(farthest), name, FARTHEST)
+    rows += extremes(measure_plates(farthest) if panels else (), name, FARTHEST)
+    system, rest = vibrating_state(
+        rests.model.system, dict(zip(rests.time.tolist(), rests.positions, strict=True))
     )
-    first = []
-    if rests:
-        still, rest = vibrating_state(loaded.system, rests)
-        first = modes(replace(loaded, system=still), rest)
-    return ModelDesignResults(static=static, static_extended=static_extended, modes=first)
+    first = modes(replace(rests.model, system=system), rest)
+    rows += mode_rows(first, name)
+    curves += mode_curves(rests.boom, first, name)
+    return Evaluation(rows, curves, first, ModelDesignResults())
 
 
-def with_motion(
-    results: ModelDesignResults,
-    loaded: AnalysisModel,
-    rests: Mapping[float, Array],
-    trajectory: Trajectory,
-    case: Case,
-    model: Model,
-) -> ModelDesignResults:
-    """Return static results, completed by results of the motion and by fatigue damage."""
-    rest_positions = np.array([*rests.values()]).reshape(-1, loaded.system.num_modes)
-    static = [*results.static, *results.static_extended]
-    motion, varying = evaluate_motion(loaded, trajectory, rest_positions, static, not model.smooth)
-    fatigue = case.life.detail_category, case.life.partial_factor, case.life.repeats
-    lives = [life(one, *fatigue) for one in varying] if HAS_RAINFLOW else []
-    return replace(results, motion=motion, life=lives)
+def evaluate_motion(
+    states: States, name: str, life: LifeTable, play: bool = True
+) -> tuple[list[Row], list[Curve]]:
+    """Return extremes, fatigue damage and envelopes of a motion."""
+    rows, curves = [*extremes(measure_boom(states), name, MOTION, play)], list[Curve]()
+    for number, (segment, line) in enumerate(
+        zip(states.boom.segments, states.model.lines, strict=True)
+    ):
+        forces = states.section_forces(number)
+        measured = [*measure_segment(states, number, forces)]
+        rows += extremes(measured, name, MOTION, play)
+        curves += envelope(segment.name, line.x, forces, name, play)
+        if HAS_RAINFLOW:
+            stresses = [one for one in measured if one.quantity == "stress"]
+            fatigue = life.detail_category, life.partial_factor, life.repeats
+            rows += life_rows(stresses, name, play, *fatigue)
+    if states.recorded is not None and "rope_force_peak" in states.recorded:
+        weight = states.recorded["rope_force_peak"].attrs["weight"]
+        rows.append(Row(name, REST, play, "rope_force", "rope", "", weight))
+    return rows, curves
 
 
-def evaluate_model(boom: Boom, case: Case, ran: ModelRun, bonded: bool) -> ModelDesignResults:
-    """Return the design results of a model after its run, also without play if ``bonded``."""
+def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
+    """Return the results of a model after its run."""
     model, trajectory, shell = ran.model, ran.motion.trajectory, ran.shell
     loaded, duration = loaded_model(boom, model, ran.built), case.time.duration
-    times = instants(loaded.system, duration)
-    rests = equilibria(loaded.system, times)
-    extended = extended_equilibria(loaded.system, duration)
-    results = results_at_rest(loaded, rests, extended)
-    results = with_motion(results, loaded, rests | extended, trajectory, case, model)
+    rests = States.of(loaded, equilibria(loaded.system, instants(loaded.system, duration)))
+    extended = States.of(loaded, extended_equilibria(loaded.system, duration))
+    at_rest = evaluate_rest(model.name, rests, extended, case.buckling is not None)
+    rows, curves = evaluate_motion(States.in_motion(loaded, trajectory), model.name, case.life)
+    rows, curves = [*at_rest.rows, *rows], [*at_rest.curves, *curves]
     if shell is not None:
-        assert results.motion is not None
-        motion = replace(results.motion, walls=wall_stresses(loaded.boom, shell.stresses))
-        buckled = [] if shell.buckling is None else shell.buckling.segments
-        results = replace(results, motion=motion, buckling=buckled)
-    if case.buckling is not None and (rest := results.farthest_static) is not None:
-        results = replace(results, panels=weakest_panels(loaded.boom.segments, rest))
-    results = replace(
-        results,
+        rows += extremes(measure_walls(loaded.boom, shell.stresses), model.name, MOTION)
+        curves += histories(shell.stresses, model.name)
+    design = ModelDesignResults(
+        buckling=shell.buckling.segments if shell and shell.buckling else [],
         residual_vibration=residual_vibration(loaded.system, trajectory, case, model),
         hoisting=hoisting(case, boom, trajectory),
         drives=crane_drives(case, boom, trajectory.data),
     )
-    if not bonded or model.bonded or not boom.joints:
-        return results
-    try:
-        without_play = _bonded_model(boom, case, model, loaded, rests)
-        return _add_bonded(results, boom, case, model, without_play, times)
-    except NUMERICAL_ERRORS:
-        # Rigid segments without play, for example, have no degree of freedom.
-        return results
+    return Evaluation(rows, curves, at_rest.modes, design)
 
 
-def _add_bonded(
-    results: ModelDesignResults,
-    boom: Boom,
-    case: Case,
-    model: Model,
-    bonded: AnalysisModel,
-    times: Sequence[float],
-) -> ModelDesignResults:
-    """Return design results, completed by static results at ``times`` and a motion without play."""
-    rests = equilibria(bonded.system, times)
-    other = results_at_rest(bonded, rests)
-    results = replace(
-        results,
-        static_bonded=[state for state in other.static if _at_initial_extension(boom, state.time)],
-        # Shapes are left out, since play hardly changes them.
-        modes_bonded=[replace(mode, shapes=[]) for mode in other.modes],
-    )
-    if boom.telescopes:
-        # A boom without play cannot telescope.
-        return results
-    try:
-        motion = MotionPlan.of(bonded.system, case, model).trajectory()
-        other = with_motion(other, bonded, rests, motion, case, model)
-    except NUMERICAL_ERRORS:
-        # The static results remain valid.
-        return results
-    return replace(results, motion_bonded=other.motion, life_bonded=other.life)
+def evaluate_both(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
+    """Return the results of a model after its run, with and without play."""
+    found = evaluate_model(boom, case, ran)
+    if ran.model.bonded or not boom.joints:
+        return found
+    rows, curves = [*found.rows], [*found.curves]
+    # Rigid segments without play, for example, have no degree of freedom.
+    with suppress(*NUMERICAL_ERRORS):
+        for more_rows, more_curves in _without_play(boom, case, ran):
+            rows += more_rows
+            curves += more_curves
+    return found._replace(rows=rows, curves=curves)
 
 
-def _bonded_model(
-    boom: Boom, case: Case, model: Model, loaded: AnalysisModel, rests: Mapping[float, Array]
-) -> AnalysisModel:
-    """Return the model with all joints bonded, without play."""
+def _without_play(boom: Boom, case: Case, ran: ModelRun) -> Iterator[tuple[list[Row], list[Curve]]]:
+    """Yield rows and curves of a model without play: of static states, then of a motion.
+
+    A motion that cannot be computed is left out.
+    """
+    model, loaded = ran.model, loaded_model(boom, ran.model, ran.built)
+    times = instants(loaded.system, case.time.duration)
+    rests = States.of(loaded, equilibria(loaded.system, times))
+    bonded = _bonded_model(boom, case, model, rests)
+    found = equilibria(bonded.system, times)
+    initial = {time: rest for time, rest in found.items() if _at_initial_extension(boom, time)}
+    rows, curves = list[Row](), list[Curve]()
+    if initial:
+        rests = States.of(bonded, initial)
+        rows += static_rows(rests, model.name, play=False)
+        curves += diagrams(rests, model.name, REST, play=False)
+    if found:
+        system, rest = vibrating_state(bonded.system, found)
+        rows += mode_rows(modes(replace(bonded, system=system), rest), model.name, play=False)
+    yield rows, curves
+    # A boom without play cannot telescope.
+    if not boom.telescopes:
+        with suppress(*NUMERICAL_ERRORS):
+            motion = MotionPlan.of(bonded.system, case, model).trajectory()
+            yield evaluate_motion(States.in_motion(bonded, motion), model.name, case.life, False)
+
+
+def _bonded_model(boom: Boom, case: Case, model: Model, rests: States) -> AnalysisModel:
+    """Return the model with all joints bonded, without play, from its static states with play."""
     without = boom.bonded
     if (bonded := model.system_without_play(boom)) is not None:
         lines = bonded[1]
-        return AnalysisModel.of(without, complete_system(bonded[0], case, without, lines), lines)
-    initial = [position for time, position in rests.items() if _at_initial_extension(boom, time)]
+        system = complete_system(bonded[0], case, without, lines)
+        return AnalysisModel.of(without, system, lines, model.smooth)
+    loaded, states = rests.model, zip(rests.time.tolist(), rests.positions, strict=True)
+    initial = [position for time, position in states if _at_initial_extension(boom, time)]
     initial_system = loaded.system.at_time(0.0) if boom.telescopes else loaded.system
     system, basis = bonded_system(initial_system, initial)
     system = with_initial_slack(system, case)
-    return AnalysisModel(without, system, [line.transform(basis) for line in loaded.lines])
+    lines = [line.transform(basis) for line in loaded.lines]
+    return AnalysisModel(without, system, lines, model.smooth)
 
 
 def _at_initial_extension(boom: Boom, time: float) -> bool:
@@ -171,34 +204,38 @@ def _at_initial_extension(boom: Boom, time: float) -> bool:
     return not any(travel(boom, segment, time) for segment in range(len(boom.segments)))
 
 
-def evaluate_run(
-    boom: Boom, case: Case, summary: Summary, models: Mapping[str, ModelDesignResults]
-) -> DesignResults:
-    """Return the design results of all models of a run.
+def evaluate_run(results: Results, evaluations: Mapping[str, Evaluation]) -> None:
+    """Add rows, curves and design results of all models, of load cases and of proofs to results.
 
-    ``models`` are the design results of models that did not fail.
+    ``evaluations`` are those of models that did not fail.
     """
-    static = statics(case, boom)
-    completed = [model for model in case.models if model.name in models]
+    case, boom = results.case, results.boom
+    completed = [model for model in case.models if model.name in evaluations]
+    rows = [row for one in evaluations.values() for row in one.rows]
+    results.curves = Curves(curve for one in evaluations.values() for curve in one.curves)
+    if (static := statics(case, boom)) is not None:
+        rows += [*reaction_rows(static.with_play), *reaction_rows(static.bonded, play=False)]
     design = DesignResults(
-        models=dict(models),
-        reactions=[] if static is None else reactions(static.with_play),
-        reactions_bonded=[] if static is None else reactions(static.bonded),
-        modes=_compare_modes(boom, completed, models),
-        play=play_effects(completed, models) if boom.joints else [],
+        models={name: one.design for name, one in evaluations.items()},
+        modes=_compare_modes(boom, completed, evaluations),
     )
     if case.load_cases or case.combinations:
         states = combination_states(case)
-        design = replace(design, combinations=[one.result for one in states])
+        rows += (row for one in states for row in one.rows)
+        design = replace(design, combinations=[one.combined.name for one in states])
         with suppress(*NUMERICAL_ERRORS):
             # A combination without an equilibrium has no proofs; the table of combinations states
             # this.
-            design = replace(design, proofs=prove(case, states))
-    return replace(design, quality_notes=[*quality_notes(summary, design, case.time)])
+            proofs = prove(case, states)
+            rows += proofs.rows
+            design = replace(design, proof_notes=[*proofs.notes])
+    results.rows, results.summary.design = Rows(rows), design
+    notes = [*quality_notes(results.summary, results.rows, design.modes, case.time)]
+    results.summary.design = replace(design, quality_notes=notes)
 
 
 def _compare_modes(
-    boom: Boom, completed: Sequence[Model], models: Mapping[str, ModelDesignResults]
+    boom: Boom, completed: Sequence[Model], models: Mapping[str, Evaluation]
 ) -> ModeComparison | None:
     with_modes = [model for model in completed if models[model.name].modes]
     reference = reference_of(with_modes)

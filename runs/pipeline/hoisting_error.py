@@ -14,13 +14,13 @@ from typing import NamedTuple, Self
 
 import numpy as np
 
+from protractile.analysis.states import States
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.hanging_load import HangingLoad
 from protractile.runs.case.motions import hanging_load
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.largest_loads import BeamStates
 
 # Slope of the shortening of a cantilever under a force at its tip, over w/L: d(0.6 w²/L)/dw.
 _SHORTENING = 1.2
@@ -54,7 +54,7 @@ class _Mode(NamedTuple):
         return cls(omega, shapes[:, at] / tip, mass, omega**2 * mass - rope, damping)
 
 
-def straight_path_error(case: Case, beam: BeamStates) -> float:
+def straight_path_error(case: Case, beam: States) -> float:
     """Return the largest error of the tip deflection by its straight path, over its range.
 
     The luffing angle is that at t = 0. The error is 0 without a load that hangs on a rope at rest,

@@ -19,13 +19,13 @@ import xarray as xr
 
 from protractile.analysis.equilibria import equilibria
 from protractile.analysis.modes import MODES
+from protractile.analysis.wall_buckling import BuckledShell
 from protractile.dynamics.damping import closed_contact_modes
-from protractile.dynamics.line import Line, Quantity
+from protractile.dynamics.line import Line, LineQuantity
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.runs.pipeline.results import CONVENTIONS
-from protractile.runs.pipeline.wall_buckling import BuckledShell
 from protractile.shell_model.stress.history import StressSummary, stress_near_places, summarise
 from protractile.shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
@@ -120,7 +120,7 @@ class SegmentMotion(NamedTuple):
     """Deflections and section forces (num_frames, num_places) of a segment at x (num_places,)."""
 
     x: Array
-    curves: Mapping[Quantity, Array]
+    curves: Mapping[LineQuantity, Array]
 
 
 class BeamOutput(NamedTuple):

@@ -12,12 +12,13 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 import xarray as xr
 
 from protractile.analysis.comparison import Distributions, PeakDifferences, compare
+from protractile.analysis.modes import ModeComparison
+from protractile.analysis.rows import MOTION, REST, Rows
 from protractile.dynamics.trajectory import PointwiseDifferences
-from protractile.geometry.typography import TO_PERCENT, join_words
+from protractile.geometry.typography import TO_PERCENT, join_words, number, signed_percent
 from protractile.runs.case.schema import Case, Model, TimeTable
-from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults, QualityNote
+from protractile.runs.pipeline.design_results import QualityNote
 from protractile.runs.pipeline.summary import Comparisons, Summary, WholeRun
-from protractile.runs.report.formatting import number, signed_percent
 
 # Members whose tips differ by more than this fraction of the range have diverged.
 _DIVERGED = 0.2
@@ -102,14 +103,14 @@ def _others(data: xr.Dataset, reference: str) -> list[str]:
 
 
 def quality_notes(
-    summary: Summary, design: DesignResults, time: TimeTable
+    summary: Summary, rows: Rows, modes: ModeComparison | None, time: TimeTable
 ) -> Iterator[QualityNote]:
     """Yield notes on the accuracy of a run.
 
-    The summary has no design results yet; ``time`` is the table of times of the case.
+    ``modes`` compares those of all models; ``time`` is the table of times of the case.
     """
     models = summary.models
-    for line in _agreement(design):
+    for line in _agreement(rows, modes):
         yield QualityNote("agreement", line)
     for line in _horizon(summary, time.duration):
         yield QualityNote("horizon", line)
@@ -160,20 +161,16 @@ def _percent(part: float) -> str:
     return f"{TO_PERCENT * part:.2g} %"
 
 
-def _agreement(design: DesignResults) -> Iterator[str]:
+def _agreement(rows: Rows, modes: ModeComparison | None) -> Iterator[str]:
     """Yield a sentence on the deviations of each other model with play from the reference."""
-    if design.modes is None:
+    if modes is None:
         return
-    reference = design.modes.reference
-    results = design.models[reference]
-    for name, matches in design.modes.matches.items():
-        other, first, dynamic = design.models[name], matches[0], None
-        if results.motion and other.motion and results.motion.peaks[0].largest:
-            dynamic = other.motion.peaks[0].largest / results.motion.peaks[0].largest - 1.0
+    for name, matches in modes.matches.items():
+        dynamic = _tips(rows, MOTION, modes.reference, name)
         deviations = {
-            "static tip deflection": static_deviation(results, other),
-            "first frequency": None if first is None else first.off,
-            "maximum tip deflection": dynamic,
+            "static tip deflection": static_deviation(rows, modes.reference, name),
+            "first frequency": None if matches[0] is None else matches[0].off,
+            "maximum tip deflection": dynamic and abs(dynamic[1]) / abs(dynamic[0]) - 1.0,
         }
         parts = [
             f"{signed_percent(off)} in the {what}"
@@ -181,17 +178,22 @@ def _agreement(design: DesignResults) -> Iterator[str]:
             if off is not None
         ]
         if parts:
-            yield f"{name} differs from {reference} by {join_words(parts)}."
+            yield f"{name} differs from {modes.reference} by {join_words(parts)}."
 
 
-def static_deviation(results: ModelDesignResults, other: ModelDesignResults) -> float | None:
+def static_deviation(rows: Rows, reference: str, model: str) -> float | None:
     """Return the relative deviation of another model's largest static tip deflection, or None."""
-    tips = [
-        max((rest.tip for rest in one.static), key=abs, default=None) for one in (results, other)
-    ]
-    if tips[1] is None or not tips[0]:
-        return None
-    return tips[1] / tips[0] - 1.0
+    tips = _tips(rows, REST, reference, model)
+    return tips and tips[1] / tips[0] - 1.0
+
+
+def _tips(rows: Rows, state: str, *models: str) -> tuple[float, float] | None:
+    """Return the tip deflections of two models in m; None if one is missing or the first is 0."""
+    of_models = (
+        rows.where(model=model, state=state, play=True, quantity="tip") for model in models
+    )
+    tips = [row.value for of_model in of_models for row in of_model]
+    return (tips[0], tips[1]) if len(tips) == 2 and tips[0] else None
 
 
 def _horizon(summary: Summary, duration: float) -> Iterator[str]:

@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from protractile.analysis.low_pass import SlowPeaks
+from protractile.analysis.wall_buckling import buckle_shell, farthest_state
 from protractile.beam_model.calibration import Calibration, Stiffness
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
@@ -45,7 +46,6 @@ from protractile.runs.pipeline.summary import (
     Predictability,
     StationSpring,
 )
-from protractile.runs.pipeline.wall_buckling import buckle_shell, farthest_state
 from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.shell_model.stages import Stages
 
@@ -154,9 +154,14 @@ def run_model(
     if case.buckling is not None and isinstance(model, Shell):
         assert comm is not None
         with stages.stage("buckling"):
-            joined = model.model_boom(boom).boom
-            state = farthest_state(joined, case, built) if comm.rank == 0 else None
-            buckling = buckle_shell(joined, model, built, state, case.buckling.modes, comm)
+            joined, reduced_shell = model.model_boom(boom).boom, built.shell
+            assert reduced_shell is not None
+            state = None
+            if comm.rank == 0 and reduced_shell.fields is not None:
+                loaded, duration = built.system.gather_loads(), case.time.duration
+                state = farthest_state(joined, loaded, reduced_shell.fields, duration)
+            count, meshes = case.buckling.modes, reduced_shell.meshes
+            buckling = buckle_shell(joined, meshes, state, model.options(), count, comm)
     with members.rank_executor(comm if case.ensemble else None) as executor:
         if not context.first_rank:
             return None

@@ -8,30 +8,36 @@ from dataclasses import replace
 from itertools import product
 from typing import Any
 
+from protractile.analysis.states import States
 from protractile.geometry.boom import Boom, Collar
 from protractile.geometry.joint import PadSize
 from protractile.geometry.typography import join_words
 from protractile.runs.case.schema import Case, Model
-from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.statics import state_at_rest
 
 # Fraction to which a remedy reduces the tip deflection at least.
 HELPFUL = 0.9
 
 
-def wall_part(case: Case, beam: BeamStates) -> float | None:
+def wall_part(case: Case, beam: States) -> float | None:
     """Return the share of the largest static tip deflection that walls or sections cause.
 
     The share is 1 if they cause all of it; None if nothing yields, or if a section is unknown.
     """
-    boom, rest = beam.boom, beam.farthest
+    boom, (time, tip) = beam.boom, largest_tip(beam)
     if not boom.yielding or any(segment.section is None for segment in boom.segments):
         return None
-    rigid = state_at_rest(case, boom, walls=0.0, time=rest.time).tip
-    return 1.0 - rigid / rest.tip if rest.tip else 0.0
+    rigid = state_at_rest(case, boom, walls=0.0, time=time).tip
+    return 1.0 - rigid / tip if tip else 0.0
 
 
-def remedies(case: Case, beam: BeamStates) -> list[tuple[float, str]]:
+def largest_tip(beam: States) -> tuple[float, float]:
+    """Return the time in s and the value in m of the largest tip deflection along z."""
+    farthest = beam.largest("tip")
+    return float(farthest.time[0]), float(farthest.observed("tip")[0])
+
+
+def remedies(case: Case, beam: States) -> list[tuple[float, str]]:
     """Return what makes the largest static tip deflection smaller: its tip in m, in words.
 
     The best remedy is the first one. The states are those of a boom with the contact laws of the
@@ -40,13 +46,13 @@ def remedies(case: Case, beam: BeamStates) -> list[tuple[float, str]]:
     Raises:
         NumericsError: the boom has no equilibrium after a change that a remedy makes.
     """
-    rest = beam.farthest
+    time, largest = largest_tip(beam)
     tips = (
-        (state_at_rest(case, changed, time=rest.time).tip, what)
+        (state_at_rest(case, changed, time=time).tip, what)
         for what, changed in _stiffer_booms(beam.boom)
         if changed != beam.boom
     )
-    better = sorted((tip / rest.tip, tip, what) for tip, what in tips)
+    better = sorted((tip / largest, tip, what) for tip, what in tips)
     return [(tip, what) for part, tip, what in better if part < HELPFUL]
 
 

@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import log, pi
 
 import numpy as np
 
+from protractile.analysis.quantities import MEASURED, Quantity, declared_quantities, records
 from protractile.geometry.arrays import Array
 from protractile.runs.case.schema import LimitsTable
 from protractile.runs.pipeline.design_results import ModelDesignResults
-from protractile.runs.pipeline.largest_loads import StaticKind
-from protractile.runs.pipeline.metrics import Metric, metrics, records
 from protractile.runs.pipeline.summary import ModelSummary
 
 # Quantities in SI units by name; None if a model has no value.
@@ -28,37 +27,29 @@ ROUND_OFF = 1.0e-12
 # Fraction of the initial vibration that remains after the decay time.
 DECAYED_SHARE = 0.1
 
-# Kinds of static results with limits, by quantity.
-STATIC_KINDS: Mapping[str, StaticKind] = {
-    "tip": "tip",
-    "tip_at_rest": "tip",
-    "tip_lateral": "lateral tip",
-    "stress": "bending stress",
-    "pad_pressure": "pad",
-}
-
 # Classes whose annotated fields are quantities, too.
 RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummary]
 
-# Static, dynamic and accuracy quantities.
+# Measured, static, dynamic and accuracy quantities.
 QUANTITIES = (
-    Metric("tip_at_rest", "m", "static tip deflection (maximum load)", shown="mm"),
-    Metric("tip", "m", "tip deflection", shown="mm"),
-    Metric("tip_lateral", "m", "lateral tip deflection", shown="mm"),
-    Metric("tip_amplitude", "m", "tip amplitude", shown="mm"),
-    Metric("dynamic_factor", "1", "dynamic factor"),
-    Metric("contact_force", "N", "contact force", shown="kN"),
-    Metric("stress", "Pa", "bending stress", shown="MPa"),
-    Metric("wall_stress", "Pa", "local plate stress", shown="MPa"),
-    Metric("pad_pressure", "Pa", "pad pressure", shown="MPa"),
-    Metric("damage", "1", "damage", logarithmic=True),
-    Metric("first_frequency", "Hz", "first frequency"),
-    Metric("decay_time", "s", "decay time to 10 %"),
-    Metric("mass", "kg", "mass"),
-    Metric("settling_time", "s", "settling time"),
-    Metric("drive_force", "N", "largest force of an elastic drive", shown="kN"),
-    Metric("drive_slip", "m", "longest slip on a drive", shown="mm"),
-    *(one for kind in RECORD_CLASSES for one in metrics(kind).values() if one.name),
+    *(
+        shown
+        for one in MEASURED.values()
+        if one.swept
+        for shown in (
+            *([replace(one, name=f"{one.name}_at_rest", title=one.at_rest)] if one.at_rest else []),
+            one,
+        )
+    ),
+    Quantity("tip_amplitude", "m", "tip amplitude", shown="mm"),
+    Quantity("dynamic_factor", "1", "dynamic factor"),
+    Quantity("first_frequency", "Hz", "first frequency"),
+    Quantity("decay_time", "s", "decay time to 10 %"),
+    Quantity("mass", "kg", "mass"),
+    Quantity("settling_time", "s", "settling time"),
+    Quantity("drive_force", "N", "largest force of an elastic drive", shown="kN"),
+    Quantity("drive_slip", "m", "longest slip on a drive", shown="mm"),
+    *(one for kind in RECORD_CLASSES for one in declared_quantities(kind).values() if one.name),
 )
 
 
@@ -93,7 +84,7 @@ def settling_time(time: Array, tip: Array) -> float | None:
 class Limit:
     """Smallest or largest permitted value of a quantity."""
 
-    quantity: Metric
+    quantity: Quantity
     permitted: float  #: permitted value in SI units
     least: bool = False  #: True for a smallest permitted value
 

@@ -14,6 +14,7 @@ from typing import Annotated
 
 import numpy as np
 
+from protractile.analysis.quantities import Quantity, Record
 from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import resolving_times
 from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
@@ -22,7 +23,6 @@ from protractile.dynamics.trajectory import Trajectory
 from protractile.dynamics.travel import Travel
 from protractile.geometry.arrays import Array, Indices
 from protractile.runs.case.schema import Case, Model
-from protractile.runs.pipeline.metrics import Metric, Record
 from protractile.runs.pipeline.models import MotionPlan
 
 # Number of equilibria in a motion and between two reversals; maximum number of reversals.
@@ -30,8 +30,8 @@ _RESTS, _BETWEEN_TURNS, _MOST_TURNS = 60, 4, 100
 
 _TIP = ("tip", "tip_lateral")
 
-# Metric of a vibration at constant extension.
-_level = partial(Metric, unit="m", shown="mm", charted=False)
+# Quantity of a vibration at constant extension.
+_level = partial(Quantity, unit="m", shown="mm", charted=False)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,17 +48,19 @@ class ResidualVibration(Record):
     #: largest distance of the tip from its static position in m
     tip: Annotated[
         float,
-        Metric(
+        Quantity(
             "residual_vibration", "m", "residual vibration",
             shown="mm", heading="residual\nvibration",
         ),
     ]  # fmt: skip
     #: time of this distance in s
     time: Annotated[
-        float, Metric("", "s", "time of the residual vibration", heading="at", form=".3f")
+        float, Quantity("", "s", "time of the residual vibration", heading="at", form=".3f")
     ]
     #: mean speed in m/s of the fastest drive while it moves
-    speed: Annotated[float, Metric("drive_speed", "m/s", "mean speed of the drive", charted=False)]
+    speed: Annotated[
+        float, Quantity("drive_speed", "m/s", "mean speed of the drive", charted=False)
+    ]
     #: largest distance in m at constant initial extension, under the same loads; None if it cannot
     #: be computed
     initial: Annotated[

@@ -4,9 +4,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from hashlib import sha256
+from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -14,31 +15,31 @@ import numpy as np
 import xarray as xr
 from pydantic import ValidationError
 
-from protractile.analysis.motion_results import MotionResult
-from protractile.analysis.pads import PadLoad, pad_loads
+from protractile.analysis.curves import Curves
+from protractile.analysis.quantities import MEASURED, declared_quantities, records
+from protractile.analysis.rows import MOTION, Rows
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import forces
 from protractile.geometry.observation import KINDS
+from protractile.geometry.typography import NONE, number
 from protractile.runs.case import reading as case_file
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.case.user_files import check_not_working_folder, check_regular
-from protractile.runs.cautions.context import Context
-from protractile.runs.cautions.rules import cautions
 from protractile.runs.folder.files import (
     MANIFEST,
     atomic_folder,
+    atomic_path,
     find_damaged_file,
     resolve_path,
     scratch_folder,
     write_atomically,
 )
-from protractile.runs.pipeline.design_results import ModelDesignResults, PlayEffect
-from protractile.runs.pipeline.metrics import metrics, records
+from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.model_quality import main_models, reference_of
+from protractile.runs.pipeline.proofs import Proofs
 from protractile.runs.pipeline.quantities import (
     QUANTITIES,
     RECORD_CLASSES,
@@ -49,8 +50,11 @@ from protractile.runs.pipeline.quantities import (
     settling_time,
 )
 from protractile.runs.pipeline.summary import Summary
+from protractile.runs.process.bad_input import BadInput
 
 TRAJECTORIES = "trajectories.nc"
+ROWS = "results.csv"
+CURVES = "curves.nc"
 SUMMARY = "summary.json"
 CASE = "case.toml"
 FIELDS = "fields.nc"
@@ -63,7 +67,7 @@ if TYPE_CHECKING:
 CONVENTIONS = "CF-1.8"
 
 
-@dataclass(frozen=True, repr=False)
+@dataclass(repr=False)
 class Results:
     """Results of one run.
 
@@ -82,12 +86,16 @@ class Results:
         summary: the content of ``summary.json``.
         ensembles: dimensions ``model`` (models with play), ``member`` (the first one unchanged),
             ``time``; ``tip``, ``head`` in m. None if the case has no ensembles.
+        rows: extremes of all quantities of all models, combinations and proofs.
+        curves: static diagrams, envelopes and mode shapes along the segments.
     """
 
     case: Case
     trajectories: xr.Dataset
     summary: Summary
     ensembles: xr.Dataset | None = None
+    rows: Rows = field(default_factory=Rows)
+    curves: Curves = field(default_factory=Curves)
 
     @classmethod
     def load(cls, folder: Path | str) -> Results:
@@ -108,6 +116,8 @@ class Results:
         if "station" not in trajectories.dims:
             trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))
         summary = _read(folder / SUMMARY, Summary.load)
+        rows = _read(folder / ROWS, Rows.load)
+        curves = _read(folder / CURVES, read_netcdf)
         ensembles = _read(folder / ENSEMBLES, read_netcdf) if summary.ensemble else None
         if not (folder / CASE).is_file():
             raise BadInput(str(folder), CASE, "missing; give the folder of a run that has finished")
@@ -117,22 +127,14 @@ class Results:
             what = "was written by another version with other keys; run the case again"
             raise BadInput(str(folder), CASE, what)
         marks = {TRAJECTORIES: trajectories.attrs.get("case_hash"), SUMMARY: summary.case_hash}
+        marks[CURVES] = curves.attrs.get("case_hash")
         if ensembles is not None:
             marks[ENSEMBLES] = ensembles.attrs.get("case_hash")
         for name, mark in marks.items():
             if mark != expected:
                 what = f"is not of the case in {CASE}; run the case again"
                 raise BadInput(str(folder), name, what)
-        results = cls(case, trajectories, summary, ensembles)
-        if not {"pads", "cautions"} <= summary.model_fields_set:
-            results.conclude()
-        return results
-
-    def conclude(self) -> None:
-        """Add pad loads and cautions to the summary."""
-        case, boom, data, summary = self.case, self.boom, self.trajectories, self.summary
-        summary.pads = list(pads_of_models(case, boom, data))
-        summary.cautions = cautions(Context.of_run(case, boom, data, summary))
+        return cls(case, trajectories, summary, ensembles, rows, Curves.of(curves))
 
     def save(self, folder: Path | str) -> None:
         """Write a folder for :meth:`load` and ``report``; it replaces the folder of an earlier run.
@@ -151,6 +153,14 @@ class Results:
         if self.ensembles is not None:
             self.ensembles.to_netcdf(folder / ENSEMBLES, engine="scipy")
         write_atomically(folder / CASE, toml.dumps(self.case))
+        self.write_results(folder)
+
+    def write_results(self, folder: Path) -> None:
+        """Write rows, curves and summary, in place of earlier ones."""
+        with atomic_path(folder / ROWS) as rows, atomic_path(folder / CURVES) as curves:
+            self.rows.save(rows)
+            attributes = {"Conventions": CONVENTIONS, "case_hash": self.summary.case_hash}
+            self.curves.dataset.assign_attrs(attributes).to_netcdf(curves, engine="scipy")
         write_atomically(folder / SUMMARY, str(self.summary))
 
     @property
@@ -170,10 +180,9 @@ class Results:
         return reference_of(self.completed_models)
 
     @property
-    def play(self) -> PlayEffect | None:
-        """The effect of play in the reference model."""
-        effects = (one for one in self.summary.design.play if one.numbers)
-        return next((one for one in effects if one.model == self.reference), None)
+    def proofs(self) -> Proofs:
+        """The proofs of the combinations; empty without combinations."""
+        return Proofs.among(self.rows, self.summary.design.proof_notes, self.case)
 
     @cached_property
     def main_models(self) -> list[str]:
@@ -209,40 +218,35 @@ class Results:
         and :class:`.dynamics.stick_slip.StickSlip` defines force and slip of elastic drives.
         """
         time = np.asarray(self.trajectories["time"].values, dtype=float)
-        data = self.trajectories.sel(model=model)
-        tip = np.asarray(data["tip"].values, dtype=float)
+        tip = np.asarray(self.trajectories["tip"].sel(model=model).values, dtype=float)
         summary = self.summary.models[model]
         design = self.summary.design.models.get(model, ModelDesignResults())
         declaring = [*(getattr(design, name) for name in records(ModelDesignResults)), summary]
-        motion = design.motion or MotionResult([], [], [], [])
-        deflection = next((peak for peak in motion.peaks if peak.what == "deflection"), None)
-        contacts = (peak.largest for peak in motion.peaks if peak.what == "contact force")
-        pads = (pad.pressure for pad in self.summary.pads if pad.model == model)
-        frequency = design.modes[0].frequency if design.modes else None
-        damages = (one.life_damage for one in design.life if one.life_damage is not None)
-        return {
-            "tip_at_rest": None if deflection is None else deflection.at_rest,
-            "tip": float(np.abs(tip).max()),
-            "tip_lateral": float(abs(data["tip_lateral"]).max()) if "tip_lateral" in data else None,
-            "tip_amplitude": float(0.5 * np.ptp(tip)),
-            "dynamic_factor": None if deflection is None else deflection.factor,
-            "contact_force": max(contacts, default=None),
-            "stress": max((abs(fibre.stress) for fibre in motion.fibres), default=None),
-            "wall_stress": max((wall.patch for wall in motion.walls), default=None),
-            "pad_pressure": max(pads, default=None),
-            "damage": max(damages, default=None),
-            "first_frequency": frequency,
-            "decay_time": decay_time(self.case.damping.modal, frequency),
-            "mass": self.boom.mass,
-            "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
-            "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
-            "settling_time": settling_time(time, tip),
-        } | {
-            metric.name: getattr(record, field, None)
-            for record, kind in zip(declaring, RECORD_CLASSES, strict=True)
-            for field, metric in metrics(kind).items()
-            if metric.name
-        }
+        rows = self.rows.where(model=model, play=True)
+        moved = rows.where(state=MOTION)
+        largest = {name: moved.where(quantity=name).largest for name in MEASURED}
+        deflection = largest["tip"]
+        frequency = next((row.value for row in rows.where(quantity="frequency")), None)
+        return (
+            {name: row and abs(row.value) for name, row in largest.items()}
+            | {
+                "tip_at_rest": deflection and rows.at_rest(deflection),
+                "tip_amplitude": float(0.5 * np.ptp(tip)),
+                "dynamic_factor": deflection and rows.dynamic_factor(deflection),
+                "first_frequency": frequency,
+                "decay_time": decay_time(self.case.damping.modal, frequency),
+                "mass": self.boom.mass,
+                "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
+                "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
+                "settling_time": settling_time(time, tip),
+            }
+            | {
+                quantity.name: getattr(record, field, None)
+                for record, kind in zip(declaring, RECORD_CLASSES, strict=True)
+                for field, quantity in declared_quantities(kind).items()
+                if quantity.name
+            }
+        )
 
     def check_limits(self) -> Iterator[LimitCheck]:
         """Yield the limits of the case with the values of the main models."""
@@ -256,38 +260,12 @@ class Results:
         return f"Results of {self.case.title!r}: {', '.join(self.summary.models)}"
 
     def _repr_html_(self) -> str:
-        from protractile.runs.report.tables import Column, Table
-
-        frame = self.quantities
-        quantities = [one for one in QUANTITIES if one.name in frame.index]
-        columns = [Column("", [f"{one.title}, {one.shown_unit}" for one in quantities])]
-        for name in self.summary.models:
-            values = frame[name].astype(float)
-            cells = [one.factor * values[one.name] for one in quantities]
-            columns.append(Column(name, [x if x == x else None for x in cells], ".4g"))
-        return Table(self.case.title, columns)._repr_html_()
-
-    @property
-    def motions(self) -> dict[str, MotionResult]:
-        """The extreme values of the motion of each main model, by name."""
-        designs = self.summary.design.models
-        return {
-            name: moved
-            for name in self.main_models
-            if name in designs and (moved := designs[name].motion) is not None
-        }
-
-
-def pads_of_models(case: Case, boom: Boom, data: xr.Dataset) -> Iterator[PadLoad]:
-    """Yield the pad loads of all models with play in the trajectories."""
-    if not any(joint.padded for joint in boom.joints):
-        return
-    with_play = (model for model in case.models if not model.bonded)
-    for model in (model for model in with_play if model.name in data["model"].values):
-        peaks = data["contact_force_peak"].sel(model=model.name).transpose("time", "station").values
-        yield from pad_loads(
-            model.name, model.model_boom(boom).boom, peaks, net=not model.needs_shell
-        )
+        frame = self.quantities.drop(columns="unit").astype(float)
+        shown = [one for one in QUANTITIES if one.name in frame.index]
+        frame = frame.mul([one.factor for one in shown], axis=0)
+        frame.index = [f"{one.title}, {one.shown_unit}" for one in shown]
+        table = frame.to_html(float_format=lambda value: number(value, 4), na_rep=NONE, border=0)
+        return f"<p><b>{escape(self.case.title)}</b></p>{table}"
 
 
 def prepare(out: str, file: str) -> Path:

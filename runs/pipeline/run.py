@@ -10,6 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
+from protractile.analysis.rows import Rows
 from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from protractile.geometry.boom import Boom
 from protractile.runs.case import toml
@@ -18,7 +19,12 @@ from protractile.runs.case.schema import Case, Model
 from protractile.runs.folder.versions import versions
 from protractile.runs.pipeline import members
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
-from protractile.runs.pipeline.evaluation import evaluate_model, evaluate_run
+from protractile.runs.pipeline.evaluation import (
+    Evaluation,
+    evaluate_both,
+    evaluate_model,
+    evaluate_run,
+)
 from protractile.runs.pipeline.model_output import BeamOutput, ShellOutput
 from protractile.runs.pipeline.model_quality import compare_models
 from protractile.runs.pipeline.model_run import (
@@ -29,7 +35,7 @@ from protractile.runs.pipeline.model_run import (
     failure_reason,
     run_model,
 )
-from protractile.runs.pipeline.results import CONVENTIONS, Results, label, pads_of_models
+from protractile.runs.pipeline.results import CONVENTIONS, Results, label
 from protractile.runs.pipeline.summary import Ensembles, Summary, check_finite
 
 
@@ -56,43 +62,44 @@ class Run:
         }
 
     def evaluate(self) -> None:
-        """Add the design results and the cautions to the summary.
+        """Add rows, curves and design results to the results.
 
         A model whose design results cannot be computed is added to ``failures``.
 
         Raises:
             NumericsError: a comparison of the models is not finite.
         """
-        case, boom, summary = self.results.case, self.results.boom, self.results.summary
-        design = self._evaluate_models(bonded=True)
-        summary.design = evaluate_run(boom, case, summary, design)
-        self.results.conclude()
-        check_finite(summary)
+        evaluate_run(self.results, self._evaluate_models(evaluate_both))
+        check_finite(self.results.summary)
 
     def evaluate_with_play(self) -> None:
-        """Add pad forces and the design results with play to the summary."""
-        results, summary = self.results, self.results.summary
-        summary.design = DesignResults(models=self._evaluate_models(bonded=False))
-        summary.pads = list(pads_of_models(results.case, results.boom, results.trajectories))
-        check_finite(summary)
+        """Add rows and design results of the models with play to the results."""
+        results, evaluations = self.results, self._evaluate_models(evaluate_model)
+        results.rows = Rows(row for one in evaluations.values() for row in one.rows)
+        designs = {name: one.design for name, one in evaluations.items()}
+        results.summary.design = DesignResults(designs)
+        check_finite(results.summary)
 
-    def _evaluate_models(self, bonded: bool) -> dict[str, ModelDesignResults]:
-        """Return the design results of each model by name, also without play if ``bonded``."""
+    def _evaluate_models(
+        self, evaluate: Callable[[Boom, Case, ModelRun], Evaluation]
+    ) -> dict[str, Evaluation]:
+        """Return the results of each model by name."""
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
-        design = {}
+        evaluations = {}
         for name, ran in self.model_runs.items():
             model_summary = summary.models[name]
             with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
-                    design[name] = evaluate_model(boom, case, ran, bonded)
-                    check_finite(design[name])
+                    found = evaluate(boom, case, ran)
+                    check_finite([found.rows, found.design])
+                    evaluations[name] = found
                 except NUMERICAL_ERRORS as error:
                     summary.failures[name] = failure_reason(error)
-                    design[name] = ModelDesignResults()
+                    evaluations[name] = Evaluation([], [], [], ModelDesignResults())
             seconds = ran.stages.seconds
             model_summary.seconds = seconds
             model_summary.wall_time = (model_summary.wall_time or 0.0) + seconds["design results"]
-        return design
+        return evaluations
 
 
 def run_case(case: Case, file: str, context: RunContext) -> Run | None:

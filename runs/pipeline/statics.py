@@ -4,16 +4,15 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
 from protractile.analysis.equilibria import vibrating_system
-from protractile.analysis.states import station_loads
-from protractile.beam_model.statics import Elements, StaticState, net_reactions, static_state
+from protractile.analysis.rows import BEAM, INITIAL, Row
+from protractile.beam_model.statics import Elements, StaticState, static_state
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.failure import NUMERICAL_ERRORS
@@ -29,20 +28,9 @@ from protractile.runs.pipeline.models import complete_system
 
 # Elements of the longest segment; a frequency has an error below 0.01 %.
 _ELEMENTS = 8
-# Fraction of the largest reaction below which a reaction counts as zero.
-ROUND_OFF = 1.0e-9
-
-
-@dataclass(frozen=True, slots=True)
-class Reaction:
-    """Reaction of a support, a cylinder or a stop on a segment."""
-
-    segment: str  #: name of the segment
-    x: float  #: position in m
-    force: float  #: force along z in N
-    moment: float  #: moment in N·m, positive towards a larger slope
-    depth: float | None  #: compression of a stop in m; None for other reactions
-    along: float = 0.0  #: axial force towards the tip in N
+# Fraction of the largest reaction below which a reaction counts as zero, and that of the largest
+# reaction times the length of the boom for moments.
+_ROUND_OFF, _NO_MOMENT = 1.0e-9, 1.0e-7
 
 
 class Statics(NamedTuple):
@@ -103,46 +91,37 @@ def boom_with_play(case: Case, boom: Boom) -> Boom:
     return boom.bonded if with_play is None else with_play.model_boom(boom).boom
 
 
-def reactions(state: StaticState) -> list[Reaction]:
-    """Return the support reactions."""
-    between = _joint_contacts(state.boom)
-    return [
-        one for place, one in contact_and_support_reactions(state).items() if place not in between
-    ]
+def reaction_rows(state: StaticState, play: bool = True) -> Iterator[Row]:
+    """Yield forces, moments and penetrations of supports, lugs, stops and contacts.
 
-
-def _joint_contacts(boom: Boom) -> set[tuple[int, float]]:
-    """Return the contacts of all joints, as index of the inner segment and x in m."""
-    return {
-        (joint.inner, x)
+    They act on the segment, positive along z or x, or towards a larger slope; round-off is set to
+    0. The place is ``at X m`` for a support or a stop, ``lug at X m`` or ``contact at X m``.
+    """
+    boom, along, depths = state.boom, _axial_forces(state), _depths(state)
+    kinds = {
+        (joint.inner, x): "contact "
         for joint in boom.joints
         for centres in contact_centres(boom, joint)
         for x in centres
     }
-
-
-def contact_and_support_reactions(state: StaticState) -> dict[tuple[int, float], Reaction]:
-    """Return reactions and contact forces by segment index and x in m; round-off is set to 0."""
-    boom, depths, along = state.boom, _depths(state), _axial_forces(state)
-    places = _joint_contacts(boom)
-    places |= {(number, one.x) for number, s in enumerate(boom.segments) for one in s.supports}
-    places |= {(stop.segment, stop.x) for stop in boom.stops}
-    places |= {(cylinder.segment, cylinder.x) for cylinder in boom.cylinders}
-    reactions = [
-        reaction for reaction in net_reactions(boom, state.reactions) if reaction[:2] in places
-    ]
-    least = ROUND_OFF * max((abs(reaction.force) for reaction in reactions), default=0.0)
-    return {
-        reaction[:2]: Reaction(
-            segment=boom.segments[reaction.segment].name,
-            x=reaction.x,
-            force=reaction.force if abs(reaction.force) > least else 0.0,
-            moment=reaction.moment,
-            depth=depths.get(reaction[:2]),
-            along=along[reaction[:2]],
-        )
-        for reaction in reactions
-    }
+    for number, segment in enumerate(boom.segments):
+        kinds |= {(number, support.x): "" for support in segment.supports}
+    kinds |= {(stop.segment, stop.x): "" for stop in boom.stops}
+    kinds |= {(cylinder.segment, cylinder.x): "lug " for cylinder in boom.cylinders}
+    reactions = [one for one in state.reactions if one[:2] in kinds]
+    most = max(map(abs, [*(one.force for one in reactions), *along.values()]), default=0.0)
+    for one in reactions:
+        at = one[:2]
+        values = {"reaction": one.force if abs(one.force) > _ROUND_OFF * most else 0.0}
+        if abs(one.moment) > _NO_MOMENT * most * boom.length:
+            values["support_moment"] = one.moment
+        if abs(along[at]) > _ROUND_OFF * most:
+            values["axial_reaction"] = along[at]
+        if at in depths:
+            values["penetration"] = depths[at]
+        part, place = boom.segments[one.segment].name, f"{kinds[at]}at {one.x:g} m"
+        for name, value in values.items():
+            yield Row(BEAM, INITIAL, play, name, part, place, value, one.x, time=0.0)
 
 
 def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
@@ -164,14 +143,16 @@ def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
 
 def _depths(state: StaticState) -> dict[tuple[int, float], float]:
     """Return the compression in m of contacts along z, by segment index and x in m."""
-    boom = state.boom
-    (loads,) = station_loads(boom, state.system, state.position[None])
-    return {
-        (at.segment, x): load.depth
-        for at, load in zip(boom.stations, loads, strict=True)
-        if at.direction == "z"
-        for x in ([at.x] if at.joint is None else contact_centres(boom, at.joint)[at.place])
-    }
+    boom, system = state.boom, state.system
+    gaps, depths = system.rows @ state.position, dict[tuple[int, float], float]()
+    for station in (station for station in boom.stations if station.direction == "z"):
+        here = np.flatnonzero(system.station_of_row == station.index)
+        depth = max((float(system.laws[row].depth(gaps[row])) for row in here), default=0.0)
+        centres = [station.x]
+        if station.joint is not None:
+            centres = contact_centres(boom, station.joint)[station.place]
+        depths |= dict.fromkeys(((station.segment, x) for x in centres), depth)
+    return depths
 
 
 def cylinder_force(state: StaticState, number: int) -> float:

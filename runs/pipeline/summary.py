@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+import re
 from pathlib import Path
 from typing import Annotated, NamedTuple, Self
 
@@ -18,14 +18,12 @@ from pydantic_core import to_jsonable_python
 
 from protractile.analysis.comparison import Comparison
 from protractile.analysis.low_pass import SlowPeaks
-from protractile.analysis.pads import PadLoad
-from protractile.analysis.stresses import Utilisation
+from protractile.analysis.quantities import Quantity
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.predictability import Horizons
 from protractile.dynamics.stick_slip import StickSlip
 from protractile.runs.case.schema import EnsembleTable
-from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
-from protractile.runs.pipeline.metrics import Metric
+from protractile.runs.pipeline.design_results import DesignResults
 from protractile.shell_model.stress.history import StressSummary
 
 # Number in JSON: None replaces NaN and infinity.
@@ -174,11 +172,11 @@ class ModelSummary(SummaryTable):
     seconds: dict[str, float]
     step: float
     steps: int
-    first_contact: Annotated[FiniteNumber, Metric("first_contact", "s", "first contact")]
+    first_contact: Annotated[FiniteNumber, Quantity("first_contact", "s", "first contact")]
     contact_changes: int
     energy_residual: Annotated[
         float,
-        Metric(
+        Quantity(
             "energy_residual", "1", "energy residual",
             heading="energy residual\n/ largest work", form=".1g", charted=False,
         ),
@@ -186,14 +184,14 @@ class ModelSummary(SummaryTable):
     first_peak: dict[str, FirstPeak]
     peak_contact_force: Annotated[
         FiniteNumber,
-        Metric("peak_contact_force", "N", "peak force of an impact", shown="kN", charted=False),
+        Quantity("peak_contact_force", "N", "peak force of an impact", shown="kN", charted=False),
     ]
     wall_time: Annotated[
-        float | None, Metric("", "s", "computing time", heading="computing time", form=".1f")
+        float | None, Quantity("", "s", "computing time", heading="computing time", form=".1f")
     ] = None
     step_error: Annotated[
         FiniteNumber,
-        Metric("step_error", "1", "time-step error of deflections", shown="%", charted=False),
+        Quantity("step_error", "1", "time-step error of deflections", shown="%", charted=False),
     ] = None
     resolving_step: FiniteNumber = None
     ensemble: EnsembleSummary | None = None
@@ -204,7 +202,7 @@ class ModelSummary(SummaryTable):
     reduction_errors: dict[str, FiniteNumber] = {}
     reduction_error: Annotated[
         FiniteNumber,
-        Metric("reduction_error", "1", "reduction error of the tip", shown="%", charted=False),
+        Quantity("reduction_error", "1", "reduction error of the tip", shown="%", charted=False),
     ] = None
     local_compliance: list[FiniteNumber] = []
     mesh_error: FiniteNumber = None
@@ -251,8 +249,8 @@ class Snapshots(SummaryTable):
 class Summary(SummaryTable):
     """Content of ``summary.json``.
 
-    ``models`` has the completed models, ``failures`` the reasons why others failed, ``pads`` the
-    governing pads of all models and stations, ``cautions`` texts on the validity of the results.
+    ``models`` has the completed models, ``failures`` the reasons why others failed, ``cautions``
+    texts on the validity of the results.
     """
 
     title: str
@@ -262,7 +260,6 @@ class Summary(SummaryTable):
     failures: dict[str, str]
     ensemble: Ensembles | None = None
     design: DesignResults = DesignResults({})
-    pads: list[PadLoad] = []
     cautions: list[str] = []
     comparisons: Comparisons | None = None
     snapshots: Snapshots = Snapshots(written=[], skipped=None)
@@ -276,34 +273,12 @@ class Summary(SummaryTable):
         """
         return cls.model_validate_json(path.read_bytes())
 
-    def utilisations(self, model: str) -> dict[str, Utilisation]:
-        """Return the part of each kind with the largest utilisation, or load if unknown."""
-        governing: dict[str, Utilisation] = {}
-        for one in self._loaded_parts(model):
-            other = governing.setdefault(one.part, one)
-            if (one.value or 0.0, one.load) > (other.value or 0.0, other.load):
-                governing[one.part] = one
-        return governing
-
-    def _loaded_parts(self, model: str) -> Iterator[Utilisation]:
-        design = self.design.models.get(model, ModelDesignResults())
-        if design.motion is not None:
-            for wall in design.motion.walls:
-                yield Utilisation("plate", wall.segment, wall.x, wall.patch, wall.utilisation)
-            for fibre in design.motion.fibres:
-                stress = abs(fibre.stress)
-                yield Utilisation("outer fibre", fibre.segment, fibre.x, stress, fibre.utilisation)
-        for pad in self.pads:
-            if pad.model == model:
-                yield Utilisation("pad", pad.inner, pad.x, pad.pressure, pad.utilisation)
-        for life in design.life:
-            if (damage := life.life_damage) is not None:
-                yield Utilisation("detail", life.segment, life.x, damage, damage)
-
     def __str__(self) -> str:
         """Return the summary as JSON."""
         content = self.model_dump(exclude_unset=True)
-        return json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
+        text = json.dumps(content, indent=1, ensure_ascii=False, allow_nan=False)
+        # A list of numbers is one line. No text of JSON has a line break.
+        return re.sub(r"\[\n([^][{}\"]+)\]", lambda of: f"[{' '.join(of[1].split())}]", text) + "\n"
 
 
 def check_finite(part: object) -> None:

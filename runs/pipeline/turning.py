@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import numpy as np
 
+from protractile.analysis.quantities import Quantity, Record
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
 from protractile.dynamics.excitation import HistorySum, MotionLaw, Shaped, resolving_times
@@ -19,7 +20,6 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.telescoping import drives_of
 from protractile.runs.case.motions import frame_motion, hanging_load
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.metrics import Metric, Record
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
 _SHAPED, _SHARE = 2, 0.05
 
 
-def _kilo(unit: str, title: str, heading: str) -> Metric:
+def _kilo(unit: str, title: str, heading: str) -> Quantity:
     """Return the metric of a result that is displayed in thousands of its SI unit."""
-    return Metric(".", unit, title, shown=f"k{unit}", heading=heading, form=".3g")
+    return Quantity(".", unit, title, shown=f"k{unit}", heading=heading, form=".3g")
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,34 +78,36 @@ class Hoisting(Record):
 
     lift_off: Annotated[
         float | None,
-        Metric("lift_off", "s", "lift-off", heading="lift-off", form=".3f", charted=False),
+        Quantity("lift_off", "s", "lift-off", heading="lift-off", form=".3f", charted=False),
     ]
     force: Annotated[
         float,
-        Metric(
+        Quantity(
             "rope_force", "N", "force of the rope",
             shown="kN", heading="rope force,\nmaximum", form=".3g",
         ),
     ]  # fmt: skip
     factor: Annotated[
-        float, Metric("rope_factor", "1", "factor φ₂ of the rope", heading="factor φ₂", form=".3f")
+        float,
+        Quantity("rope_factor", "1", "factor φ₂ of the rope", heading="factor φ₂", form=".3f"),
     ]
     by_class: Annotated[
         float | None,
-        Metric(
+        Quantity(
             "rope_factor_by_class", "1", "factor φ₂ of the hoisting class",
             heading="φ₂ of the\nclass", form=".3f",
         ),
     ]  # fmt: skip
     swing_out: Annotated[
         float | None,
-        Metric(
+        Quantity(
             "swing_out", "m", "swing in the plane of the boom",
             heading="swing\nin plane", form=".3g",
         ),
     ]  # fmt: skip
     swing_aside: Annotated[
-        float | None, Metric("swing_aside", "m", "swing aside", heading="swing\naside", form=".3g")
+        float | None,
+        Quantity("swing_aside", "m", "swing aside", heading="swing\naside", form=".3g"),
     ]
 
 

@@ -18,59 +18,58 @@ from tempfile import TemporaryFile, gettempdir
 from typing import TYPE_CHECKING
 
 from protractile.runs.process import ending
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import message, shorten
 
 if TYPE_CHECKING:
     from mpi4py import MPI
-
-    from protractile.runs.case.schema import Case
 
 # Space in bytes that Open MPI needs in the temporary folder: 8.2 MB and a margin.
 _ROOM_OF_MPI = 16_000_000
 
 
 def enter_mpi(
-    case: Case, file: str, without: str = "run the other models with --models"
+    shell: int, file: str, without: str = "run the other models with --models"
 ) -> MPI.Intracomm | None:
-    """Return the communicator of the ranks that share the shells; None for a case without shells.
+    """Return the communicator of the ranks that share the shells.
+
+    ``shell`` is the number of the first model of a case with a shell. Without one it is 0, and the
+    result None.
 
     Raises:
-        BadInput: the case has a shell, and FEniCSx or a library of gmsh is not installed.
+        BadInput: FEniCSx or a library of gmsh is not installed.
     """
-    from protractile.runs.case.messages import BadInput
-
-    for number, model in enumerate(case.models, start=1):
-        if model.needs_shell:
-            _check_temporary_folder(file)
-            if ending.launched_rank() is None:
-                os.environ.update(ending.SINGLE_PROCESS)
-            try:
-                world = _world(file)
-                import_module("protractile.shell_model.boom_shell")
-            except ImportError as error:
-                raise BadInput(
-                    file,
-                    f"model[{number}].kind",
-                    f"a shell needs FEniCSx, which cannot be imported ({error}); install it (pip "
-                    f"install 'protractile[shell]', or Debian's python3-dolfinx), or {without}",
-                ) from None
-            except OSError as error:
-                # The wheel of gmsh brings no library of X and OpenGL, which it loads.
-                raise BadInput(
-                    file,
-                    f"model[{number}].kind",
-                    f"a shell needs gmsh, which misses {str(error).partition(':')[0]}; install "
-                    "libgl1 libglu1-mesa libxft2 libxcursor1 libxinerama1, or a gmsh without X "
-                    "(pip install --force-reinstall -i https://gmsh.info/python-packages-dev-nox "
-                    f"gmsh), or {without}",
-                ) from None
-            return world
-    return None
+    if not shell:
+        return None
+    _check_temporary_folder(file)
+    if ending.launched_rank() is None:
+        os.environ.update(ending.SINGLE_PROCESS)
+    try:
+        world = _world(file)
+        import_module("protractile.shell_model.boom_shell")
+    except ImportError as error:
+        raise BadInput(
+            file,
+            f"model[{shell}].kind",
+            f"a shell needs FEniCSx, which cannot be imported ({error}); install it (pip install "
+            f"'protractile[shell]', or Debian's python3-dolfinx), or {without}",
+        ) from None
+    except OSError as error:
+        # The wheel of gmsh brings no library of X and OpenGL, which it loads.
+        raise BadInput(
+            file,
+            f"model[{shell}].kind",
+            f"a shell needs gmsh, which misses {str(error).partition(':')[0]}; install libgl1 "
+            "libglu1-mesa libxft2 libxcursor1 libxinerama1, or a gmsh without X (pip install "
+            "--force-reinstall -i https://gmsh.info/python-packages-dev-nox gmsh), or "
+            f"{without}",
+        ) from None
+    return world
 
 
-def single_rank(case: Case) -> MPI.Intracomm | None:
-    """Return the communicator of this process, which a shell needs; None for beams."""
-    if not any(model.needs_shell for model in case.models):
+def single_rank(shell: int) -> MPI.Intracomm | None:
+    """Return the communicator of this process, which a shell needs; None without one."""
+    if not shell:
         return None
     from mpi4py import MPI
 
@@ -83,8 +82,6 @@ def launched_ranks(file: str) -> MPI.Intracomm | None:
     Raises:
         BadInput: a launcher started several ranks, and mpi4py is not installed.
     """
-    from protractile.runs.case.messages import BadInput
-
     if ending.launched_rank() is None:
         return None
     try:
@@ -109,8 +106,6 @@ def _world(file: str) -> MPI.Intracomm:
         BadInput: the ranks were started by the launcher of another MPI.
         ImportError: mpi4py is not installed.
     """
-    from protractile.runs.case.messages import BadInput
-
     sizes = (os.environ.get(name, "") for name in ("OMPI_COMM_WORLD_SIZE", "PMI_SIZE"))
     started = next((int(size) for size in sizes if size.isdecimal()), 1)
     # pip's MPICH aborts under Open MPI. Other pairs start every rank as the only one.
@@ -131,7 +126,6 @@ def explain(error: Exception) -> tuple[str, int] | None:
     if isinstance(error, MemoryError) or "failed to map segment" in str(error):
         return message(f"out of memory ({error}); make the models or the output smaller"), 3
     from protractile.dynamics.failure import NumericsError
-    from protractile.runs.case.messages import BadInput
 
     if isinstance(error, BadInput):
         return message(str(error)), 2
@@ -165,8 +159,6 @@ def _check_temporary_folder(file: str) -> None:
     Raises:
         BadInput: the folder has too little space, or is not writable.
     """
-    from protractile.runs.case.messages import BadInput
-
     # Open MPI uses $TMPDIR without a check; Python may choose another folder.
     folder = os.environ.get("TMPDIR") or gettempdir()
     try:

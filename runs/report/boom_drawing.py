@@ -19,16 +19,16 @@ from matplotlib.ticker import MaxNLocator
 from matplotlib.transforms import Affine2D, Transform
 from matplotlib.typing import HashableList
 
+from protractile.geometry import typography
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Cylinder, Joint
 from protractile.geometry.section import Plate, Section
 from protractile.geometry.telescoping import farthest_travel
-from protractile.geometry.typography import with_minus_signs
 from protractile.runs.case.build import build_boom
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case
 from protractile.runs.folder.files import atomic_path
-from protractile.runs.report import formatting, theme
+from protractile.runs.process.bad_input import BadInput
+from protractile.runs.report import theme
 from protractile.runs.report.figure_context import LEGEND_CHARACTERS, Figure, FigureContext
 from protractile.runs.report.symbols import (
     PINNED,
@@ -181,7 +181,7 @@ def _draw_whole(panel: Panel, symbols: Sequence[Symbol]) -> None:
     (left, bottom), (right, top) = low - margin, high + margin
     axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     axes.set_axis_off()
-    degrees = with_minus_signs(f"{angle:g}°")
+    degrees = typography.with_minus_signs(f"{angle:g}°")
     axes.set_title(f"at {degrees}, to scale" if angle else "to scale", fontsize=10.0)
     if angle:
         radius = 0.18 * boom.length
@@ -324,7 +324,7 @@ def _remarks(case: Case, boom: Boom) -> Iterator[str]:
     for base in case.base:
         yield f"the ground shakes along {base.direction}"
     if case.gravity is not None:
-        yield f"self-weight, g = {formatting.number(case.gravity.acceleration, 4)} m/s²"
+        yield f"self-weight, g = {typography.number(case.gravity.acceleration, 4)} m/s²"
 
 
 def _join_values(values: Iterable[float]) -> str:

@@ -13,11 +13,9 @@ from matplotlib import rc_context
 from PIL import Image
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import join_words
+from protractile.geometry.typography import join_words, number
 from protractile.runs.report import theme
-from protractile.runs.report.formatting import number
 from protractile.runs.report.scene import (
-    DISPLACEMENT_DRAWN,
     SAME_PLACE,
     SECTION_DRAWN,
     Instant,
@@ -60,34 +58,25 @@ class BoomView:
     edges: Any  #: sharp edges of the undeformed boom
 
     @classmethod
-    def of(
-        cls,
-        scene: Scene,
-        instants: Sequence[Instant],
-        pixels: tuple[int, int] = PIXELS,
-        displacement: float = DISPLACEMENT_DRAWN,
-    ) -> BoomView:
-        """Return one view for the pictures at several instants.
-
-        The largest drawn displacement is at most ``displacement`` times the length of the boom.
-        """
+    def of(cls, scene: Scene, instants: Sequence[Instant]) -> BoomView:
+        """Return one view for the pictures at several instants."""
         times = [instant.time for instant in instants]
         heights = [displacement[:, 2] for displacement in scene.displacements(times)]
         low, high = min(0.0, np.min(heights)), max(0.0, np.max(heights))
-        scale = scene.fitting_scale(times, displacement)
+        scale = scene.fitting_scale(times)
         rest = surface(scene.magnify(np.zeros_like(scene.points), scale), scene.triangles)
         begin, end = scene.reach(times)
         half = SECTION_DRAWN * scene.points[:, 2].max()
         off = max((symbol.clearance for symbol in scene.symbols), default=0.0)
         bottom, top = scale * min(low, -off) - 3.0 * half, scale * max(high, off) + 2.0 * half
-        width = max(1.1 * (end - begin), (top - bottom) * pixels[0] / pixels[1])
+        width = max(1.1 * (end - begin), (top - bottom) * PIXELS[0] / PIXELS[1])
         centre = np.array([0.5 * (begin + end), 0.0, 0.5 * (bottom + top)])
         return cls(
             scene=scene,
             scale=scale,
             # The ends of a colour scale must differ, even without deflection.
             largest=1.0e3 * max(high, -low, SAME_PLACE),
-            camera=Camera(centre, width, pixels, elevation=10.0),
+            camera=Camera(centre, width, PIXELS, elevation=10.0),
             span=(begin, end),
             rest=rest,
             edges=sharp_edges(rest),

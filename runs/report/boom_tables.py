@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
-from protractile.analysis.plate_buckling import PanelBuckling
+from protractile.analysis.rows import Row
 from protractile.geometry.boom import Boom, Direction, Joint
 from protractile.geometry.fit import room
 from protractile.geometry.section import Section
@@ -149,10 +149,12 @@ def _friction(joint: Joint) -> str:
     )
 
 
-def panel_table(panels: Sequence[PanelBuckling], system: System) -> Table:
-    """Return the table of the wall of each segment that buckles first by panel formulas."""
+def panel_table(weakest: Sequence[Row], system: System) -> Table:
+    """Return the table of the plate of each segment that buckles first by panel formulas."""
     columns = "segment", "wall", f"x\n{system.label('m')}", ("buckling factor", ".3g")
-    rows = [(one.segment, one.wall, f"{system.of(one.x, 'm'):.4g}", one.factor) for one in panels]
+    rows = [
+        (row.part, row.place, f"{system.of(row.x or 0.0, 'm'):.4g}", row.value) for row in weakest
+    ]
     note = (
         "Static state under the maximum loads. Walls are long panels on simple supports, with "
         "k = 4 in compression, 23.9 in bending, 5.34 in shear, and their interaction; pad forces "

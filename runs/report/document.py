@@ -7,16 +7,17 @@ from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from itertools import chain
 
+from protractile.geometry.typography import number, percent
 from protractile.runs.case import toml
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report import theme
 from protractile.runs.report.additions import Addition
 from protractile.runs.report.charts import pack_charts, pack_plotly
 from protractile.runs.report.figure_context import Figure
-from protractile.runs.report.formatting import number, percent
 from protractile.runs.report.model_tables import model_tables
 from protractile.runs.report.pages import page
 from protractile.runs.report.predictability import comparison_tables, predictability_tables
+from protractile.runs.report.proof_tables import governing_proof
 from protractile.runs.report.result_tables import result_tables
 from protractile.runs.report.summary_table import (
     deviation_note,
@@ -52,7 +53,7 @@ def render(
     It has interactive charts only if plotly is installed. Figures and snapshots have existing
     files; ``viewer`` is the file name of the interactive viewer, empty for none.
     """
-    texts, proofs = tables_by_part(results), results.summary.design.proofs
+    texts, proofs = tables_by_part(results), results.proofs
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
@@ -72,9 +73,9 @@ def render(
         },
         colors={name: line_styles[name].color for name in names},
         adds=play_effect(results),
-        of=results.play.model if results.play else "",
+        of=results.reference,
         strength=utilisation_verdict(results),
-        proved="" if proofs is None else proofs.governing(results.case.system),
+        proved=governing_proof(proofs, results.case.system) if proofs.rows else "",
         deviation=deviation_note(results),
         quality=[note.line for note in results.summary.design.quality_notes],
         viewer=viewer,

@@ -16,7 +16,6 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
-from protractile.analysis.states import StaticResult
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import join_words
 from protractile.runs.case.schema import Case
@@ -79,7 +78,8 @@ class FigureContext:
             for model in results.case.models
             if model.bonded
         }
-        self.design = results.summary.design.models
+        self.rows = results.rows
+        self.curves = results.curves
         self.main_models = results.main_models
 
     def result(self, name: str, variable: str) -> Array:
@@ -246,7 +246,7 @@ def initial_position_note(case: Case) -> str:
     return " Positions x are at t = 0 and move with their segments." if case.driven_segments else ""
 
 
-def extension_note(case: Case, rests: Iterable[StaticResult]) -> str:
-    """Return a note on the extensions of static states; empty without telescoping."""
-    times = [f"{time:g}" for time in sorted({rest.time for rest in rests})]
-    return f" Extension as at {join_words(times)} s." if case.driven_segments and times else ""
+def extension_note(case: Case, times: Iterable[float | None]) -> str:
+    """Return a note on the extensions at the times of static states; empty without telescoping."""
+    several = [f"{time:g}" for time in sorted({time for time in times if time is not None})]
+    return f" Extension as at {join_words(several)} s." if case.driven_segments and several else ""

@@ -9,8 +9,9 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullLocator
 
+from protractile.analysis.curves import HISTORY
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI
+from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_MILLI, fixed, number
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart
 from protractile.runs.report.figure_context import (
@@ -22,7 +23,6 @@ from protractile.runs.report.figure_context import (
     new_sheet,
     widen_limits,
 )
-from protractile.runs.report.formatting import fixed, number
 
 # Number of intervals into which a run is divided; the maximum of each is drawn.
 FORCE_BINS = 100
@@ -259,41 +259,39 @@ def stress_history(run: FigureContext) -> list[Figure]:
     """Draw the maximum von Mises stress of each shell in each interval, at each station."""
     figures = []
     for name in run.models:
-        stress = run.summary[name].stress
-        if stress is None or not stress.history.places:
+        stress, curves = run.summary[name].stress, run.curves.where(model=name, state=HISTORY)
+        if stress is None or not curves:
             continue
-        time = np.array(stress.history.time)
-        rows = stress.history.places
-        places = sorted({row.x for row in rows})
+        places = sorted({curve.place for curve in curves})
         segments = [segment.name for segment in run.case.segments]
         sheet, panels = new_sheet(len(places), 1.4 + 1.6 * len(places), share_y=True)
         for axes, x in zip(panels, places, strict=True):
-            for row in (row for row in rows if row.x == x):
-                color = theme.segment_color(segments.index(row.segment))
-                for largest, label, width in (
-                    (row.von_mises_patch, "local plate stress", 1.8),
-                    (row.von_mises, "one element", 0.8),
+            for curve in curves.where(place=x):
+                color = theme.segment_color(segments.index(curve.segment))
+                for quantity, label, width in (
+                    ("von_mises_patch", "local plate stress", 1.8),
+                    ("von_mises", "one element", 0.8),
                 ):
                     axes.plot(
-                        time,
-                        np.array(largest) * TO_MEGA,
+                        curve.x,
+                        curve.values[quantity] * TO_MEGA,
                         color=color,
                         linewidth=width,
-                        label=f"{row.segment}, {label}",
+                        label=f"{curve.segment}, {label}",
                     )
             axes.set(title=f"x = {x:g} m", ylabel="stress (MPa)", xlim=(0.0, run.time[-1]))
         panels[-1].set(xlabel="time (s)", ylim=(0.0, None))
         fullest = max(panels, key=lambda axes: len(axes.lines))
-        patch = max(max(row.von_mises_patch) for row in rows) * TO_MEGA
+        patch = max(curve.values["von_mises_patch"].max() for curve in curves) * TO_MEGA
         title = (
             f"{name}: local plate stress up to {number(patch)} MPa, in one element up to "
             f"{number(stress.von_mises * TO_MEGA)} MPa"
         )
         caption = (
             f"Von Mises stresses of {name!r} within {stress.band:g} m of stations, supports, lugs "
-            f"and loads: the largest in each interval of {run.time[-1] / time.size:.2g} s. Thick "
-            "lines: local plate stress, the mean over half the width of a wall, for design; it "
-            "converges with mesh refinement. Thin lines: stress of one element, at either face. "
+            f"and loads: the largest in each interval of {run.time[-1] / curves[0].x.size:.2g} s. "
+            "Thick lines: local plate stress, the mean over half the width of a wall, for design; "
+            "it converges with mesh refinement. Thin lines: stress of one element, at either face. "
             "It grows with refinement beside a contact line: use it only to find place and time."
         )
         figures.append(run.finish(sheet, fullest, f"stress-{name}", title, caption))

@@ -7,14 +7,12 @@ from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from protractile.analysis.stresses import utilisation
+from protractile.analysis.quantities import declared_quantities
 from protractile.dynamics.predictability import SHARES
 from protractile.geometry.boom import Boom
-from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT
-from protractile.runs.pipeline.metrics import metrics
+from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT, number, percent
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import CalibrationCard, ModelSummary
-from protractile.runs.report.formatting import number, percent
 from protractile.runs.report.tables import Cell, Column, Table
 
 if TYPE_CHECKING:
@@ -88,7 +86,7 @@ def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
     """Return the columns with values of a kind of record, with a row for each record."""
     columns = [
         Column(one.heading, [getattr(row, name) for row in rows], one.form, one.unit_of_heading)
-        for name, one in metrics(kind).items()
+        for name, one in declared_quantities(kind).items()
         if one.heading
     ]
     return [one for one in columns if any(cell is not None for cell in one.cells)]
@@ -283,8 +281,9 @@ def _largest(boom: Boom, stress: StressSummary) -> str:
 def _yield_utilisation(boom: Boom, stress: StressSummary | LargestPatch) -> str:
     """Return the utilisation of the yield strength as text; empty without a strength."""
     (segment,) = (one for one in boom.segments if one.name == stress.segment)
-    part = utilisation(segment, stress.von_mises)
-    return "" if part is None else f" ({percent(part)} of the yield strength)"
+    if (strength := segment.yield_strength) is None:
+        return ""
+    return f" ({percent(stress.von_mises / strength)} of the yield strength)"
 
 
 def calibration_tables(results: Results) -> list[Table]:

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from protractile.dynamics.energy import DRIVEN_ENERGIES, energy_residual
 from protractile.dynamics.predictability import SHARES
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import TO_MILLI
+from protractile.geometry.typography import TO_MILLI, fixed, scientific
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.figure_context import (
@@ -21,7 +21,6 @@ from protractile.runs.report.figure_context import (
     highest,
     new_sheet,
 )
-from protractile.runs.report.formatting import fixed, scientific
 
 # Lower and upper percentile of the band of an ensemble.
 BAND = (5.0, 95.0)

@@ -12,7 +12,6 @@ from pathlib import Path
 import pandas as pd
 import xarray as xr
 
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.user_files import check_not_working_folder
 from protractile.runs.folder.files import (
     atomic_path,
@@ -20,9 +19,10 @@ from protractile.runs.folder.files import (
     modified_folder,
     write_atomically,
 )
-from protractile.runs.pipeline.results import FIELDS, SUMMARY, TRAJECTORIES, Results
+from protractile.runs.pipeline.results import FIELDS, TRAJECTORIES, Results
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.summary import Snapshots
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import snapshots
 from protractile.runs.report.additions import Addition, judge
 from protractile.runs.report.document import render, tables_by_part
@@ -108,14 +108,13 @@ def write(run: Run, addition: Addition, folder: Path) -> None:
 def write_report(
     results: Results, addition: Addition, folder: Path, figures: Sequence[Figure] | None = None
 ) -> None:
-    """Write summary, tables and report, and the figures unless they are given."""
+    """Write results, tables and report, and the figures unless they are given."""
     if figures is None:
         figures = draw_in_folder(results, folder)
     pictures = snapshots.describe(results, folder)
     viewer_file = VIEWER if (folder / VIEWER).is_file() else ""
     texts = {
         REPORT: render(results, addition, figures, pictures, viewer_file),
-        SUMMARY: str(results.summary),
         **addition.files,
     }
     if cards := {
@@ -124,6 +123,7 @@ def write_report(
         if model.calibration is not None
     }:
         texts[CALIBRATION] = as_json(cards)
+    results.write_results(folder)
     for name, text in texts.items():
         write_atomically(folder / name, text)
 

@@ -11,11 +11,18 @@ import numpy as np
 from protractile.analysis.comparison import Comparison, PeakDifferences
 from protractile.analysis.low_pass import SlowPeaks
 from protractile.dynamics.predictability import SHARES
-from protractile.geometry.typography import TO_MILLI, with_minus_signs
+from protractile.geometry.typography import (
+    NONE,
+    TO_MILLI,
+    fixed,
+    number,
+    percent,
+    scientific,
+    with_minus_signs,
+)
 from protractile.runs.pipeline.model_quality import SCOPES
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import Ensembles, ModelSummary, Predictability, WholeRun
-from protractile.runs.report.formatting import NONE, fixed, number, percent, scientific
 from protractile.runs.report.model_tables import horizon_column
 from protractile.runs.report.tables import Column, Table
 

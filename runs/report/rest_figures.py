@@ -3,16 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
-from protractile.analysis.states import StaticResult
-from protractile.geometry.typography import TO_MILLI, with_minus_signs
-from protractile.runs.pipeline.design_results import ModelDesignResults
-from protractile.runs.report import formatting, theme
+from protractile.analysis.curves import HIGH, LOW, Curves
+from protractile.analysis.modes import MOTIONS
+from protractile.analysis.rows import EXTENDED, FARTHEST, INITIAL, REST
+from protractile.dynamics.line import LineQuantity
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_MILLI, number, with_minus_signs
+from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.figure_context import (
     Figure,
@@ -33,60 +36,55 @@ _PANELS: Mapping[str, tuple[str, float]] = {
     "torque": ("torque T (kN m)", 1e-3),
 }
 # Quantities of an envelope.
-_FORCES = ("normal", "shear", "moment", "lateral_moment", "torque")
+_FORCES: tuple[LineQuantity, ...] = ("normal", "shear", "moment", "lateral_moment", "torque")
 # Quantity that is drawn for each kind of mode.
-_DISPLACED = {"bending in z": "deflection", "bending in y": "lateral", "twist": "twist"}
+_DISPLACED = {motion: name for name, motion in MOTIONS.items()}
 # Number of modes in the figure.
 MODES = 4
 
 
 def at_rest(run: FigureContext) -> list[Figure]:
     """Draw static deflection and section forces, with and without play."""
-    designs = dict(_main_designs(run))
-    farthest = {name: design.farthest_static for name, design in designs.items()}
-    rests = {name: rest for name, rest in farthest.items() if rest is not None}
-    if not rests:
+    farthest = run.rows.where(state=FARTHEST, model=run.main_models)
+    tips = {row.model: row for row in farthest.where(quantity="tip")}
+    if not tips:
         return []
+    static = run.curves.where(state=[REST, EXTENDED])
     curves = [
         curve
-        for name, rest in rests.items()
-        for curve in rest_curves(rest, name, run.line_styles[name].color)
+        for name, tip in tips.items()
+        for curve in rest_curves(
+            static.where(model=name, play=True, time=tip.time), name, run.line_styles[name].color
+        )
     ]
     # The boom without play has no static state at the end of telescoping.
-    bonded = [
-        rest
-        for name in rests
-        if name in run.with_play
-        for rest in designs[name].static_bonded
-        if rest.time == rests[name].time
-    ]
-    if bonded and not rests.keys() & set(run.bonded):
-        curves += rest_curves(bonded[0], "without play", theme.PLAY_FREE)
+    with_play = next((tip for name, tip in tips.items() if name in run.with_play), None)
+    if with_play is not None and not tips.keys() & set(run.bonded):
+        bonded = static.where(model=with_play.model, play=False, time=with_play.time)
+        curves += rest_curves(bonded, "without play", theme.PLAY_FREE)
     caption = (
         "Static state with the largest tip deflection: deflection and section forces. Positive: "
         "normal force in tension, shear force that acts upwards on the part nearer the base, "
         "moment with tension at the top. In an overlap each segment has its own curve."
         + initial_position_note(run.case)
-        + extension_note(run.case, rests.values())
+        + extension_note(run.case, [tip.time for tip in tips.values()])
     )
-    name, far = max(rests.items(), key=lambda item: abs(item[1].tip))
-    tips = [f"{TO_MILLI * far.tip:.1f} mm"]
-    tips += [f"lateral {TO_MILLI * far.tip_lateral:.1f} mm"] if far.tip_lateral else []
-    tip = with_minus_signs(", ".join(tips))
-    title = f"Static state under the loads at {far.time:g} s: tip at {tip} in {name}"
+    far = max(tips.values(), key=lambda tip: abs(tip.value))
+    aside = farthest.where(model=far.model, quantity="tip_lateral").largest
+    both = [f"{TO_MILLI * far.value:.1f} mm"]
+    both += [f"lateral {TO_MILLI * aside.value:.1f} mm"] if aside and aside.value else []
+    tip_text = with_minus_signs(", ".join(both))
+    title = f"Static state under the loads at {far.time:g} s: tip at {tip_text} in {far.model}"
     return _draw_panels(run, curves, "at-rest", title, caption)
 
 
 def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the envelopes of the section forces in motion."""
     curves = [
-        _curve(what, name, envelope.x, side[what], run.line_styles[name].color)
-        for name, design in _main_designs(run)
-        if design.motion is not None
-        for envelope in design.motion.envelopes
-        for side in (envelope.low, envelope.high)
+        _curve(what, one.model, one.x, one.values[what], run.line_styles[one.model].color)
+        for one in run.curves.where(model=run.main_models, play=True, state=[LOW, HIGH])
         for what in _FORCES
-        if what in side
+        if what in one.values
     ]
     caption = (
         "Minimum and maximum of the section forces over the run, along each segment; signs as in "
@@ -97,17 +95,19 @@ def envelopes(run: FigureContext) -> list[Figure]:
 
 def mode_shapes(run: FigureContext) -> list[Figure]:
     """Draw the first modes of the first main model that has modes."""
-    modes_of_models = [(name, design.modes) for name, design in _main_designs(run) if design.modes]
-    if not modes_of_models:
+    of_models = run.rows.where(
+        model=run.main_models, state=INITIAL, play=True, quantity="frequency"
+    )
+    if not of_models:
         return []
-    name, modes = modes_of_models[0]
-    modes = modes[:MODES]
+    name = of_models[0].model
+    modes = of_models.where(model=name)[:MODES]
     sheet, panels = new_sheet(len(modes), 0.9 + 1.15 * len(modes))
-    for axes, mode in zip(panels, modes, strict=True):
-        for number, shape in enumerate(mode.shapes):
-            if (values := shape.curves.get(_DISPLACED[mode.motion])) is not None:
-                axes.plot(shape.x, values, color=theme.segment_color(number), linewidth=1.8)
-        axes.set_title(f"{formatting.number(mode.frequency, 4)} Hz, {mode.motion}")
+    for count, (axes, mode) in enumerate(zip(panels, modes, strict=True), start=1):
+        for place, shape in enumerate(run.curves.where(model=name, state=f"mode {count}")):
+            if (values := shape.values.get(_DISPLACED[mode.part])) is not None:
+                axes.plot(shape.x, values, color=theme.segment_color(place), linewidth=1.8)
+        axes.set_title(f"{number(mode.value, 4)} Hz, {mode.part}")
         axes.set_yticks([0.0])
     panels[-1].set_xlabel("x along the boom (m)")
     caption = (
@@ -119,26 +119,20 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
     ]
 
 
-def _main_designs(run: FigureContext) -> Iterator[tuple[str, ModelDesignResults]]:
-    for name in run.models:
-        if name in run.main_models and name in run.design:
-            yield name, run.design[name]
-
-
-def rest_curves(rest: StaticResult, name: str, color: str) -> list[Curve]:
+def rest_curves(static: Curves, name: str, color: str) -> list[Curve]:
     """Return the curves of a static state along the boom, with ``name`` in the legend."""
     return [
-        _curve(what, name, diagram.x, values, color)
-        for diagram in rest.diagrams
-        for what, values in {"normal": diagram.normal, **diagram.curves}.items()
+        _curve(what, name, one.x, values, color)
+        for one in static
+        for what, values in one.values.items()
         if what in _PANELS
     ]
 
 
-def _curve(what: str, name: str, x: list[float], values: list[float], color: str) -> Curve:
+def _curve(what: str, name: str, x: Array, values: Array, color: str) -> Curve:
     linestyle = "--" if color == theme.PLAY_FREE else "-"
-    number, in_units = [*_PANELS].index(what), _PANELS[what][1] * np.array(values)
-    return Curve(name, in_units, color, linestyle, panel=number, at=np.array(x))
+    panel, in_units = [*_PANELS].index(what), _PANELS[what][1] * values
+    return Curve(name, in_units, color, linestyle, panel=panel, at=x)
 
 
 def _draw_panels(
@@ -168,12 +162,10 @@ def chart_along(curves: Sequence[Curve]) -> Chart:
     kept = sorted({curve.panel for curve in curves if curve.values.any()}) or [0]
     shown = [
         replace(curve, panel=panel)
-        for panel, number in enumerate(kept)
+        for panel, old in enumerate(kept)
         for curve in curves
-        if curve.panel == number
+        if curve.panel == old
     ]
     x = np.sort(np.concatenate([curve.at for curve in shown if curve.at is not None]))
     titles = [title for title, _ in _PANELS.values()]
-    return Chart(
-        x[[0, -1]], "", shown, [titles[number] for number in kept], along="x along the boom (m)"
-    )
+    return Chart(x[[0, -1]], "", shown, [titles[old] for old in kept], along="x along the boom (m)")

@@ -3,33 +3,34 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
-from protractile.analysis.motion_results import Peak
-from protractile.analysis.states import StaticResult
+from protractile.analysis.quantities import records
+from protractile.analysis.rows import BEAM, FARTHEST, INITIAL, MOTION, REST, Row, Rows
 from protractile.geometry.cylinder import force_name
+from protractile.geometry.typography import ROUND_OFF, without_round_off
 from protractile.runs.case.motions import frame_motion
-from protractile.runs.pipeline.combinations import combination_tables
-from protractile.runs.pipeline.design_results import ModelDesignResults, PlayDifference
-from protractile.runs.pipeline.metrics import records
+from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
-from protractile.runs.pipeline.proofs import proof_table
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.figure_context import extension_note
-from protractile.runs.report.formatting import ROUND_OFF, amount, number, without_round_off
+from protractile.runs.report.labels import amount_of, label, place, times
 from protractile.runs.report.model_tables import metric_columns
+from protractile.runs.report.proof_tables import proof_table
+from protractile.runs.report.static_tables import combination_tables
 from protractile.runs.report.tables import Cell, Column, Table
 
 # Relative difference below which an effect is negligible.
 NEGLIGIBLE = 0.005
+# Fraction of the value with play below which a value without play is near zero.
+_LEAST = 0.01
 
 
 def result_tables(results: Results) -> list[Table]:
     """Return the tables of design results in the order of the report, without the summary."""
-    design = results.summary.design
     tables = [
         play_table(results),
         *rest_tables(results),
@@ -43,91 +44,172 @@ def result_tables(results: Results) -> list[Table]:
         stress_table(results),
         buckling_table(results),
         life_table(results),
-        *combination_tables(design.combinations, results.case),
-        design.proofs and proof_table(design.proofs, results.case),
+        *combination_tables(results.rows, results.case),
+        proof_table(results.proofs, results.case),
     ]
     return [table for table in tables if table is not None and table.rows]
 
 
+class PlayPair(NamedTuple):
+    """A result with play, and the same result without play."""
+
+    with_play: Row
+    without: Row
+
+    @property
+    def increase(self) -> float:
+        """The increase of the magnitude by play, in SI units."""
+        return abs(self.with_play.value) - abs(self.without.value)
+
+    @property
+    def share(self) -> float | None:
+        """The increase as a fraction of the value without play; None if this value is near zero."""
+        bonded = abs(self.without.value)
+        return self.increase / bonded if bonded > _LEAST * abs(self.with_play.value) else None
+
+    @property
+    def is_negligible(self) -> bool:
+        """True if the effect of play is negligible."""
+        return self.share is not None and abs(self.share) < NEGLIGIBLE
+
+
+def play_pairs(results: Results) -> list[PlayPair]:
+    """Return the results of the reference model, at rest and in motion, with and without play."""
+    rows = results.rows.where(model=results.reference)
+    without = {(row.state, row.key): row for row in rows.where(play=False)}
+    loose = rows.where(play=True)
+    chosen = [
+        *loose.where(state=REST, quantity="tip"),
+        *loose.where(state=INITIAL, quantity="frequency")[:1],
+        *peaks(loose),
+        *loose.where(state=MOTION, quantity=["stress", "damage"]),
+    ]
+    both = [(row, without.get((row.state, row.key))) for row in chosen]
+    return [PlayPair(row, other) for row, other in both if other is not None]
+
+
+# Quantities with tables of their own.
+_ELSEWHERE = {
+    "pad_force", "pad_pressure", "stress", "wall_stress", "triangle_stress", "cycles",
+    "stress_range", "equivalent_range", "run_damage", "damage",
+}  # fmt: skip
+
+
+def peaks(rows: Rows) -> Rows:
+    """Return the quantities in motion that have no table of their own.
+
+    Without axial force, the reaction of a foot is the transverse one.
+    """
+    moved = rows.where(state=MOTION)
+    axial = {(row.model, row.part) for row in moved.where(quantity="axial_reaction")}
+    return Rows(
+        row
+        for row in moved
+        if row.quantity not in _ELSEWHERE
+        if row.quantity != "foot_reaction" or (row.model, row.part) in axial
+    )
+
+
 def play_table(results: Results) -> Table | None:
     """Return the table of results with play and with bonded joints."""
-    effect = results.play
-    if effect is None:
+    pairs = play_pairs(results)
+    if not pairs:
         return None
-    rows = effect.numbers
-    added = ["negligible" if is_negligible(one) else amount(one.increase, one.unit) for one in rows]
+    changes = [
+        "negligible" if one.is_negligible else amount_of(one.with_play.of, one.increase)
+        for one in pairs
+    ]
     columns = (
-        Column("", [_named(one.what, one.where) for one in rows]),
-        Column("with play", [amount(one.with_play, one.unit) for one in rows]),
-        Column("without play", [amount(one.bonded, one.unit) for one in rows]),
-        Column("play adds", added),
-        Column("", [None if is_negligible(one) else one.share for one in rows], ".3g", "%"),
+        Column("", [label(one.with_play) for one in pairs]),
+        Column("with play", [_magnitude(one.with_play) for one in pairs]),
+        Column("without play", [_magnitude(one.without) for one in pairs]),
+        Column("play adds", changes),
+        Column("", [None if one.is_negligible else one.share for one in pairs], ".3g", "%"),
     )
     notes = (
         "Magnitudes, and the difference of the magnitudes. Forces, moments, reactions and stresses "
         "are maxima of the motion.",
     )
-    return Table(f"Effect of play: {effect.model}", columns, notes, "play")
+    return Table(f"Effect of play: {results.reference}", columns, notes, "play")
+
+
+def _magnitude(row: Row) -> str:
+    return amount_of(row.of, abs(row.value))
+
+
+def _side_by_side(
+    heading: str, cells: Mapping[tuple[str, str], Cell], models: Iterable[str], *more: str
+) -> list[Column]:
+    """Return a column of labels and one per model, from cells by label and model.
+
+    ``more`` are number format and unit.
+    """
+    labels = dict.fromkeys(label for label, _ in cells)
+    of_models = {name: [cells.get((label, name)) for label in labels] for name in models}
+    return [Column(heading, [*labels]), *(Column(*one, *more) for one in of_models.items())]
+
+
+def _models(rows: Rows) -> dict[str, None]:
+    return dict.fromkeys(row.model for row in rows)
 
 
 def rest_tables(results: Results) -> list[Table]:
     """Return the tables of static joint rotations, contact forces and support reactions."""
-    farthest = {
-        name: design.farthest_static for name, design in results.summary.design.models.items()
-    }
-    rests = {name: rest for name, rest in farthest.items() if rest is not None}
-    as_extended = extension_note(results.case, rests.values())
+    farthest = results.rows.where(state=FARTHEST, play=True)
+    as_extended = extension_note(results.case, [row.time for row in farthest])
     return [
-        _tilt_table(rests, as_extended),
-        _contact_table(rests, as_extended),
+        _tilt_table(farthest, as_extended),
+        _contact_table(farthest.where(quantity="contact_force"), as_extended),
         _reaction_table(results),
     ]
 
 
-def _tilt_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
-    tilts = [(name, tilt) for name, rest in rests.items() for tilt in rest.tilts]
+def _tilt_table(farthest: Rows, as_extended: str) -> Table:
+    rotations, tips = (farthest.where(quantity=name) for name in ("rotation", "rotation_tip"))
     columns = (
-        Column("model", [name for name, _ in tilts]),
-        Column("joint", [f"{tilt.inner} in {tilt.outer}" for _, tilt in tilts]),
-        Column("rotation", [tilt.rotation for _, tilt in tilts], ".3g", "mrad"),
-        Column("resulting tip deflection", [tilt.tip for _, tilt in tilts], ".1f", "mm"),
+        Column("model", [row.model for row in rotations]),
+        Column("joint", [place(row) for row in rotations]),
+        Column("rotation", [row.value for row in rotations], ".3g", "mrad"),
+        Column("resulting tip deflection", [row.value for row in tips], ".1f", "mm"),
     )
     note = "The rotation is due to play and contact compliance, in a shell also to wall compliance."
     title = "Static state with the largest tip deflection: rotation of joints by play and walls"
     return Table(title, columns, (note + as_extended,), "tilts")
 
 
-def _contact_table(rests: dict[str, StaticResult], as_extended: str) -> Table:
-    places = dict.fromkeys(station.place for rest in rests.values() for station in rest.stations)
-    columns = [Column("station", [_station(place) for place in places])]
-    for name, rest in rests.items():
-        forces = {one.place: one.force for one in rest.stations}
-        if forces:
-            columns.append(Column(name, [forces.get(place) for place in places], ".4g", "kN"))
+def _contact_table(contacts: Rows, as_extended: str) -> Table:
+    forces = {(place(row), row.model): row.value for row in contacts}
+    columns = _side_by_side("station", forces, _models(contacts), ".4g", "kN")
     note = "Forces on the outer segment, positive upwards, lateral ones towards larger y."
     title = "Static state with the largest tip deflection: contact forces"
     return Table(title, columns, (note + as_extended,), "pressed")
 
 
 def _reaction_table(results: Results) -> Table:
-    design = results.summary.design
-    reactions = design.reactions
-    largest = max((abs(one.force) for one in reactions), default=0.0)
-    least = ROUND_OFF * largest * results.boom.length
-    moments = without_round_off([one.moment for one in reactions], least)
-    bonded = {(one.segment, one.x): one.force for one in design.reactions_bonded}
-    beside = [bonded.get((one.segment, one.x)) for one in reactions]
-    lugs = {(results.boom.segments[one.segment].name, one.x) for one in results.boom.cylinders}
-    kinds = ["lug" if (one.segment, one.x) in lugs else "support" for one in reactions]
+    rows = results.rows.where(model=BEAM, state=INITIAL)
+    across, along, held, without = (
+        {
+            (row.part, row.place): row.value
+            for row in rows.where(quantity=name, play=play)
+            if not row.place.startswith("contact")
+        }
+        for name, play in (
+            ("reaction", True), ("axial_reaction", True), ("support_moment", True),
+            ("reaction", False),
+        )
+    )  # fmt: skip
+    least = ROUND_OFF * max(map(abs, across.values()), default=0.0) * results.boom.length
+    moments = without_round_off([held.get(at, 0.0) for at in across], least)
     places = [
-        f"{kind}, {one.segment} at {one.x:g} m" for kind, one in zip(kinds, reactions, strict=True)
+        f"{'lug' if at.startswith('lug') else 'support'}, {part} {at.removeprefix('lug ')}"
+        for part, at in across
     ]
     columns = (
         Column("support or cylinder lug", places),
-        Column("transverse force", [one.force for one in reactions], ".4g", "kN"),
-        *_force_column("axial force", [one.along for one in reactions], ".4g", "kN"),
+        Column("transverse force", [*across.values()], ".4g", "kN"),
+        *_force_column("axial force", [along.get(at, 0.0) for at in across], ".4g", "kN"),
         *_force_column("moment", moments, ".3g", "kN m"),
-        Column("transverse force,\nwithout play", beside, ".4g", "kN"),
+        Column("transverse force,\nwithout play", [*map(without.get, across)], ".4g", "kN"),
     )
     notes = (
         "Computed with beam elements. The forces act on the boom and are positive towards its "
@@ -144,21 +226,10 @@ def _force_column(title: str, carried: list[float], form: str, unit: str) -> Ite
 
 def mode_table(results: Results) -> Table:
     """Return the table of the first modes with closed contacts, all models side by side."""
-    of = {
-        name: {(mode.motion, mode.number): mode.frequency for mode in design.modes}
-        for name, design in results.summary.design.models.items()
-        if design.modes
-    }
-    lowest: dict[tuple[str, int], float] = {}
-    for frequencies in of.values():
-        for mode, frequency in frequencies.items():
-            lowest[mode] = min(frequency, lowest.get(mode, frequency))
-    rows = sorted(lowest, key=lambda mode: lowest[mode])
-    columns = [Column("mode", [f"{motion} {count}" for motion, count in rows])]
-    columns += [
-        Column(name, [frequencies.get(mode) for mode in rows], ".4g", "Hz")
-        for name, frequencies in of.items()
-    ]
+    rows = results.rows.where(state=INITIAL, play=True, quantity="frequency")
+    lowest_first = sorted(rows, key=lambda row: row.value)
+    frequencies = {(place(row), row.model): row.value for row in lowest_first}
+    columns = _side_by_side("mode", frequencies, _models(rows), ".4g", "Hz")
     notes = (
         "The modes keep the contacts of the static state at t = 0: closed ones stay closed, open "
         "ones stay open.",
@@ -169,53 +240,14 @@ def mode_table(results: Results) -> Table:
 
 def peak_table(results: Results) -> Table:
     """Return the table of maxima in motion, with ratios to static values, for the main models."""
-    of = {
-        name: {
-            (peak.what, peak.where): f"{amount(peak.largest, peak.unit)}{times(peak)}"
-            for peak in motion.peaks
-        }
-        for name, motion in results.motions.items()
+    largest = peaks(results.rows.where(model=results.main_models, play=True))
+    texts = {
+        (label(row), row.model): f"{_magnitude(row)}{times(results.rows, row)}" for row in largest
     }
-    rows = dict.fromkeys(where for peaks in of.values() for where in peaks)
-    columns = [Column("maximum", [_named(what, where) for what, where in rows])]
-    columns += [Column(name, [peaks.get(where) for where in rows]) for name, peaks in of.items()]
+    main = (name for name in results.main_models if name in _models(largest))
+    columns = _side_by_side("maximum", texts, main)
     notes = ("Absolute values. In brackets: ratio to the static value under the maximum load.",)
     return Table("Forces and deflections in motion", columns, notes, "peaks")
-
-
-def is_negligible(one: PlayDifference) -> bool:
-    """Return True if the effect of play is negligible."""
-    return one.share is not None and abs(one.share) < NEGLIGIBLE
-
-
-def times(peak: Peak) -> str:
-    """Return the dynamic factor of a maximum as text; empty if it has none."""
-    return "" if peak.factor is None else f" (× {number(peak.factor)})"
-
-
-# Names of results at a place.
-_NAMES = {
-    "deflection": "maximum dynamic {} deflection",
-    "deflection at rest": "static tip deflection (maximum load)",
-    "reaction": "transverse reaction, {}",
-    "reaction along the boom": "axial reaction, {}",
-    "reaction, across and along": "foot reaction, {}",
-    "stress": "bending stress, {}",
-}
-
-
-def _station(place: str) -> str:
-    """Return the position of a station, from its name in the results: ``x = 3.8 m, lateral``."""
-    x, *more = re.split("(?=[y#])", place)
-    return ", ".join([f"x = {x} m", *("lateral" if one == "y" else one for one in more)])
-
-
-def _named(what: str, where: str) -> str:
-    if what == "contact force":
-        return f"{what}, {_station(where)}"
-    if what == "cylinder force":
-        return where.replace("_", " ").replace("-", " ")
-    return _NAMES.get(what, f"{what}, {{}}" if where else what).format(where)
 
 
 def drive_table(results: Results) -> Table:
@@ -327,14 +359,18 @@ def record_tables(results: Results) -> Iterator[Table]:
 
 def pad_table(results: Results) -> Table:
     """Return the table of pad forces and pressures, without rows if no pad has a known size."""
-    pads = results.summary.pads
+    moved, boom = results.rows.where(state=MOTION, play=True), results.boom
+    pads, forces = (moved.where(quantity=name) for name in ("pad_pressure", "pad_force"))
+    outers = {
+        boom.segments[joint.inner].name: boom.segments[joint.outer].name for joint in boom.joints
+    }
     columns = (
         Column("model", [pad.model for pad in pads]),
-        Column("joint", [f"{pad.inner} in {pad.outer}" for pad in pads]),
+        Column("joint", [f"{pad.part} in {outers[pad.part]}" for pad in pads]),
         Column("at", [f"{pad.x:g}" for pad in pads], unit="m"),
-        Column("side", [pad.side for pad in pads]),
-        Column("maximum force", [pad.force for pad in pads], ".3g", "kN"),
-        Column("pressure", [pad.pressure for pad in pads], ".3g", "MPa"),
+        Column("side", [pad.place.rpartition(", ")[2] for pad in pads]),
+        Column("maximum force", [force.value for force in forces], ".3g", "kN"),
+        Column("pressure", [pad.value for pad in pads], ".3g", "MPa"),
         Column("utilisation", [pad.utilisation for pad in pads], ".0f", "%"),
     )
     note = (
@@ -347,14 +383,14 @@ def pad_table(results: Results) -> Table:
 
 def stress_table(results: Results) -> Table:
     """Return the table of bending stresses of all models, and local plate stresses of shells."""
+    moved = results.rows.where(model=results.main_models, state=MOTION, play=True)
+    plates = {(row.model, row.part): row for row in moved.where(quantity="wall_stress")}
     rows: list[Sequence[Cell]] = []
-    for name, motion in results.motions.items():
-        walls = {wall.segment: wall for wall in sorted(motion.walls, key=lambda wall: wall.patch)}
-        for fibre in motion.fibres:
-            wall = walls.get(fibre.segment)
-            plate = (wall.patch, wall.utilisation) if wall else (None, None)
-            at_fibre = abs(fibre.stress), fibre.x, fibre.time, fibre.utilisation
-            rows.append((name, fibre.segment, *at_fibre, *plate))
+    for fibre in moved.where(quantity="stress"):
+        plate = plates.get((fibre.model, fibre.part))
+        of_plate = (plate.value, plate.utilisation) if plate else (None, None)
+        at_fibre = abs(fibre.value), fibre.x, fibre.time, fibre.utilisation
+        rows.append((fibre.model, fibre.part, *at_fibre, *of_plate))
     columns = (
         "model",
         "segment",
@@ -374,20 +410,28 @@ def stress_table(results: Results) -> Table:
     )
 
 
+def weakest_panels(rows: Rows) -> dict[tuple[str, str], Row]:
+    """Return the plate that buckles first by panel formulas, by model and segment."""
+    found = rows.where(state=FARTHEST, play=True, quantity="plate_buckling")
+    largest_first = sorted(found, key=lambda row: -row.value)
+    return {(row.model, row.part): row for row in largest_first}
+
+
 def buckling_table(results: Results) -> Table:
     """Return the table of buckling factors of walls, without rows if they are not requested."""
-    rows: list[Sequence[Cell]] = []
-    for name, model_results in results.summary.design.models.items():
-        shells = {
-            one.segment: (one.factors[0], one.walls[0], one.x[0], one.mesh_errors[0])
-            for one in model_results.buckling
-            if one.factors
-        }
-        panels = {one.segment: (one.factor, one.wall, one.x) for one in model_results.panels}
-        rows += [
-            (name, segment, *shells.get(segment, (None,) * 4), *panels.get(segment, (None,) * 3))
-            for segment in dict.fromkeys([*shells, *panels])
-        ]
+    panels = {at: (row.value, row.place, row.x) for at, row in weakest_panels(results.rows).items()}
+    shells = {
+        (name, one.segment): (one.factors[0], one.walls[0], one.x[0], one.mesh_errors[0])
+        for name, design in results.summary.design.models.items()
+        for one in design.buckling
+        if one.factors
+    }
+    rows = [
+        (name, segment.name, *shells.get(at, (None,) * 4), *panels.get(at, (None,) * 3))
+        for name in results.summary.design.models
+        for segment in results.boom.segments
+        if (at := (name, segment.name)) in shells or at in panels
+    ]
     columns = (
         "model",
         "segment",
@@ -411,29 +455,28 @@ def buckling_table(results: Results) -> Table:
 
 def life_table(results: Results) -> Table:
     """Return the table of rainflow stress ranges of segments, for the main models."""
-    models = results.summary.design.models
-    rows = [
-        (name, life)
-        for name, model_results in models.items()
-        if name in results.main_models
-        for life in model_results.life
-    ]
-    lives = [life for _, life in rows]
+    moved = results.rows.where(model=results.main_models, state=MOTION, play=True)
+    lives = moved.where(quantity="cycles")
+    values = {(row.quantity, row.model, row.part): row.value for row in moved}
+
+    def cells(quantity: str) -> list[float | None]:
+        return [values.get((quantity, row.model, row.part)) for row in lives]
+
     columns = [
-        Column("model", [name for name, _ in rows]),
-        Column("segment", [life.segment for life in lives]),
-        Column("at x", [life.x for life in lives], ".4g", "m"),
-        Column("cycles", [life.cycles for life in lives], ".3g"),
-        Column("largest range", [life.largest for life in lives], ".4g", "MPa"),
-        Column("damage-equivalent\nrange", [life.equivalent for life in lives], ".4g", "MPa"),
+        Column("model", [row.model for row in lives]),
+        Column("segment", [row.part for row in lives]),
+        Column("at x", [row.x for row in lives], ".4g", "m"),
+        Column("cycles", cells("cycles"), ".3g"),
+        Column("largest range", cells("stress_range"), ".4g", "MPa"),
+        Column("damage-equivalent\nrange", cells("equivalent_range"), ".4g", "MPa"),
     ]
-    damages = [life.damage for life in lives]
+    damages = cells("run_damage")
     if any(damage is not None for damage in damages):
-        runs = [1.0 / damage if damage else None for damage in damages]
-        columns.append(Column("damage of a run", damages, ".3g"))
-        columns.append(Column("runs to failure", runs, ".3g"))
-    if any(life.life_damage is not None for life in lives):
-        columns.append(Column("damage of the life", [one.life_damage for one in lives], ".3g"))
+        columns += [
+            Column("damage of a run", damages, ".3g"),
+            Column("runs to failure", [1.0 / one if one else None for one in damages], ".3g"),
+            Column("damage of the life", cells("damage"), ".3g"),
+        ]
     notes = [
         "Rainflow ranges of the bending stress where it varies most, of a run that is repeated: "
         "its end leads to its start. Damage-equivalent "

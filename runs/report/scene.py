@@ -94,7 +94,7 @@ class Scene:
     motion: xr.Dataset
     stress: ShellStress | None = None  #: stresses of the triangles of a shell
     from_above: bool = False  #: True if y replaces z, see :meth:`views`
-    #: first buckling modes of a shell, see :class:`.runs.pipeline.wall_buckling.BuckledShell`; None
+    #: first buckling modes of a shell, see :class:`.analysis.wall_buckling.BuckledShell`; None
     #: without any
     buckling: xr.Dataset | None = None
     crane: CranePosition | None = None  #: positions of the crane and its load; None for other booms
@@ -279,11 +279,12 @@ class Scene:
         """Return the thickness in m at which pictures show the walls of an overlap."""
         return 2.0 * WALL_DRAWN * self.half_height(overlap.outer)
 
-    def fitting_scale(self, times: Sequence[float], part: float = DISPLACEMENT_DRAWN) -> float:
+    def fitting_scale(self, times: Sequence[float]) -> float:
         """Return a round magnification of displacements and play for the whole boom.
 
         Magnified displacements at given times in s stay below a fraction of the length.
         """
+        begin, end = self.reach(times)
         largest = max(
             float(np.abs(displacement[:, 2]).max()) for displacement in self.displacements(times)
         )
@@ -291,7 +292,7 @@ class Scene:
         play = sum(overlap.clearance for overlap in self.overlaps)
         return round_scale(
             min(
-                part * float(np.subtract(*self.reach(times)[::-1])) / max(largest, SAME_PLACE),
+                DISPLACEMENT_DRAWN * (end - begin) / max(largest, SAME_PLACE),
                 PLAY_OF_SECTION * SECTION_DRAWN * tallest / max(play, SAME_PLACE),
             )
         )
@@ -377,17 +378,6 @@ def rigid_motion(places: Array, displacement: Array) -> Array:
         [np.stack([unit, none, -second], axis=1), np.stack([none, unit, first], axis=1)]
     )
     return np.asarray(np.linalg.lstsq(whole, displacement.T.ravel(), rcond=None)[0])
-
-
-def means_around(groups: Numbers, areas: Array, values: npt.ArrayLike) -> Array:
-    """Return area-weighted means (num_groups,) over the triangles at each point.
-
-    Each corner of a triangle belongs to a group (num_triangles, 3), usually its point. Areas and
-    values are (num_triangles,).
-    """
-    weights, around = np.repeat(areas, 3), groups.ravel()
-    total = np.bincount(around, weights * np.repeat(np.asarray(values, dtype=float), 3))
-    return np.asarray(total / np.maximum(np.bincount(around, weights), 1e-300))
 
 
 def round_scale(largest: float) -> float:

@@ -29,7 +29,7 @@ from protractile.runs.report import theme
 
 Pixels = npt.NDArray[np.uint8]
 
-# Lights under which faces differ in brightness; with COLOUR_READ they also match the colour bar.
+# Lights under which faces differ in brightness.
 MATTE = {
     "ambient": 0.35,
     "diffuse": 0.75,
@@ -37,7 +37,6 @@ MATTE = {
     "show_scalar_bar": False,
     "render": False,
 }
-COLOUR_READ = MATTE | {"ambient": 0.75, "diffuse": 0.3}
 MESHED = {"show_edges": True, "edge_color": theme.INK, "line_width": 1.5}
 UNLIT = {"lighting": False, "render": False}
 
@@ -141,8 +140,8 @@ class Sheet:
     def __init__(self, pixels: tuple[int, int], floor: int, part: float = 1.0) -> None:
         self.figure = Figure(figsize=(SHEET[0] / DPI, SHEET[1] / DPI), dpi=part * DPI)
         self._canvas: Any = FigureCanvasAgg(self.figure)
-        self._part, self._floor = part, floor
-        self._pictures: list[tuple[Pixels, int, int]] = []
+        self._floor = round(part * floor)
+        self._rendered: Pixels | None = None
         self._temporary_artists: list[Artist] = []
         self._background: Any = None
         self.picture = self.axes(0, floor, *pixels)
@@ -155,13 +154,11 @@ class Sheet:
             (left / SHEET[0], bottom / SHEET[1], width / SHEET[0], height / SHEET[1])
         )
 
-    def colour_bar(
-        self, place: tuple[int, int, int, int], end: float, colours: str, extend: str = "neither"
-    ) -> Colorbar:
+    def colour_bar(self, place: tuple[int, int, int, int], end: float, colours: str) -> Colorbar:
         """Draw the bar of a colour map from 0 to ``end`` at a position in pixels."""
         colours_of_numbers = ScalarMappable(Normalize(0.0, end), colours)
         return self.figure.colorbar(
-            colours_of_numbers, cax=self.axes(*place), orientation="horizontal", extend=extend
+            colours_of_numbers, cax=self.axes(*place), orientation="horizontal"
         )
 
     def mark_x(self, camera: Camera, first: float, last: float) -> None:
@@ -173,10 +170,9 @@ class Sheet:
         self.picture.set_xticks(list(seen[:, 0]), [f"{x:g}" for x in ticks])
         self.picture.set_xlabel("x along the boom (m)")
 
-    def show(self, pixels: Pixels, left: int = 0, bottom: int | None = None) -> None:
-        """Show rendered pixels in the picture, or at a position in pixels on the sheet."""
-        up = self._floor if bottom is None else bottom
-        self._pictures.append((pixels, round(self._part * left), round(self._part * up)))
+    def show(self, pixels: Pixels) -> None:
+        """Show rendered pixels in the next image."""
+        self._rendered = pixels
 
     def show_once(self, *artists: Artist) -> None:
         """Show artists in the next image only."""
@@ -187,11 +183,9 @@ class Sheet:
     def write(self, heading: str, explanation: str) -> None:
         """Write the heading and the explanation of the next image above the picture."""
         centred: dict[str, Any] = {"ha": "center", "va": "top"}
-        # Three lines have smaller letters, so that the longest fits the sheet.
-        size = 17 if explanation.count("\n") > 1 else 19
         self.show_once(
             self.figure.text(0.5, 0.98, heading, size=26, weight="bold", **centred),
-            self.figure.text(0.5, 0.925, explanation, size=size, **centred),
+            self.figure.text(0.5, 0.925, explanation, size=19, **centred),
         )
 
     def arrow(self, foot: Array, length: float, text: str) -> None:
@@ -210,14 +204,6 @@ class Sheet:
             mark(text, (x + 22.0, y + 0.6 * length), **letters),
         )
 
-    def ring(self, x: float, y: float, text: str) -> None:
-        """Draw a ring with a label around a position in pixels."""
-        look: dict[str, Any] = {"ms": 26, "mfc": "none", "mec": theme.INK, "mew": 3}
-        self.show_once(
-            *self.picture.plot([x], [y], "o", path_effects=theme.OUTLINED, **look),
-            self.picture.annotate(text, (x + 24.0, y - 30.0), size=18, path_effects=theme.OUTLINED),
-        )
-
     def image(self) -> Image.Image:
         """Return the current image of the sheet, and remove temporary artists."""
         if self._background is None:
@@ -225,14 +211,14 @@ class Sheet:
             self._background = self._canvas.copy_from_bbox(self.figure.bbox)
         self._canvas.restore_region(self._background)
         page = np.asarray(self._canvas.buffer_rgba())
-        for pixels, left, bottom in self._pictures:
-            top, (height, width, _) = len(page) - bottom, pixels.shape
-            place = page[top - height : top, left : left + width, :3]
+        if self._rendered is not None:
+            top, (height, width, _) = len(page) - self._floor, self._rendered.shape
+            place = page[top - height : top, :width, :3]
             # Characters that reach down into the picture are kept.
-            np.minimum(place, pixels, out=place)
+            np.minimum(place, self._rendered, out=place)
         for artist in sorted(self._temporary_artists, key=Artist.get_zorder):
             self.figure.draw_artist(artist)
             artist.remove()
         self._temporary_artists.clear()
-        self._pictures.clear()
+        self._rendered = None
         return Image.fromarray(page[..., :3].copy())

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, nullcontext
@@ -20,16 +20,16 @@ from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.typography import TO_MILLI, with_minus_signs
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.results import FIELDS, Results, read_fields
 from protractile.runs.pipeline.summary import Snapshots
 from protractile.runs.process import workers
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import opengl, theme
 from protractile.runs.report.boom_pictures import BoomView, draw_boom, render_buckling
 from protractile.runs.report.crane_position import CranePosition
 from protractile.runs.report.figure_context import Figure
-from protractile.runs.report.overlap_pictures import StressScale, draw_overlap, draw_stress
+from protractile.runs.report.overlap_pictures import draw_overlap
 from protractile.runs.report.scene import Instant, Scene
 
 SNAPSHOTS = "snapshots"
@@ -39,19 +39,6 @@ SNAPSHOTS = "snapshots"
 ANIMATION = "motion.gif"
 ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, 0.6
 
-TITLES = {
-    "first-peak": "first peak of the tip",
-    "largest-deflection": "largest deflection of the tip",
-    "largest-force": "largest contact force",
-    "first-contact": "first contact",
-}
-
-# Events that happen at a station.
-AT_A_STATION = {"largest-force", "first-contact"}
-
-# Two times closer than this fraction of the run count as one.
-SAME = 0.02
-
 # Meaning of an arrow if a station has several contact points.
 ON_SURFACES = (
     " Contact is over surfaces: each arrow is the sum of the forces at the points nearest to its "
@@ -60,9 +47,7 @@ ON_SURFACES = (
 
 # File name of a time that the user requests.
 _GIVEN = re.compile(r"[0-9.e+-]+s")
-_NAME = re.compile(
-    r"(?P<view>boom|overlap|stress)(?P<above>-above)?(-(?P<joint>\d+))?-(?P<when>.+)"
-)
+_NAME = re.compile(r"(?P<view>boom|overlap)(?P<above>-above)?-(?P<when>.+)")
 _BUCKLING = re.compile(r"buckling-(?P<segment>\d+)\.png")
 
 Times = Sequence[float] | None
@@ -70,46 +55,32 @@ Render = Callable[[Sequence[Scene], Path, Times], list[Path]]
 
 
 def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw a shell at times in s, by default at the :func:`characteristic_instants`.
+    """Draw a shell at times in s, by default at the first peak of the tip.
 
-    The files are ``boom-WHEN.png``, ``overlap-WHEN.png`` (from the second joint on
-    ``overlap-2-WHEN.png``), ``stress-WHEN.png``, in 3-D also ``boom-above-WHEN.png``.
+    The files are ``boom-WHEN.png``, in 3-D also ``boom-above-WHEN.png``, and of the overlap with
+    the largest contact force ``overlap-WHEN.png``.
 
     Raises:
         ValueError: a time lies outside the run.
     """
     begin, end = views[0].motion["time"].values[[0, -1]]
-    when = _named_times(views[0].motion, times)
-    for t in when.values():
+    for t in times or ():
         if not begin <= t <= end:
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
     paths: list[Path] = []
     with rc_context(theme.PAGE_RC):
-        assert views[0].stress is not None
-        scale = StressScale.of(views[0].stress, when.values())
         for seen in views:
             above = "-above" if seen.from_above else ""
-            when = _named_times(seen.motion, times)
-            instants = _instants(views, when)
-            view = BoomView.of(seen, [*instants, *_film(seen)])
-            pictures: dict[str, Iterable[Image.Image]] = {
-                f"boom{above}": draw_boom(view, instants, end)
-            }
-            # The view does not follow the stations of a driven overlap.
-            overlaps = {
-                overlap.stations[0].number + 1: overlap
-                for overlap in seen.overlaps
-                if not seen.telescopes(overlap)
-            }
-            stresses = draw_stress(seen, instants, scale, overlaps.values())
-            for number, overlap in overlaps.items():
-                joint = above if number == 1 else f"{above}-{number}"
-                pictures[f"overlap{joint}"] = draw_overlap(seen, instants, overlap)
-                pictures[f"stress{joint}"] = next(stresses)
-            for kind, several in pictures.items():
-                for name, picture in zip(when, several, strict=True):
-                    paths.append(folder / f"{kind}-{name}.png")
-                    picture.save(paths[-1], compress_level=1)
+            instants = _instants(seen.motion, times)
+            view = BoomView.of(seen, [*instants.values(), *_film(seen)])
+            pictures = draw_boom(view, [*instants.values()], end)
+            for name, picture in zip(instants, pictures, strict=True):
+                paths.append(folder / f"boom{above}-{name}.png")
+                picture.save(paths[-1], compress_level=1)
+        for name, instant in _instants(views[0].motion, times).items():
+            if (overlap := draw_overlap(views, instant)) is not None:
+                paths.append(folder / f"overlap-{name}.png")
+                overlap.save(paths[-1], compress_level=1)
     return paths
 
 
@@ -119,7 +90,7 @@ def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> li
     scene = max(views, key=lambda view: float(np.ptp(view.motion["tip"].values)))
     film = _film(scene)
     with rc_context(theme.PAGE_RC):
-        view = BoomView.of(scene, [*_instants(views, _named_times(scene.motion, times)), *film])
+        view = BoomView.of(scene, [*_instants(scene.motion, times).values(), *film])
         begin, last = film[0].time, film[-1].time
         slow = SHOWN / (last - begin) if last > begin else 1.0
         pace = f"; {slow:.3g} times slower than real time" if slow > 1.0 else ""
@@ -170,54 +141,22 @@ def _film_end(motion: xr.Dataset, crane: CranePosition | None) -> float:
     return float(end if crane else min(end, begin + ANIMATED))
 
 
-def _named_times(motion: xr.Dataset, times: Times) -> dict[str, float]:
-    """Return the times in s by their names in file names."""
-    return characteristic_instants(motion) if times is None else {f"{t:g}s": t for t in times}
+def _instants(motion: xr.Dataset, times: Times) -> dict[str, Instant]:
+    """Return the instants at times in s, or the characteristic one, by their names in files."""
+    if times is not None:
+        return {f"{t:g}s": Instant(t) for t in times}
+    instant = characteristic_instant(motion)
+    return {instant.title.removesuffix(" of the tip").replace(" ", "-"): instant}
 
 
-def _instants(views: Sequence[Scene], when: Mapping[str, float]) -> list[Instant]:
-    places = {
-        name: place_of_largest_force(views[0], when[name]) for name in AT_A_STATION & when.keys()
-    }
-    return [Instant(t, TITLES.get(name, "") + places.get(name, "")) for name, t in when.items()]
-
-
-def characteristic_instants(motion: xr.Dataset) -> dict[str, float]:
-    """Return the times in s of characteristic events of a motion, by event.
-
-    The events are ``first-peak`` of the tip, or ``largest-deflection`` without a peak;
-    ``largest-force`` at any station, unless it is at nearly the same time; ``first-contact``,
-    unless a contact is closed from the start.
-    """
+def characteristic_instant(motion: xr.Dataset) -> Instant:
+    """Return the instant of the first peak of the tip; without one, of its largest deflection."""
     time = np.asarray(motion["time"].values)
     peak, _ = Trajectory(motion, np.empty((time.size, 0))).first_peak()
     if np.isnan(peak):
-        instants = {"largest-deflection": float(time[np.abs(motion["tip"].values).argmax()])}
-    else:
-        instants = {"first-peak": peak}
-    force = np.abs(np.nan_to_num(motion["contact_force_peak"].values))
-    if force.any():
-        largest = float(time[force.max(axis=1).argmax()])
-        if all(abs(largest - other) > SAME * time[-1] for other in instants.values()):
-            instants["largest-force"] = largest
-        if not force[0].any():
-            instants["first-contact"] = float(time[force.any(axis=1).argmax()])
-    return instants
-
-
-def place_of_largest_force(scene: Scene, time: float) -> str:
-    """Return the location of the largest force at a time in s as text.
-
-    It is empty if there is one joint in one direction, or one stop.
-    """
-    stations = scene.boom.stations
-    if len({(one.stop is None, one.number, one.direction) for one in stations}) < 2:
-        return ""
-    peaks = scene.motion["contact_force_peak"].sel(time=time, method="nearest").values
-    station = stations[int(np.abs(np.nan_to_num(peaks)).argmax())]
-    if station.joint is None:
-        return " (a stop)"
-    return f" (joint {station.number + 1}{', lateral' if station.direction == 'y' else ''})"
+        farthest = float(time[np.abs(motion["tip"].values).argmax()])
+        return Instant(farthest, "largest deflection of the tip")
+    return Instant(peak, "first peak of the tip")
 
 
 def shell_files(folder: Path) -> list[Path]:
@@ -341,35 +280,22 @@ def describe_one(results: Results, path: Path) -> Figure:
         motion = motion.assign(tip=motion["tip_lateral"])
     when, state = _instant(seen["when"], motion, "lateral tip" if above else "tip")
     state = f"{model!r}{above}, {state}"
-    which = f" of joint {seen['joint']}" if seen["joint"] else ""
-    joint = results.case.joints[int(seen["joint"] or 1) - 1] if seen["view"] != "boom" else None
-    pair = f"overlap of {joint.inner!r} in {joint.outer!r}" if joint else ""
-    title, caption = {
-        "boom": (
-            "Boom",
-            f"Boom in {state}. Colour: magnitude of {aside}deflection; grey: undeformed; "
-            "symbols: supports, cylinders, masses and loads. Displacements and play are magnified "
-            "by the factor above the picture.",
-        ),
-        "stress": (
-            f"Stress at the overlap{which}",
-            f"Von Mises stresses in {state}. Upper picture: whole boom; lower picture: "
-            f"{pair}, cut open. Colours: the larger stress of both faces, averaged at nodes; the "
-            "circle marks the maximum. These stresses grow with refinement beside a contact line: "
-            "no design values, unlike the local plate stress in the tables. Values beyond the end "
-            "of the scale have its darkest colour. The factors above the picture magnify "
-            "displacements and play.",
-        ),
-        "overlap": (
-            f"Overlap{which}",
-            f"In {state}: {pair}, cut open. Blue: outer segment; orange: inner one; arrows: forces "
-            "of the inner one on the outer one. The factor above the picture magnifies play and "
-            "displacements relative to the outer segment.",
-        ),
-    }[seen["view"]]
-    if lines[model] == "surface" and seen["view"] != "boom":
-        caption += ON_SURFACES
-    return Figure(path, f"{title}{above}: {when}", caption)
+    if seen["view"] == "overlap":
+        caption = (
+            f"In {state}: the overlap with the largest contact force, cut open. Blue: outer "
+            "segment; orange: inner one; arrows: forces of the inner one on the outer one. The "
+            "factor above the picture magnifies play and displacements relative to the outer "
+            "segment."
+        )
+        if lines[model] == "surface":
+            caption += ON_SURFACES
+        return Figure(path, f"Overlap: {when}", caption)
+    caption = (
+        f"Boom in {state}. Colour: magnitude of {aside}deflection; grey: undeformed; "
+        "symbols: supports, cylinders, masses and loads. Displacements and play are magnified "
+        "by the factor above the picture."
+    )
+    return Figure(path, f"Boom{above}: {when}", caption)
 
 
 def _instant(name: str, motion: xr.Dataset, tip_name: str) -> tuple[str, str]:
@@ -378,16 +304,10 @@ def _instant(name: str, motion: xr.Dataset, tip_name: str) -> tuple[str, str]:
     The name is that in the file name. The trajectory ``tip`` of the motion is the displayed
     deflection, whose name is ``tip_name``.
     """
-    event = TITLES.get(name, name.replace("-", " "))
-    instants = characteristic_instants(motion)
-    if name in instants:
-        time = instants[name]
-    elif _GIVEN.fullmatch(name):
-        time = float(name.removesuffix("s"))
-    else:
-        return event, f"at the {event}"
+    given = _GIVEN.fullmatch(name)
+    time, title = (float(name[:-1]), "") if given else characteristic_instant(motion)
     deflection = float(motion["tip"].sel(time=time, method="nearest"))
     tip = f"{tip_name} {with_minus_signs(f'{TO_MILLI * deflection:+.1f}')} mm"
-    if name in instants:
-        return f"{event} at {time:.3f} s", f"at the {event} ({time:.3f} s, {tip})"
+    if title:
+        return f"{title} at {time:.3f} s", f"at the {title} ({time:.3f} s, {tip})"
     return f"{time:.3f} s", f"at {time:.3f} s ({tip})"

@@ -9,33 +9,28 @@ from textwrap import fill
 import numpy as np
 
 from protractile.analysis.low_pass import mean_period
-from protractile.analysis.motion_results import Peak
-from protractile.analysis.pads import PadLoad
-from protractile.analysis.stresses import Utilisation
+from protractile.analysis.rows import EXTENDED, INITIAL, MOTION, REST, Row, Rows
 from protractile.geometry.typography import (
+    NONE,
     TO_MEGA,
     TO_MILLI,
     TO_PERCENT,
+    fixed,
     join_words,
+    number,
+    percent,
+    signed_percent,
     with_minus_signs,
 )
-from protractile.runs.pipeline.design_results import ModelDesignResults, PlayDifference
-from protractile.runs.pipeline.load_table import release_note
+from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.model_quality import static_deviation
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
 from protractile.runs.pipeline.quantities import decay_time
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.figure_context import farthest, tip_directions
-from protractile.runs.report.formatting import (
-    NONE,
-    amount,
-    fixed,
-    in_shown_unit,
-    number,
-    percent,
-    signed_percent,
-)
-from protractile.runs.report.result_tables import is_negligible, times
+from protractile.runs.report.labels import amount_of, place, times, title, used
+from protractile.runs.report.load_table import release_note
+from protractile.runs.report.result_tables import PlayPair, peaks, play_pairs, weakest_panels
 from protractile.runs.report.tables import Column, Table
 from protractile.shell_model.stress.history import BAND
 
@@ -43,80 +38,105 @@ from protractile.shell_model.stress.history import BAND
 NEAR = 0.9
 
 
+def utilisations(rows: Rows) -> dict[str, Row]:
+    """Return the row with the largest utilisation of each quantity with a limit, by quantity.
+
+    ``rows`` are those of a model. Without a motion they are static. Of rows without a limit, the
+    one with the largest magnitude counts.
+    """
+    loaded = rows.where(play=True, state=MOTION) or rows.where(play=True, state=REST)
+    names = dict.fromkeys(row.quantity for row in loaded if row.of.short)
+    governing = {name: loaded.where(quantity=name).governing for name in names}
+    return {name: row for name, row in governing.items() if row is not None}
+
+
 def summary_table(results: Results) -> Table | None:
     """Return the table of governing results of the main models, starting with the reference."""
     names, design = results.main_models, results.summary.design.models
     if not design:
         return None
-    designs = [design[name] for name in names]
-    hertz = [one.modes[0].frequency if one.modes else None for one in designs]
+    of_models = [results.rows.where(model=name, play=True) for name in names]
+    at_start, at_most, extended = (
+        [_value(rows, state, "tip") for rows in of_models] for state in (INITIAL, REST, EXTENDED)
+    )
+    if len({curve.time for curve in results.curves.where(state=REST)}) == 1:
+        # Loads that do not vary have no maximum.
+        at_most = []
+    hertz = [_first_frequency(rows) for rows in of_models]
     # Decay by modal damping alone.
     decay_times = [decay_time(results.case.damping.modal, f) for f in hertz]
-    used = [results.summary.utilisations(name) for name in names]
-    walls, fibres = ([one.get(part) for one in used] for part in ("plate", "outer fibre"))
-    hardest = governing_pads(results)
-    pads = {name: pad_text(pad) for name, pad in hardest.items()}
-    stations = [
-        None if hardest else _largest(one, "contact force", at="\nat {} m") for one in designs
+    most = [utilisations(rows) for rows in of_models]
+    walls, fibres, pads, damages = (
+        [one.get(name) for one in most]
+        for name in ("wall_stress", "stress", "pad_pressure", "damage")
+    )
+    pad_cells = [
+        None if pad is None else _pad(pad, rows) for pad, rows in zip(pads, of_models, strict=True)
     ]
-    data, tips, periods = results.trajectories, [], []
+    data, travel, periods = results.trajectories, [], []
     # Static results alone have no motion of the tip.
     if "tip" in data:
         tips = [data["tip"].sel(model=name).values for name in names]
+        travel = [farthest(x - x[0]) if x[0] else None for x in tips]
         time = np.asarray(data["time"].values, dtype=float)
         # Direction in which the tip moves most.
         main = data[tip_directions(data)[0]]
         means = (mean_period(time, main.sel(model=name).values) for name in names)
         periods = [period if np.isfinite(period) else None for period in means]
-    damages = [one["detail"].load if "detail" in one else None for one in used]
-    at_start, at_most, extended = (
-        [max((rest.tip for rest in rests), key=abs, default=None) for rests in several]
-        for several in (
-            [one.static[:1] for one in designs],
-            [one.static if len(one.static) > 1 else [] for one in designs],
-            [one.static_extended for one in designs],
-        )
-    )
-    aside = [
-        max((s.tip_lateral or 0.0 for s in one.static), key=abs, default=0.0) for one in designs
-    ]
-    tip_peaks = [largest_peak(one, "deflection") for one in designs]
-    dynamic = [
-        _milli(farthest(tip)) + (times(peak) if peak else "")
-        for tip, peak in zip(tips, tip_peaks, strict=False)
-    ]
-    travel = [farthest(x - x[0]) if x[0] else None for x in tips]
+
+    def largest(quantity: str, at: bool = False) -> list[str | None]:
+        return [_largest(peaks(rows).where(quantity=quantity), rows, at) for rows in of_models]
+
+    aside = [_value(rows, REST, "tip_lateral") or None for rows in of_models]
     bending, plates = ([one and _stress(one) for one in several] for several in (fibres, walls))
     z, lateral = ", vertical (z)" if results.boom.spatial else "", "Static lateral tip deflection"
     rows_of_models = (
         Column("Static tip deflection (t = 0)", at_start, ".1f", "mm"),
         Column("Static tip deflection (maximum load)", at_most, ".1f", "mm"),
         Column("Static tip deflection (end of telescoping)", extended, ".1f", "mm"),
-        Column("Maximum dynamic tip deflection (factor φ)", dynamic, unit="mm"),
+        Column(
+            "Maximum dynamic tip deflection (factor φ)",
+            [_dynamic_tip(rows) for rows in of_models],
+            unit="mm",
+        ),
         # A motion that starts undeformed is not in static equilibrium at t = 0.
         Column(f"Tip travel from t = 0{z}", travel, ".1f", "mm"),
-        Column("Residual vibration of the tip", [_vibration(one) for one in designs], unit="mm"),
-        Column(f"{lateral} (maximum load)", [one or None for one in aside], ".1f", "mm"),
-        Column("Lateral tip deflection, maximum", _each(designs, "lateral deflection"), unit="mm"),
+        Column(
+            "Residual vibration of the tip",
+            [_vibration(design[name]) for name in names],
+            unit="mm",
+        ),
+        Column(f"{lateral} (maximum load)", aside, ".1f", "mm"),
+        Column("Lateral tip deflection, maximum", largest("tip_lateral"), unit="mm"),
         Column("First natural frequency", hertz, ".3g", "Hz"),
         Column("Period of the motion (time history)", periods, ".3g", "s"),
         Column("Decay time to 10 %", decay_times, ".2g", "s"),
-        Column("Governing pad: force, pressure, utilisation", [pads.get(name) for name in names]),
-        Column("Contact force, maximum", stations, unit="kN"),
-        Column("Cylinder force, maximum", _each(designs, "cylinder force"), unit="kN"),
-        Column("Foot reaction, maximum", _each(designs, "reaction, across and along"), unit="kN"),
+        Column("Governing pad: force, pressure, utilisation", pad_cells),
+        Column(
+            "Contact force, maximum",
+            [] if any(pads) else largest("contact_force", at=True),
+            unit="kN",
+        ),
+        Column("Cylinder force, maximum", largest("cylinder_force"), unit="kN"),
+        Column("Foot reaction, maximum", largest("foot_reaction"), unit="kN"),
         Column("Bending stress, maximum (utilisation)", bending, unit="MPa"),
         Column("Local plate stress, maximum (utilisation)", plates, unit="MPa"),
-        Column("Plate buckling factor, lowest (segment)", [_buckling(one) for one in designs]),
-        Column("Fatigue damage (Miner)", damages, ".3g"),
+        Column(
+            "Plate buckling factor, lowest (segment)", [_buckling(results, name) for name in names]
+        ),
+        Column("Fatigue damage (Miner)", [one and one.value for one in damages], ".3g"),
     )
     rows = {column.heading.replace("\n", ", "): column.text for column in rows_of_models}
-    rows = {title: cells for title, cells in rows.items() if any(cell != NONE for cell in cells)}
+    rows = {what: cells for what, cells in rows.items() if any(cell != NONE for cell in cells)}
     columns = [Column("", list(rows))]
     columns += [Column(name, [cells[i] for cells in rows.values()]) for i, name in enumerate(names)]
-    strong = [_stress(one) for one in (*walls, *fibres) if one and (one.value or 0.0) >= NEAR]
-    strong += [pads[name] for name, pad in hardest.items() if (pad.utilisation or 0.0) >= NEAR]
-    strong += [number(damage) for damage in damages if (damage or 0.0) >= NEAR]
+    loaded = [*walls, *fibres, *pads, *damages]
+    texts = [*plates, *bending, *pad_cells, *(one and number(one.value) for one in damages)]
+    strong = [
+        text
+        for row, text in zip(loaded, texts, strict=True)
+        if row and text and (row.utilisation or 0.0) >= NEAR
+    ]
     return Table("Design results", columns, [*_notes(results, rows)], "summary", strong)
 
 
@@ -130,7 +150,7 @@ def deviation_note(results: Results) -> str:
         for model in results.completed_models
         if not model.bonded and model.name != reference
     ]
-    offs = {name: static_deviation(design[reference], design[name]) for name in loose}
+    offs = {name: static_deviation(results.rows, reference, name) for name in loose}
     deviations = [f"{name} {signed_percent(off)}" for name, off in offs.items() if off is not None]
     if not deviations:
         return ""
@@ -146,28 +166,37 @@ def deviation_note(results: Results) -> str:
 
 def play_effect(results: Results) -> str:
     """Return a sentence on the effect of play in the reference model; empty without play."""
-    effect = results.play
-    if effect is None:
-        return ""
-    by_kind: dict[str, list[PlayDifference]] = {}
-    for each in effect.numbers:
-        by_kind.setdefault(each.what, []).append(each)
-    first = {what: max(several, key=lambda one: one.with_play) for what, several in by_kind.items()}
-    kinds = [(_PHRASES[what], one) for what, one in first.items() if what in _PHRASES]
-    changed = [(what, one) for what, one in kinds if not is_negligible(one)]
-    more = [f"{_change(one)} to {what}" for what, one in changed if one.increase > 0.0]
-    less = [f"{what} by {_change(one)}" for what, one in changed if one.increase <= 0.0]
-    same = [what for what, one in kinds if is_negligible(one)]
+    pairs = play_pairs(results)
+    kinds: dict[str, list[PlayPair]] = {}
+    for pair in pairs:
+        if pair.with_play.quantity in ("tip", "stress"):
+            kinds.setdefault(f"the {title(pair.with_play)}", []).append(pair)
+    most = {
+        what: max(several, key=lambda one: abs(one.with_play.value))
+        for what, several in kinds.items()
+    }
+    changed = {what: one for what, one in most.items() if not one.is_negligible}
+    more = [f"{_change(one)} to {what}" for what, one in changed.items() if one.increase > 0.0]
+    less = [f"{what} by {_change(one)}" for what, one in changed.items() if one.increase <= 0.0]
+    same = [what for what in most if what not in changed]
     parts = [(more, "adds"), (less, "reduces"), (same, "hardly changes")]
     sentences = [f"Play {verb} {join_words(several)}." for several, verb in parts if several]
-    frequency = first.get("first frequency")
-    if frequency is not None and frequency.bonded and not is_negligible(frequency):
+    frequency = next((one for one in pairs if one.with_play.quantity == "frequency"), None)
+    if frequency is not None and not frequency.is_negligible:
         # Play itself, which opens contacts, has no part in this frequency.
+        closed, bonded = (amount_of(row.of, row.value) for row in frequency)
         sentences.append(
-            f"First natural frequency: {amount(frequency.with_play, 'Hz')} with joints in contact, "
-            f"{amount(frequency.bonded, 'Hz')} with bonded joints."
+            f"First natural frequency: {closed} with joints in contact, {bonded} with bonded "
+            "joints."
         )
     return " ".join(sentences)
+
+
+def _change(one: PlayPair) -> str:
+    share = (
+        "" if one.share is None else f" ({with_minus_signs(f'{TO_PERCENT * one.share:+.0f}')} %)"
+    )
+    return f"{amount_of(one.with_play.of, abs(one.increase))}{share}"
 
 
 def utilisation_verdict(results: Results, model: str | None = None) -> str:
@@ -176,69 +205,71 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
     The governing utilisation comes first. Without strengths, allowable pressures and detail
     categories the text is empty.
     """
-    model = model or results.main_models[0]
-    governing = [
-        one for one in results.summary.utilisations(model).values() if one.value is not None
-    ]
+    rows = results.rows.where(model=model or results.main_models[0], play=True)
+    governing = [one for one in utilisations(rows).values() if one.utilisation is not None]
     if not governing:
         return ""
-    governing.sort(key=lambda one: one.value or 0.0, reverse=True)
-    used = "; ".join(map(str, governing))
+    governing.sort(key=lambda one: one.utilisation or 0.0, reverse=True)
     steels = [one.name for one in results.boom.segments if one.yield_strength is None]
-    loaded = (pad for pad in results.summary.pads if pad.model == model and pad.force > 0.0)
-    pads = {pad.inner: None for pad in loaded if pad.utilisation is None}
+    loaded = (pad for pad in rows.where(quantity="pad_pressure") if pad.value)
+    pads = dict.fromkeys(pad.part for pad in loaded if pad.limit is None)
     missing = {"yield strength is given of": steels, "allowable pressure is given of pads of": pads}
     more = "".join(f" No {what} {join_words([*of])}." for what, of in missing.items() if of)
-    return f"In this run, without safety factors, the utilisation is {used}.{more}"
+    several = "; ".join(map(used, governing))
+    return f"In this run, without safety factors, the utilisation is {several}.{more}"
 
 
-_PHRASES = {
-    "deflection at rest": "the static tip deflection (maximum load)",
-    "deflection": "the maximum dynamic tip deflection",
-    "stress": "the maximum bending stress",
-}
+def _value(rows: Rows, state: str, quantity: str) -> float | None:
+    """Return the value of largest magnitude of a quantity in SI units, with its sign."""
+    row = rows.where(state=state, quantity=quantity).largest
+    return None if row is None else row.value
 
 
-def _change(one: PlayDifference) -> str:
-    share = (
-        "" if one.share is None else f" ({with_minus_signs(f'{TO_PERCENT * one.share:+.0f}')} %)"
-    )
-    return f"{amount(abs(one.increase), one.unit)}{share}"
+def _first_frequency(rows: Rows) -> float | None:
+    """Return the first natural frequency of a model in Hz."""
+    return next((row.value for row in rows.where(state=INITIAL, quantity="frequency")), None)
 
 
-def governing_pads(results: Results) -> dict[str, PadLoad]:
-    """Return, for each model, the pad with the highest utilisation, or pressure if unknown."""
-    pads = results.summary.pads[::-1]
-    pads = sorted(pads, key=lambda pad: (pad.utilisation or 0.0, pad.pressure))
-    return {pad.model: pad for pad in pads}
+def _dynamic_tip(rows: Rows) -> str | None:
+    row = rows.where(state=MOTION, quantity="tip").largest
+    return None if row is None else f"{_milli(row.value)}{times(rows, row)}"
 
 
-def pad_text(pad: PadLoad) -> str:
-    """Return force, pressure and position of a pad as text."""
-    used = _used(pad.utilisation, "allowable")
-    force, pressure = amount(pad.force, "N"), amount(pad.pressure, "Pa")
-    return f"{force}\n{pressure}{used}\n{pad.inner} {_FACES[pad.side]}, x = {pad.x:g} m"
+def _largest(several: Rows, rows: Rows, at: bool) -> str | None:
+    """Return the largest of several rows of a model in the displayed unit, as text."""
+    if (row := several.largest) is None:
+        return None
+    largest = number(row.of.factor * abs(row.value), 4)
+    return f"{largest}{times(rows, row)}" + (f"\nat {place(row)}" if at else "")
 
 
-_FACES = {"above": "top", "below": "bottom", "left": "left", "right": "right"}
+def _pad(pad: Row, rows: Rows) -> str:
+    """Return force, pressure and place of a pad as text."""
+    forces = rows.where(state=pad.state, quantity="pad_force", part=pad.part, place=pad.place)
+    force, pressure = (amount_of(row.of, row.value) for row in (*forces, pad))
+    return f"{force}\n{pressure}{_used(pad, 'allowable')}\n{place(pad)}"
 
 
-def _stress(most: Utilisation) -> str:
-    stress = number(TO_MEGA * most.load)
-    return f"{stress}{_used(most.value, 'yield')}\n{most.segment}, x = {most.x:.1f} m"
+def _stress(most: Row) -> str:
+    stress = number(TO_MEGA * abs(most.value))
+    return f"{stress}{_used(most, 'yield')}\n{most.part}, x = {most.x:.1f} m"
 
 
-def _buckling(results: ModelDesignResults) -> str | None:
+def _buckling(results: Results, model: str) -> str | None:
     """Return a text on the lowest buckling factor of walls, by the shell or by panel formulas."""
-    shells = [(one.factors[0], one.segment) for one in results.buckling if one.factors]
-    panels = [(one.factor, f"{one.segment}, panel formulas") for one in results.panels]
+    design = results.summary.design.models[model]
+    shells = [(one.factors[0], one.segment) for one in design.buckling if one.factors]
+    panels = [
+        (row.value, f"{row.part}, panel formulas")
+        for row in weakest_panels(results.rows.where(model=model)).values()
+    ]
     lowest = min(shells or panels, default=None)
     return lowest and f"{number(lowest[0])} ({lowest[1]})"
 
 
-def _used(part: float | None, limit: str) -> str:
+def _used(row: Row, limit: str) -> str:
     """Return a utilisation as text."""
-    if part is None:
+    if (part := row.utilisation) is None:
         return ""
     return f", {percent(part)}" + (f"\nbeyond {limit}" if part > 1.0 else "")
 
@@ -264,7 +295,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
             "its centre half a pad length inside the overlap."
         )
     yield from filter(None, [release_note(results.case), rigid_wall_note(models, results.boom)])
-    if any(title.startswith("Tip travel") for title in rows):
+    if any(what.startswith("Tip travel") for what in rows):
         yield "Tip travel: largest displacement of the tip from its position at t = 0."
     if any("×" in cell for cells in rows.values() for cell in cells):
         extended = ", at any extension" if results.case.driven_segments else ""
@@ -303,7 +334,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         )
     shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
     if shells:
-        most = [f"{amount(one.von_mises, 'Pa')} in {name}" for name, one in shells.items()]
+        most = [f"{number(TO_MEGA * one.von_mises)} MPa in {name}" for name, one in shells.items()]
         yield (
             f"Stresses of single elements are larger ({join_words(most)}), but they grow with mesh "
             "refinement and are no design values. A note below the table of section forces of "
@@ -331,23 +362,6 @@ def _vibration(results: ModelDesignResults) -> str | None:
 
 def _milli(deflection: float | None) -> str:
     return fixed(deflection, 1, TO_MILLI)
-
-
-def _each(results: Sequence[ModelDesignResults], what: str) -> list[str | None]:
-    return [_largest(one, what) for one in results]
-
-
-def _largest(results: ModelDesignResults, what: str, at: str = "") -> str | None:
-    """Return the largest peak of a quantity in kN or mm, with its position, as text."""
-    if (peak := largest_peak(results, what)) is None:
-        return None
-    largest = number(in_shown_unit(peak.largest, peak.unit), 4)
-    return f"{largest}{times(peak)}{at.format(peak.where)}"
-
-
-def largest_peak(results: ModelDesignResults, what: str) -> Peak | None:
-    peaks = [peak for peak in results.motion.peaks if peak.what == what] if results.motion else []
-    return max(peaks, key=lambda one: one.largest, default=None)
 
 
 def limit_table(results: Results) -> Table | None:

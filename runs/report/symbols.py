@@ -17,11 +17,11 @@ from matplotlib.transforms import Affine2D
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.fields import at
 from protractile.geometry.section import Direction
+from protractile.geometry.typography import number
 from protractile.runs.case import actions
 from protractile.runs.case.load_tables import LoadTable
 from protractile.runs.case.schema import Case
 from protractile.runs.report import theme
-from protractile.runs.report.formatting import number
 
 # Displayed height of a segment without plates, over the length of the boom.
 DEFAULT_HEIGHT = 0.015

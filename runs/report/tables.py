@@ -21,9 +21,9 @@ from rich.measure import Measurement
 from rich.table import Table as Grid
 from rich.text import Text
 
+from protractile.geometry.typography import NONE, count, fixed, number, repeated
 from protractile.geometry.units import Unit
 from protractile.runs.folder.files import write_atomically
-from protractile.runs.report.formatting import NONE, count, fixed, number, repeated
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -3,18 +3,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from rich.console import Console
 
-from protractile.geometry.typography import TO_PERCENT
+from protractile.analysis.rows import INITIAL, MOTION, REST, Rows
+from protractile.geometry.typography import TO_PERCENT, number, percent
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.combinations import combination_states, combination_tables
+from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.combined_shells import shell_states
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
-from protractile.runs.pipeline.proofs import proof_table, prove
+from protractile.runs.pipeline.proofs import prove
 from protractile.runs.pipeline.results import Results
 from protractile.runs.process.terminal import (
     Progress,
@@ -25,19 +26,25 @@ from protractile.runs.process.terminal import (
     shorten,
 )
 from protractile.runs.report.additions import Addition, show
-from protractile.runs.report.figure_context import farthest
-from protractile.runs.report.formatting import number, percent
 from protractile.runs.report.model_tables import model_table
+from protractile.runs.report.proof_tables import (
+    KINDS,
+    governing_proof,
+    holds,
+    proof_table,
+    proof_text,
+    tally,
+)
 from protractile.runs.report.result_tables import record_tables
+from protractile.runs.report.static_tables import combination_tables
 from protractile.runs.report.summary_table import (
-    governing_pads,
-    largest_peak,
     limit_faults,
     limit_table,
     play_effect,
     utilisation_verdict,
+    utilisations,
 )
-from protractile.runs.report.tables import Cell, Column, Table, print_text
+from protractile.runs.report.tables import Column, Table, print_text
 
 # Terminal headings of columns of the table of models, by their headings in the report.
 SHOWN = {
@@ -49,9 +56,6 @@ SHOWN = {
     "energy residual\n/ largest work": "energy residual\n/ largest work",
     "computing time\ns": "computing\ntime, s",
 }
-
-# Short name of the governing kind of utilisation.
-_GOVERNING = {"plate": "plate", "outer fibre": "bending", "pad": "pad", "detail": "fatigue"}
 
 
 def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
@@ -106,11 +110,10 @@ def print_models(results: Results, console: Console) -> None:
 
 def print_results(results: Results, console: Console) -> None:
     """Print the governing results of each model and the utilisations of the first main model."""
-    design = results.summary.design
-    if not design.models:
+    if not results.summary.design.models:
         return
     tables = result_table(results), lateral_table(results), limit_table(results)
-    largest = [*combination_tables(design.combinations, results.case)][:1]
+    largest = [*combination_tables(results.rows, results.case)][:1]
     for table in (*filter(None, tables), *record_tables(results), *largest):
         table.show(console)
     for line in filter(None, (play_effect(results), utilisation_verdict(results))):
@@ -119,38 +122,40 @@ def print_results(results: Results, console: Console) -> None:
 
 def result_table(results: Results) -> Table:
     """Return the table of governing design results, with a row for each model."""
-    designs, pads = results.summary.design.models, governing_pads(results)
-    names = [name for name in results.summary.models if name in designs]
-    static = [[state.tip for state in designs[name].static] for name in names]
-    highest = [max(tips, key=abs, default=None) for tips in static]
-    peaks = [largest_peak(designs[name], "deflection") for name in names]
-    modes = [designs[name].modes for name in names]
-    forces: list[Cell] = [pads[name].force if name in pads else None for name in names]
-    if not pads:
-        contacts = [largest_peak(designs[name], "contact force") for name in names]
-        forces = [one.largest if one else None for one in contacts]
-    used = [results.summary.utilisations(name).values() for name in names]
-    governing = [max(several, key=lambda one: one.value or 0.0, default=None) for several in used]
+    names = [name for name in results.summary.models if name in results.summary.design.models]
+    of_models = [results.rows.where(model=name, play=True) for name in names]
+    static, highest, dynamic = _tips(of_models, "tip")
+    moved = [rows.where(state=MOTION) for rows in of_models]
+    peaks = [rows.where(quantity="tip").largest for rows in moved]
+    modes = [rows.where(state=INITIAL, quantity="frequency") for rows in of_models]
+    used = [utilisations(rows) for rows in of_models]
+    padded = any("pad_pressure" in one for one in used)
+    carried = [rows.where(quantity="pad_force" if padded else "contact_force") for rows in moved]
+    governing = [Rows(one.values()).governing for one in used]
     shares = [
-        f"{TO_PERCENT * one.value:.3g} {_GOVERNING[one.part]}" if one and one.value else None
+        f"{TO_PERCENT * one.utilisation:.3g} {one.of.short}" if one and one.utilisation else None
         for one in governing
     ]
-    tips = [farthest(results.trajectories["tip"].sel(model=name).values) for name in names]
     columns = [
         Column("model", names),
-        Column("static tip\nt = 0", [tip[0] if tip else None for tip in static], ".1f", "mm"),
+        Column("static tip\nt = 0", static, ".1f", "mm"),
         Column("static tip\nmax. load", highest, ".1f", "mm"),
-        Column("dynamic\ntip", tips, ".1f", "mm"),
-        Column("φ", [one.factor if one else None for one in peaks], ".3g"),
-        Column("first\nmode", [m[0].frequency if m else None for m in modes], ".3g", "Hz"),
-        Column("one pad" if pads else "contact\nforce", forces, ".3g", "kN"),
+        Column("dynamic\ntip", dynamic, ".1f", "mm"),
+        Column("φ", [one and results.rows.dynamic_factor(one) for one in peaks], ".3g"),
+        Column("first\nmode", [one[0].value if one else None for one in modes], ".3g", "Hz"),
+        Column(
+            "one pad" if padded else "contact\nforce",
+            [one and abs(one.value) for one in (rows.largest for rows in carried)],
+            ".3g",
+            "kN",
+        ),
         Column("utilisation", shares, "", "%"),
     ]
     columns = [one for one in columns if any(cell is not None for cell in one.cells)]
     models = [model for model in results.completed_models if model.name in names]
     notes = [
         "φ: maximum in motion over the static value under the maximum load."
-        + " One pad: largest force of one pad of a pair." * bool(pads)
+        + " One pad: largest force of one pad of a pair." * padded
         + " Utilisation: of the governing strength." * any(shares),
         *filter(None, [rigid_wall_note(models, results.boom)]),
     ]
@@ -159,21 +164,22 @@ def result_table(results: Results) -> Table:
 
 def lateral_table(results: Results) -> Table | None:
     """Return the table of lateral tip deflections; None for a flat boom."""
-    designs = results.summary.design.models
-    if "tip_lateral" not in results.trajectories:
+    if not results.boom.spatial:
         return None
-    names, moved = [*designs], results.trajectories["tip_lateral"]
-    static_tips = [[state.tip_lateral or 0.0 for state in one.static] for one in designs.values()]
-    dynamic = [farthest(moved.sel(model=name).values) for name in names]
-    columns = [
-        Column("model", names),
-        Column("static, t = 0", [tips[0] if tips else None for tips in static_tips], ".1f", "mm"),
-        Column(
-            "static, max. load", [max(t, key=abs, default=None) for t in static_tips], ".1f", "mm"
-        ),
-        Column("dynamic", dynamic, ".1f", "mm"),
+    names = [*results.summary.design.models]
+    of_models = [results.rows.where(model=name, play=True) for name in names]
+    headings = "static, t = 0", "static, max. load", "dynamic"
+    tips = _tips(of_models, "tip_lateral")
+    columns = [Column(one, cells, ".1f", "mm") for one, cells in zip(headings, tips, strict=True)]
+    return Table("Lateral tip deflection", [Column("model", names), *columns])
+
+
+def _tips(of_models: Sequence[Rows], quantity: str) -> list[list[float | None]]:
+    """Return the deflections of the tip at t = 0, under extreme loads and in motion."""
+    return [
+        [one and one.value for one in (rows.where(**labels).largest for rows in of_models)]
+        for labels in ({"state": state, "quantity": quantity} for state in (INITIAL, REST, MOTION))
     ]
-    return Table("Lateral tip deflection", columns)
 
 
 def print_proofs(
@@ -198,15 +204,17 @@ def print_proofs(
     if not states:
         # Only the first rank has the states of a shell.
         return 0
-    results = prove(case, states)
+    proofs = prove(case, states)
     print_text(console, case.title)
     name = "" if shell is None else shell[0].name
-    for table in combination_tables([one.result for one in states], case, name):
+    rows = Rows(row for one in states for row in one.rows)
+    for table in combination_tables(rows, case, name):
         table.show(console)
-    proof_table(results, case).show(console)
-    failed = [one for one in results.proofs if not one.holds]
+    proof_table(proofs, case).show(console)
+    failed = [row for row in proofs.rows if not holds(row)]
     # The lines on stderr begin with the governing proof.
-    print_text(console, f"{results.tally}." if failed else results.governing(case.system))
-    for one in failed:
-        say(message(f"{shorten(file)}: {one.text(case.system)}. Remedy: {one.remedy}"))
+    print_text(console, f"{tally(proofs)}." if failed else governing_proof(proofs, case.system))
+    for row in failed:
+        text = proof_text(row, proofs, case.system)
+        say(message(f"{shorten(file)}: {text}. Remedy: {KINDS[row.quantity].remedy}"))
     return 1 if failed else 0

@@ -28,7 +28,7 @@ from protractile.runs.pipeline.run import Run
 from protractile.runs.report import theme
 from protractile.runs.report.charts import compress, pack_plotly
 from protractile.runs.report.pages import page
-from protractile.runs.report.scene import SECTION_DRAWN, Scene, means_around
+from protractile.runs.report.scene import SECTION_DRAWN, Scene
 
 VIEWER = "viewer.html"
 
@@ -66,8 +66,11 @@ class View(NamedTuple):
         """Return the view of a shell, with the larger stress of both faces, averaged at points."""
         stress = scene.stress
         assert stress is not None
+        # Means over the triangles around a point, weighted by their areas.
+        weights, around = np.repeat(stress.areas, 3), scene.triangles.ravel()
+        total = np.maximum(np.bincount(around, weights), 1e-300)
         means = [
-            means_around(scene.triangles, stress.areas, stress_field.largest())
+            np.bincount(around, weights * np.repeat(stress_field.largest(), 3)) / total
             for stress_field in stress.instants(time.tolist())
         ]
         return cls(model, scene, time, TO_MEGA * np.array(means), "von Mises stress (MPa)")

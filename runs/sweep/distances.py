@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from protractile.analysis.low_pass import mean_period
+from protractile.analysis.quantities import Quantity
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.predictability import SHARES, EnsembleMember, Vary, horizon, run_members
 from protractile.geometry.arrays import Array
@@ -21,7 +22,6 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.folder.cache import Cache
-from protractile.runs.pipeline.metrics import Metric
 from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.pipeline.quantities import Quantities
 from protractile.runs.pipeline.results import Results
@@ -37,11 +37,11 @@ AVERAGING_TIME = 0.02
 TIP_DEVIATION = "tip_off"
 # Relative differences from the reference.
 DISTANCES = (
-    Metric("first_peak_off", "1", "first peak deviation", shown="%"),
-    Metric("slow_period_off", "1", "slow period deviation", shown="%"),
-    Metric("pad_force_off", "1", "pad force deviation", shown="%"),
-    Metric("stress_off", "1", "stress deviation", shown="%"),
-    Metric(TIP_DEVIATION, "1", "tip deviation", shown="%"),
+    Quantity("first_peak_off", "1", "first peak deviation", shown="%"),
+    Quantity("slow_period_off", "1", "slow period deviation", shown="%"),
+    Quantity("pad_force_off", "1", "pad force deviation", shown="%"),
+    Quantity("stress_off", "1", "stress deviation", shown="%"),
+    Quantity(TIP_DEVIATION, "1", "tip deviation", shown="%"),
 )
 # Name of the variable with the time in s up to which tips are compared.
 UNTIL = "compared_until"

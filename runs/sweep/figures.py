@@ -21,14 +21,13 @@ from matplotlib.axes import Axes
 from matplotlib.contour import ContourSet
 from matplotlib.figure import Figure as Sheet
 
+from protractile.analysis.quantities import Quantity
 from protractile.geometry.arrays import Array
-from protractile.runs.pipeline.metrics import Metric
+from protractile.geometry.typography import SHOWN, in_shown_unit, number
 from protractile.runs.pipeline.quantities import QUANTITIES
 from protractile.runs.report import theme
 from protractile.runs.report.figure_context import new_sheet
-from protractile.runs.report.formatting import SHOWN, in_shown_unit, number
 from protractile.runs.sweep.distances import DISTANCES, LEVELS, TIP_DEVIATION, UNTIL
-from protractile.runs.sweep.residual_vibration import draw_vibration
 
 CHARTED = [quantity for quantity in QUANTITIES if quantity.charted]
 # Name of the attribute of a variable that has the limit of the quantity.
@@ -77,7 +76,7 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
             part = data.sel(selection)
             # Nothing to draw if all points failed.
             if changing := _varying_quantities(part):
-                sheet, panels = _lines(data[keys[0]], _model_lines(part, changing, line_styles))
+                sheet, panels = _lines(part, keys[0], changing, line_styles)
                 for axes, quantity in zip(panels, changing, strict=True):
                     axes.set_yscale("log" if quantity.logarithmic else "linear")
                     if (permitted := _permitted(part, quantity)) is not None:
@@ -86,11 +85,9 @@ def draw(data: xr.Dataset, bonded: Sequence[str], folder: Path) -> None:
                 where = "".join(f", {_quantity(key)} {value:g}" for key, value in selection.items())
                 name = f"sweep-lines-{count}.png" if selection else "sweep-lines.png"
                 _finish(sheet, f"Sweep over {_quantity(keys[0])}{where}", folder / name)
-        if len(keys) == 1:
-            draw_vibration(data, line_styles, folder / "sweep-residual-vibration.png")
 
 
-def _permitted(data: xr.Dataset, quantity: Metric) -> float | None:
+def _permitted(data: xr.Dataset, quantity: Quantity) -> float | None:
     """Return the limit of a quantity in its displayed unit; None if it has no limit."""
     permitted = data[quantity.name].attrs.get(PERMITTED)
     return None if permitted is None else float(quantity.factor * permitted)
@@ -103,11 +100,11 @@ def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]
         yield dict(zip(keys, values, strict=True))
 
 
-def _varying_quantities(data: xr.Dataset) -> list[Metric]:
+def _varying_quantities(data: xr.Dataset) -> list[Quantity]:
     """Return the quantities that change over the keys, or all with values if none changes."""
     available = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
 
-    def changes(one: Metric) -> bool:
+    def changes(one: Quantity) -> bool:
         values = data[one.name]
         keys = [dim for dim in values.dims if dim != "model"]
         spans = (values.max(keys) - values.min(keys)).values
@@ -131,32 +128,6 @@ def in_display_units(data: xr.Dataset) -> xr.Dataset:
     return data.assign_coords(coordinates)
 
 
-def draw_frequencies(data: xr.Dataset, path: Path) -> None:
-    """Draw frequencies over one varied key, a panel for each mode."""
-    data = in_display_units(data)
-    (key,) = (str(dim) for dim in data.dims if dim not in ("model", "joints", "mode"))
-    colors = {name: one.color for name, one in _line_styles(data, ()).items()}
-    lines_of_modes = {
-        f"mode {mode} (Hz)": {
-            f"{name}, joints {joints}": (
-                data["frequency"].sel(model=name, joints=joints, mode=mode).values,
-                theme.LineStyle(color, dashes),
-            )
-            for name, color in colors.items()
-            for joints, dashes in (("in contact", "-"), ("bonded", "--"))
-        }
-        for mode in data["mode"].values
-    }
-    with matplotlib.rc_context(theme.RC):
-        sheet, panels = _lines(data[key], lines_of_modes)
-        for axes in panels:
-            # Without zero in the data range, the margins would clip an almost constant line.
-            axes.update_datalim([(0.0, 0.0)], updatex=False)
-            axes.autoscale_view(scalex=False)
-            axes.set_ylim(bottom=0.0)
-        _finish(sheet, f"First natural frequencies over {_quantity(key)}", path)
-
-
 def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
     """Draw the differences of models from a reference: lines over one key, maps over several.
 
@@ -171,8 +142,8 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
                 _distance_maps(data, quantity, keys, reference, folder)
         elif available:
             floor = {one.name: np.maximum(data[one.name], _LEAST / one.factor) for one in available}
-            lines_of_models = _model_lines(data.assign(floor), available, _line_styles(data, ()))
-            sheet, panels = _lines(data[keys[0]], lines_of_models)
+            shown = data.assign(floor)
+            sheet, panels = _lines(shown, keys[0], available, _line_styles(data, ()))
             for axes in panels:
                 for level in LEVELS:
                     axes.axhline(level, color=theme.INK, linewidth=0.8, linestyle=":")
@@ -186,36 +157,27 @@ def _line_styles(data: xr.Dataset, bonded: Sequence[str]) -> dict[str, theme.Lin
     return theme.line_styles([str(name) for name in data["model"].values], bonded)
 
 
-def _model_lines(
-    data: xr.Dataset, quantities: Sequence[Metric], line_styles: Mapping[str, theme.LineStyle]
-) -> dict[str, dict[str, tuple[Array, theme.LineStyle]]]:
-    """Return the values and the line style of each line, by titles of quantities and by models."""
-    return {
-        f"{one.title} ({one.shown_unit})": {
-            name: (one.factor * data[one.name].sel(model=name).values, style)
-            for name, style in line_styles.items()
-        }
-        for one in quantities
-    }
-
-
 def _lines(
-    along: xr.DataArray, lines_of_panels: Mapping[str, Mapping[str, tuple[Array, theme.LineStyle]]]
+    data: xr.Dataset,
+    key: str,
+    quantities: Sequence[Quantity],
+    line_styles: Mapping[str, theme.LineStyle],
 ) -> tuple[Sheet, list[Axes]]:
-    """Return a figure with a legend, and its panels of lines, one for each quantity."""
-    sheet, panels = new_sheet(len(lines_of_panels), 1.2 + 1.8 * len(lines_of_panels))
-    for axes, (title, lines) in zip(panels, lines_of_panels.items(), strict=True):
-        for label, (values, style) in lines.items():
-            (line,) = axes.plot(along.values, values, marker="o", markersize=4.0, label=label)
+    """Return a figure and its panels, one for each quantity over a key, with a line per model."""
+    sheet, panels = new_sheet(len(quantities), 1.2 + 1.8 * len(quantities))
+    for axes, one in zip(panels, quantities, strict=True):
+        for name, style in line_styles.items():
+            values = one.factor * data[one.name].sel(model=name)
+            (line,) = axes.plot(data[key], values, marker="o", markersize=4.0, label=name)
             line.set(color=style.color, linestyle=style.linestyle)
-        axes.set_title(title)
-    _scale_axis(panels[-1], "x", along)
+        axes.set_title(f"{one.title} ({one.shown_unit})")
+    _scale_axis(panels[-1], "x", data[key])
     handles, labels = panels[0].get_legend_handles_labels()
     sheet.legend(handles, labels, loc="outside lower left", ncols=2)
     return sheet, panels
 
 
-def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) -> None:
+def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str], folder: Path) -> None:
     """Draw maps of a quantity over two keys, one for each model with values, on a common scale."""
     x, y = (data[key] for key in keys)
     values = quantity.factor * data[quantity.name].transpose("model", *keys[::-1])
@@ -262,7 +224,7 @@ def _map(data: xr.Dataset, quantity: Metric, keys: Sequence[str], folder: Path) 
 
 
 def _distance_maps(
-    data: xr.Dataset, quantity: Metric, keys: Sequence[str], reference: str, folder: Path
+    data: xr.Dataset, quantity: Quantity, keys: Sequence[str], reference: str, folder: Path
 ) -> None:
     """Draw maps of a difference over the last two keys, for each model with values.
 
@@ -369,5 +331,5 @@ def _finish(sheet: Sheet, title: str, path: Path) -> None:
     sheet.savefig(path)
 
 
-def _name(quantity: Metric) -> str:
+def _name(quantity: Quantity) -> str:
     return f"sweep-{quantity.name.replace('_', '-')}.png"

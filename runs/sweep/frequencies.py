@@ -28,7 +28,6 @@ from protractile.runs.pipeline.models import build_on
 from protractile.runs.pipeline.results import CONVENTIONS
 from protractile.runs.process.terminal import Progress, ignore_progress
 from protractile.runs.report.tables import Column, Table
-from protractile.runs.sweep.figures import draw_frequencies
 from protractile.runs.sweep.points import Plan
 
 if TYPE_CHECKING:
@@ -110,7 +109,7 @@ def table(data: xr.Dataset) -> Table:
 
 
 def write(data: xr.Dataset, folder: Path) -> None:
-    """Write the dataset as NetCDF and CSV to the folder of a sweep; for one key, also a chart."""
+    """Write the dataset as NetCDF and CSV to the folder of a sweep."""
     with (
         folder_lock(folder),
         modified_folder(folder) as part,
@@ -120,6 +119,3 @@ def write(data: xr.Dataset, folder: Path) -> None:
         data.to_netcdf(netcdf, engine="scipy")
         frame = data.to_dataframe().reset_index()
         frame.to_csv(lines, index=False, float_format="%.9g", lineterminator="\r\n")
-        if data["frequency"].ndim == 4:
-            with atomic_path(part / f"{NAME}.png") as picture:
-                draw_frequencies(data, picture)

@@ -13,18 +13,17 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
+from protractile.analysis.quantities import Quantity, declared_quantities
+from protractile.geometry.typography import NONE, number
 from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
-from protractile.runs.pipeline.metrics import Metric, metrics
 from protractile.runs.pipeline.quantities import QUANTITIES
 from protractile.runs.pipeline.results import CONVENTIONS
 from protractile.runs.pipeline.summary import ModelSummary
 from protractile.runs.process.terminal import printable
-from protractile.runs.report.formatting import NONE, number
 from protractile.runs.report.tables import Table
 from protractile.runs.sweep.distances import DISTANCES, UNTIL
 from protractile.runs.sweep.figures import PERMITTED, draw, draw_distances
 from protractile.runs.sweep.points import Plan
-from protractile.runs.sweep.residual_vibration import describe, vibration_curves
 from protractile.runs.sweep.run import Outcome
 
 NETCDF = "sweep.nc"
@@ -102,7 +101,7 @@ def conclude(plan: Plan, outcomes: Sequence[Outcome], folder: Path, console: Con
 
 
 def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
-    """Print ranges of results, met limits, admissible speeds, and differences of models."""
+    """Print ranges of results, met limits, and differences of models."""
     keys = [variable.name for variable in data.coords.values() if variable.name != "model"]
     by_name = {quantity.name: quantity for quantity in QUANTITIES}
     quantities, residual = [by_name[name] for name in SHOWN], by_name["energy_residual"]
@@ -124,14 +123,10 @@ def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
         ("model", *(heading.replace(" ", "\n") for heading in headings)),
         rows,
     ).show(console)
-    lines = []
     for limit, name in product(plan.limits, data["model"].values):
         numbers = data[limit.quantity.name].sel(model=name).values.ravel()
         num_met = sum(limit.is_met_by(value) for value in numbers)
-        lines.append(f"{name}: {limit} at {num_met} of {numbers.size} points")
-    for name, one in vibration_curves(data).items():
-        lines += describe(name, one)
-    for line in lines:
+        line = f"{name}: {limit} at {num_met} of {numbers.size} points"
         console.print(line, markup=False, highlight=False)
     if plan.reference is not None:
         _print_distances(data, plan.reference, console)
@@ -146,9 +141,9 @@ def _print_distances(data: xr.Dataset, reference: str, console: Console) -> None
     headings = [f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES]
     title = f"Distances from {reference}"
     Table.of_rows("distances", title, ("model", *headings), rows).show(console)
-    until = _range(data[UNTIL], Metric(UNTIL, "s", ""))
+    until = _range(data[UNTIL], Quantity(UNTIL, "s", ""))
     step_error = data["step_error"].sel(model=reference).round(DIGITS)
-    difference = _range(step_error, metrics(ModelSummary)["step_error"])
+    difference = _range(step_error, declared_quantities(ModelSummary)["step_error"])
     if until != NONE:
         console.print(f"tips are compared until {until} s", markup=False, highlight=False)
     if difference != NONE:
@@ -156,7 +151,7 @@ def _print_distances(data: xr.Dataset, reference: str, console: Console) -> None
         console.print(line, markup=False, highlight=False)
 
 
-def _range(values: xr.DataArray, quantity: Metric) -> str:
+def _range(values: xr.DataArray, quantity: Quantity) -> str:
     finite = quantity.factor * values.values[np.isfinite(values.values)]
     if not finite.size:
         return NONE

@@ -23,10 +23,11 @@ from protractile.geometry.typography import choices
 from protractile.runs.case import reading as case_file
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom, hold_ground
-from protractile.runs.case.messages import BadInput, refusing
+from protractile.runs.case.messages import refusing
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SectionTable
 from protractile.runs.pipeline.quantities import Limit, case_limits
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.sweep.variation import UNUSED, Tables, Variation, parse, unit_of, with_size
 
 Setting = tuple[Variation, float]

@@ -15,7 +15,6 @@ from pathlib import Path
 
 from protractile.dynamics.failure import NumericsError
 from protractile.runs.case import toml
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case
 from protractile.runs.case.user_files import check_not_working_folder
 from protractile.runs.folder.cache import Cache, key
@@ -23,6 +22,7 @@ from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.quantities import Quantities
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import run_case
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.ending import when_interrupted
 from protractile.runs.process.ranks import single_rank
 from protractile.runs.process.terminal import Progress, message, say, shorten
@@ -108,7 +108,7 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
     models: dict[str, Quantities] = {}
     failures: dict[str, str] = {}
     runs: dict[str, Results] = {}
-    comm = single_rank(case)
+    comm = single_rank(case.first_shell)
     for model in case.models:
         case_of_model = case.model_copy(update={"models": (model,)})
         try:

@@ -20,13 +20,13 @@ import numpy as np
 import pandas as pd
 from rich.console import Console
 
+from protractile.analysis.quantities import Quantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import TO_PERCENT, join_words
 from protractile.runs.case import reading as case_file
-from protractile.runs.case.messages import BadInput
 from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
-from protractile.runs.pipeline.metrics import Metric
 from protractile.runs.pipeline.quantities import QUANTITIES
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import printable
 from protractile.runs.report import theme
 from protractile.runs.report.figure_context import new_sheet
@@ -183,7 +183,7 @@ def conclude_samples(
         Table.of_rows("sampling", title, forms, rows).show(console)
 
 
-def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Metric, pd.Series[float]]]:
+def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Quantity, pd.Series[float]]]:
     """Yield the main results that vary, with their statistics."""
     table = scatter(results)
     for one in QUANTITIES:

@@ -15,12 +15,12 @@ from rich.console import Console
 from protractile.geometry.typography import choices
 from protractile.geometry.units import scale
 from protractile.runs.case.build import build_boom
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context, Sentence
 from protractile.runs.cautions.response import wall_shares
 from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.quantities import QUANTITIES, Limit
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import Progress
 from protractile.runs.report.tables import Table
 from protractile.runs.sweep.points import Plan

@@ -20,8 +20,8 @@ import numpy as np
 from protractile.geometry.fields import is_number, names_of
 from protractile.geometry.units import scale
 from protractile.runs.case.limits import Steps, is_table, key_of, leaves, units_of
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import PLAIN_NUMBER_KEYS, Case
+from protractile.runs.process.bad_input import BadInput
 
 # A case as nested dictionaries and lists.
 Tables = dict[str, Any]

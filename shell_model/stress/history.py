@@ -46,24 +46,6 @@ class WallForcesAt:
 
 
 @dataclass(frozen=True, slots=True)
-class PlaceHistory:
-    """Largest triangle and patch stresses in Pa of a segment near x in m, by interval of a run."""
-
-    segment: str
-    x: float
-    von_mises: list[float]
-    von_mises_patch: list[float]
-
-
-@dataclass(frozen=True, slots=True)
-class StressHistory:
-    """Largest stresses near each place in intervals of a run, and mean times of intervals in s."""
-
-    time: list[float]
-    places: list[PlaceHistory]
-
-
-@dataclass(frozen=True, slots=True)
 class StressSummary:
     """Largest stress of a run, and the wall forces at the time of this stress.
 
@@ -72,10 +54,9 @@ class StressSummary:
         time: time of this stress in s.
         segment, wall, face: location of this stress.
         x, y, z: centroid of the triangle in m.
-        band: half-width in m of the bands at the places of ``history``.
+        band: half-width in m of the bands around places.
         patch: largest patch stress; None if no segment comes near a place.
         walls: wall forces of each segment at each place.
-        history: maxima over the run.
     """
 
     von_mises: float
@@ -89,14 +70,10 @@ class StressSummary:
     band: float
     patch: LargestPatch | None
     walls: list[WallForcesAt]
-    history: StressHistory
 
 
 # Half-length in m of the band at a place. A patch is a half of a wall within the band.
 BAND = 0.25
-
-# Number of intervals in the history of a summary.
-PARTS = 80
 
 # Faces of a wall. The stress of a triangle is the larger one of both faces.
 _FACES: tuple[Face, ...] = ("outer", "inner")
@@ -201,25 +178,7 @@ def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
         band=BAND,
         patch=patch,
         walls=walls,
-        history=_summed_history(history),
     )
-
-
-def _summed_history(history: xr.Dataset) -> StressHistory:
-    """Return the largest values in each interval of the run."""
-    time = history["time"].values
-    parts = np.array_split(np.arange(time.size), min(PARTS, time.size))
-    rows = []
-    histories = [history[kind].values for kind in ("von_mises", "von_mises_patch")]
-    for k, name in enumerate(history["segment"].values):
-        for i, place in enumerate(history["place"].values):
-            here = [values[:, k, i] for values in histories]
-            if not np.isnan(here[0]).any():
-                largest = (
-                    [float(f"{values[part].max():.4g}") for part in parts] for values in here
-                )
-                rows.append(PlaceHistory(str(name), float(place), *largest))
-    return StressHistory([float(time[part].mean()) for part in parts], rows)
 
 
 def _largest(shell: ShellStress, history: xr.Dataset) -> Largest:

@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 from scipy.sparse import csr_matrix
 
-from protractile.dynamics.line import Line, Quantity
+from protractile.dynamics.line import Line, LineQuantity
 from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.boom import Boom
 from protractile.shell_model.stress.stresses import (
@@ -59,7 +59,11 @@ def _line(shell: ShellStress, fields: xr.Dataset, boom: Boom, number: int) -> Li
         along_y, along_z = _slopes(shell, fields, triangles, band, cuts.size - 1)
         forces[0] -= compression * along_z
         forces[2] -= compression * along_y
-    rows: dict[Quantity, Array] = {"deflection": means[1], "shear": forces[0], "moment": forces[1]}
+    rows: dict[LineQuantity, Array] = {
+        "deflection": means[1],
+        "shear": forces[0],
+        "moment": forces[1],
+    }
     if boom.spatial:
         rows |= {
             "lateral": means[0],

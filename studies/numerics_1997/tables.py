@@ -9,9 +9,8 @@ from itertools import product
 import numpy as np
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import TO_PERCENT
+from protractile.geometry.typography import NONE, TO_PERCENT, number
 from protractile.runs.paper.rules import DIVERGENCE, INTERVAL, MOST, SERIES_STEPS
-from protractile.runs.report.formatting import NONE, number
 from protractile.runs.report.tables import Cell, Table
 from studies.numerics_1997.samples import MEMBERS, MODES, PAPER_STEP, SERIES, ModelRun, Numerics
 from studies.numerics_1997.schemes import NEWMARK, WILSON

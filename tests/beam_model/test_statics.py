@@ -12,7 +12,7 @@ from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.kantorovich import kantorovich_segments, rigid_segment
 from protractile.beam_model.lines import lines
 from protractile.beam_model.segment_model import gap_system
-from protractile.beam_model.statics import net_reactions, static_state
+from protractile.beam_model.statics import static_state
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Ramp, Step
@@ -35,11 +35,12 @@ def test_reactions_of_supports_and_stations_follow_the_lever_rule(paper_boom: Bo
     far = -(831.6 * 5.0 + tail * 9.0 + head * 10.0) / 2.0
     near = -831.6 - 550.7 - far
     expected = {
-        (0, 0.0): near, (0, 2.0): far, (0, 9.0): tail, (0, 10.0): head,
+        (0, 0.0): near, (0, 2.0): far, (0, 9.0): 0.0, (0, 10.0): 0.0,
         (1, 9.0): -tail, (1, 10.0): -head,
     }  # fmt: skip
     found = static_state(touching(paper_boom, LAW)).reactions
-    assert {reaction[:2]: reaction.force for reaction in found} == pytest.approx(expected, rel=1e-5)
+    forces = {reaction[:2]: reaction.force for reaction in found}
+    assert forces == pytest.approx(expected, rel=1e-5, abs=1e-3)
     assert np.abs([reaction.moment for reaction in found]).max() < 1e-3
 
 
@@ -50,7 +51,7 @@ def test_transferred_loads_are_counted_once(paper_boom: Boom) -> None:
     boom = replace(paper_boom, segments=(moved, inner))
     head = 550.7 * (14.0 - 9.0) / (10.0 - 9.0)
     far = -(831.6 * 5.0 + 550.7 * 14.0) / 9.0
-    reactions = net_reactions(boom, static_state(touching(boom, LAW)).reactions)
+    reactions = static_state(touching(boom, LAW)).reactions
     found = {reaction[:2]: reaction.force for reaction in reactions}
     assert found == {
         (0, 0.0): pytest.approx(-831.6 - 550.7 - far),

@@ -7,11 +7,11 @@ from pathlib import Path
 import pytest
 
 from protractile.runs import CASES
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import load_checked
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.rules import OF_INPUTS, cautions
 from protractile.runs.check import check_case
+from protractile.runs.process.bad_input import BadInput
 from tests.docs.conftest import toml_blocks
 
 CASE = "".join(toml_blocks("tutorial.md")[:2])

@@ -20,6 +20,7 @@ from tests.docs.conftest import DOCS, merged, toml_blocks
 from tests.runs.case_texts import read_case, table
 
 ROOT = DOCS.parent
+PACKAGES = "dynamics", "geometry", "beam_model", "shell_model", "analysis", "runs", "studies"
 GUIDES = sorted(path.name for path in (DOCS / "how-to").glob("*.md"))
 PAGES = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
 PAGES = [page for page in PAGES if not {"api", "generated"} & {*page.relative_to(ROOT).parts}]
@@ -82,7 +83,7 @@ def test_the_readme_is_short() -> None:
 def test_files_and_studies_exist(page: Path) -> None:
     """A page names files and studies that exist."""
     text = page.read_text("utf-8")
-    rooms = "geometry|dynamics|beam_model|shell_model|analysis|runs|protractile|studies|tests|docs|examples"
+    rooms = "|".join([*PACKAGES, "protractile", "tests", "docs", "examples"])
     files = re.findall(rf"`((?:{rooms})/(?!out/)[a-z0-9_/.-]+\.(?:py|md|toml|csv))`", text)
     assert [name for name in files if not (ROOT / name).exists()] == []
     studies = re.findall(r"-m\s+studies\.convergence ([a-z_]+(?: [a-z_]+)*)`", text)
@@ -93,8 +94,7 @@ def test_names_of_the_recipes_exist() -> None:
     """Reference: the words of the code."""
     recipes = (ROOT / "CONTRIBUTING.md").read_text("utf-8")
     names = set(re.findall(r"`(?:\w+\.)*(\w*[A-Z_]\w*)(?:\(\w+\))?`", recipes))
-    packages = "dynamics", "geometry", "beam_model", "shell_model", "analysis", "runs", "studies"
-    code = [path.read_text("utf-8") for room in packages for path in (ROOT / room).rglob("*.py")]
+    code = [path.read_text("utf-8") for room in PACKAGES for path in (ROOT / room).rglob("*.py")]
     assert len(names) > 40
     assert names - {"Makefile"} <= {word for text in code for word in re.findall(r"\w+", text)}
 

@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import protractile as pt
+from protractile.analysis.measure import measure_boom
+from protractile.analysis.rows import INITIAL, MOTION, Row, Rows
 from protractile.beam_model.statics import StaticState, static_state
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.runs.case.build import build_boom
@@ -18,10 +20,10 @@ from protractile.runs.cautions.rules import OF_INPUTS, cautions
 from protractile.runs.folder.cache import Cache
 from protractile.runs.live.beam import beam_results
 from protractile.runs.live.controls import Draft
-from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.largest_loads import static_states
 from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.statics import cylinder_force, statics
-from protractile.runs.pipeline.summary import Summary
 from tests.docs.conftest import DOCS, toml_blocks
 from tests.runs.case_texts import read_case
 
@@ -30,7 +32,7 @@ SECTION = "section = { height = 0.300, width = 0.220, flange = 0.006, web = 0.00
 COLLAR = 'collars = [{ span = [6.3, "head"], thickness = 0.008 }]'
 PAD = re.search(r"^    (pad = .*)$", PAGE, re.MULTILINE)
 
-Runner = Callable[..., Summary]
+Runner = Callable[..., Results]
 
 
 def numbers(label: str, nth: int = 0) -> list[float]:
@@ -47,13 +49,18 @@ def shown(value: float, digits: int, label: str, nth: int = 0, column: int = 0) 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> Runner:
-    """Return a function that runs some models of a case and returns the summary."""
+    """Return a function that runs some models of a case and returns the results."""
 
-    def of(text: str, *models: str, **changes: object) -> Summary:
+    def of(text: str, *models: str, **changes: object) -> Results:
         case = pt.change(read_case(tmp_path_factory.mktemp("tutorial"), text), **changes)
-        return pt.run_case(case, models=[*models]).summary
+        return pt.run_case(case, models=[*models])
 
     return of
+
+
+def peak(rows: Rows, quantity: str, **labels: object) -> Row:
+    """Return the largest value of a quantity in motion."""
+    return rows.where(state=MOTION, quantity=quantity, **labels).largest
 
 
 def checked(case: pt.Case) -> StaticState:
@@ -77,8 +84,9 @@ def test_values_of_the_first_check(tmp_path: Path) -> None:
     state = checked(case)
     assert shown(1e-3 * cylinder_force(state, 1), 2, "force of the cylinder")
     assert shown(1e3 * state.tip, 1, "static tip deflection (t = 0)")
-    (tilt,) = BeamStates.of(case, state.boom).farthest.tilts
-    assert shown(-1e3 * tilt.tip, 1, "part due to play and to walls that bend under pads")
+    measured = measure_boom(static_states(case, state.boom).farthest)
+    (tilted,) = (one.values.item() for one in measured if one.quantity == "rotation_tip")
+    assert shown(-1e3 * tilted, 1, "part due to play and to walls that bend under pads")
     walls = static_state(state.boom, walls=0.0).tip - state.tip
     assert shown(1e3 * walls, 1, "part due to walls that bend under pads")
     assert shown(first_frequency(state), 2, "first natural frequency, joints in contact")
@@ -86,31 +94,31 @@ def test_values_of_the_first_check(tmp_path: Path) -> None:
 
 def test_beam_results_equal_the_page(run: Runner, lift: str, tmp_path: Path) -> None:
     """Reference: the page, to its digits."""
-    summary = run(lift, "beam")
-    beam = summary.design.models["beam"]
-    peaks = {(peak.what, peak.where): peak for peak in beam.motion.peaks}
-    tip = peaks["deflection", "tip"]
+    results = run(lift, "beam")
+    rows, summary = results.rows.where(model="beam", play=True), results.summary.models["beam"]
+    tip = peak(rows, "tip")
+    at_rest = rows.at_rest(tip)
     state = checked(read_case(tmp_path, lift))
     assert shown(1e3 * state.tip, 1, "static tip deflection (t = 0), empty cage")
     assert shown(1e-3 * cylinder_force(state, 1), 1, "force of the cylinder", 1)
     assert shown(first_frequency(state), 2, "first natural frequency, joints in contact", 1)
-    part = 100.0 / summary.models["beam"].critical_factor
+    part = 100.0 / summary.critical_factor
     assert shown(part, 2, "largest axial force over the buckling load")
-    assert shown(1e3 * tip.at_rest, 1, "static tip deflection, people in the cage (mm)")
-    assert shown(1e3 * tip.largest, 1, "maximum tip deflection (mm)")
-    assert shown(tip.largest / tip.at_rest, 2, "dynamic factor φ")
-    assert shown(beam.modes[0].frequency, 2, "first natural frequency (Hz)")
-    cylinder = peaks["cylinder force", "cylinder_force"].largest
+    assert shown(1e3 * at_rest, 1, "static tip deflection, people in the cage (mm)")
+    assert shown(1e3 * abs(tip.value), 1, "maximum tip deflection (mm)")
+    assert shown(rows.dynamic_factor(tip), 2, "dynamic factor φ")
+    frequencies = rows.where(state=INITIAL, quantity="frequency")
+    assert shown(frequencies[0].value, 2, "first natural frequency (Hz)")
+    cylinder = abs(peak(rows, "cylinder_force").value)
     assert shown(1e-3 * cylinder, 1, "cylinder force, maximum (kN)")
-    head = peaks["contact force", "6.5"].largest
+    head = abs(peak(rows, "contact_force", x=6.5).value)
     assert shown(1e-3 * head, 1, "force at the head of the base, maximum (kN)")
-    bending = max(abs(fibre.stress) for fibre in beam.motion.fibres)
+    bending = abs(peak(rows, "stress").value)
     assert shown(1e-6 * bending, 1, "bending stress, maximum (MPa)")
-    assert summary.models["beam"].contact_changes == 0
+    assert summary.contact_changes == 0
     for play in ("1", "6"):
         swept = run(lift, "beam", **{"joint.play": 1e-3 * float(play), "time.duration": 0.5})
-        rest = {peak.what: peak for peak in swept.design.models["beam"].motion.peaks}
-        assert shown(1e3 * rest["deflection"].at_rest, 1, play)
+        assert shown(1e3 * swept.rows.at_rest(peak(swept.rows.where(play=True), "tip")), 1, play)
 
 
 @pytest.fixture(scope="module")
@@ -162,26 +170,28 @@ def test_coarse_shell_is_close_to_the_page(run: Runner, lift: str) -> None:
     assert len({*cases}) == 3
     for column, case in enumerate(cases):
         models = ("shell", "calibrated") if column == 0 else ("shell",)
-        summary = run(case, *models, **{"time.duration": 0.4})
-        shell = summary.design.models["shell"]
+        results = run(case, *models, **{"time.duration": 0.4})
+        shell = results.rows.where(model="shell", play=True)
+        largest = abs(peak(shell, "tip").value)
         tip = numbers("maximum tip deflection (mm)", 1)[column]
-        assert 1e3 * shell.motion.peaks[0].largest == pytest.approx(tip, rel=5e-3)
+        assert 1e3 * largest == pytest.approx(tip, rel=5e-3)
         patches = {
             (place.segment, round(place.x, 3)): max(place.von_mises_patch)
-            for place in summary.models["shell"].stress.history.places
+            for place in results.summary.models["shell"].stress.history.places
         }
         head, tail = patches["base", 6.5], patches["fly", 5.3]
         page = numbers("plate stress at the head of the base (MPa)")[column]
         assert 1e-6 * head == pytest.approx(page, rel=0.05)
         page = numbers("plate stress at the tail of the fly (MPa)")[column]
         assert 1e-6 * tail == pytest.approx(page, rel=0.05)
-        pad = max(row.utilisation for row in summary.pads if row.model == "shell")
+        pad = max(row.utilisation for row in shell.where(state=MOTION, quantity="pad_pressure"))
         page = numbers("pad utilisation at the head of the base (%)")[column]
         assert 100.0 * pad == pytest.approx(page, abs=0.6)
         if column == 0:
-            calibrated = summary.design.models["calibrated"].motion.peaks[0].largest
-            assert calibrated == pytest.approx(shell.motion.peaks[0].largest, rel=1e-3)
-            assert shell.modes[0].frequency == pytest.approx(
+            calibrated = peak(results.rows.where(model="calibrated", play=True), "tip")
+            assert abs(calibrated.value) == pytest.approx(largest, rel=1e-3)
+            frequencies = shell.where(state=INITIAL, quantity="frequency")
+            assert frequencies[0].value == pytest.approx(
                 numbers("first natural frequency (Hz)")[1], rel=5e-3
             )
 

@@ -137,7 +137,7 @@ def test_a_run_in_python_writes_the_folder_of_the_command(tmp_path: Path) -> Non
 HEAVY = "dolfinx", "pyvista", "matplotlib", "numba", "numpy"
 NAMES = dir(pt)
 ROOT = Path(__file__).parents[2]
-ROOMS = "geometry", "dynamics", "beam_model", "runs", ""
+ROOMS = "geometry", "dynamics", "beam_model", "analysis", "runs", ""
 EXPLAINED = sorted(
     ".".join(path.relative_to(ROOT).with_suffix("").parts)
     for room in ROOMS

@@ -10,8 +10,8 @@ import pytest
 
 from protractile.runs import CASES
 from protractile.runs.case import reading
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.schema import Case
+from protractile.runs.process.bad_input import BadInput
 
 COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
 CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact = "))

@@ -6,6 +6,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from io import StringIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from rich.console import Console
@@ -16,8 +18,8 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
+from protractile.runs.cautions.rules import add_cautions
 from protractile.runs.check import check_case
-from protractile.runs.pipeline.design_results import DesignResults
 from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.pipeline.results import Results
@@ -87,16 +89,18 @@ def printed_check(case: Case, width: int = 200) -> str:
 
 
 def finished(case: Case, context: RunContext | None = None) -> Run:
-    """Return the run of a case with its design results."""
+    """Return the run of a case with its design results and cautions."""
     run = run_case(case, "", context or RunContext())
     run.evaluate()
+    add_cautions(run.results)
     return run
 
 
-def answers_of(case: Case, comm: Intracomm | None = None) -> DesignResults:
+def answers_of(case: Case, comm: Intracomm | None = None) -> Results:
     """Return the results of a run of a case, as read from a folder."""
-    run = finished(case, RunContext(comm))
-    return Summary.model_validate_json(str(run.results.summary)).design
+    with TemporaryDirectory() as folder:
+        finished(case, RunContext(comm)).results.save(Path(folder) / "out")
+        return Results.load(Path(folder) / "out")
 
 
 def static_tip(case: Case, time: float = 0.0, tools: BuildContext | None = None) -> float:

@@ -8,11 +8,11 @@ import pytest
 
 from protractile.cases import run_case
 from protractile.geometry.section import BoxSection
+from protractile.geometry.typography import number
 from protractile.runs import CASES
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
-from protractile.runs.report.formatting import number
 from protractile.runs.report.model_tables import buckling_table
 from tests.runs.case_texts import (
     CLAMPED,

@@ -1,19 +1,15 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Load cases and combinations of a case, their statics, and their tables."""
 
-from collections.abc import Mapping
 from math import cos, hypot, radians, sin
 from pathlib import Path
 
 import pytest
 
+from protractile.analysis.rows import COMBINATION, Row
 from protractile.runs.case.reading import convert_to_si
-from protractile.runs.pipeline.combinations import (
-    CombinationResult,
-    combination_results,
-    combination_tables,
-)
-from protractile.runs.pipeline.largest_loads import StaticExtreme
+from protractile.runs.pipeline.combinations import combination_rows
+from protractile.runs.report.static_tables import combination_tables, row_name
 from tests.runs.case_texts import HINGED, box, read_case, refusal, table
 from tests.runs.summaries import printed_check
 
@@ -51,19 +47,15 @@ FACTORS = table(
 )  # fmt: skip
 
 
-def results(folder: Path, text: str) -> dict[str, Mapping[str, StaticExtreme]]:
-    return {
-        result.name: {one.name: one for one in result.extremes}
-        for result in combination_results(read_case(folder, text))
-    }
+def results(folder: Path, text: str) -> dict[str, dict[tuple[str, str, str], Row]]:
+    """Return the rows of each combination by quantity, part and place."""
+    found: dict[str, dict[tuple[str, str, str], Row]] = {}
+    for row in combination_rows(read_case(folder, text)):
+        found.setdefault(row.state.removeprefix(COMBINATION), {})[row.key] = row
+    return found
 
 
-def test_the_largest_of_several_cylinders_counts() -> None:
-    forces = [
-        StaticExtreme("cylinder force", part, "", "N", 0.0, force, 0.0)
-        for part, force in (("", 1e5), ("2", -3e5))
-    ]
-    assert CombinationResult("A", forces).largest("cylinder force") == forces[1]
+TIP, CYLINDER = ("tip", "tip", ""), ("cylinder_force", "cylinder", "")
 
 
 def by_hand(angle: float, extension: float, dead: float, people: float, wind: float) -> float:
@@ -95,7 +87,7 @@ def test_the_cylinder_of_a_lift_in_all_combinations(tmp_path: Path) -> None:
         ("B, level", (0.0, 2.0, 0.0, 1.1, 1.22 * WIND)),
     ):
         # Deflections change lever arms at 45 degrees by less than 0.5 %.
-        force = found[name]["cylinder force"].largest
+        force = found[name][CYLINDER].value
         assert force == pytest.approx(by_hand(*numbers), rel=5e-3 if "raised" in name else 1e-4)
 
 
@@ -103,10 +95,10 @@ def test_pads_and_foot_of_a_combination(tmp_path: Path) -> None:
     """Reference: analytic, lever rule on the level fly between the centres of its pads."""
     level = results(tmp_path, LIFT + CASES + FACTORS)["B, level"]
     tip = 1.1 * PEOPLE * G + 1.22 * WIND
-    for station, lever in ((1, 2.05), (2, 4.95)):
+    for place, lever in (("station 1, above", 2.05), ("station 2, below", 4.95)):
         # Two pads of 0.1 m x 0.05 m share the force of a side.
         pressure = 0.5 * tip * lever / 2.9 / 0.005
-        assert level[f"pad, fly, station {station}"].largest == pytest.approx(pressure, rel=1e-4)
+        assert level["pad_pressure", "fly", place].value == pytest.approx(pressure, rel=1e-4)
     # The pin takes what the cylinder pushes, less the loads at the tip.
     turn = radians(45.0)
     x0 = GROUND[0] * cos(turn) - GROUND[1] * sin(turn)
@@ -114,7 +106,8 @@ def test_pads_and_foot_of_a_combination(tmp_path: Path) -> None:
     length = hypot(LUG - x0, -DEPTH - z0)
     force = by_hand(0.0, 2.0, 0.0, 1.1, 1.22 * WIND)
     across, along = force * (-DEPTH - z0) / length - tip, force * (LUG - x0) / length
-    assert level["foot reaction, base"].largest == pytest.approx(hypot(across, along), rel=1e-4)
+    foot = level["foot_reaction", "base", "at 0 m"]
+    assert foot.value == pytest.approx(hypot(across, along), rel=1e-4)
 
 
 def test_load_cases_alone_have_unit_factors(tmp_path: Path) -> None:
@@ -125,8 +118,8 @@ def test_load_cases_alone_have_unit_factors(tmp_path: Path) -> None:
         f"mass = {CAGE}", f"mass = {CAGE + PEOPLE}"
     )
     other = results(tmp_path, alone + '[[load_case]]\nname = "same"\n')["same"]
-    for name, one in found["raised"].items():
-        assert one.largest == pytest.approx(other[name].largest, rel=1e-12)
+    for key, one in found["raised"].items():
+        assert one.value == pytest.approx(other[key].value, rel=1e-12)
 
 
 def test_without_gravity_the_payload_alone_weighs(tmp_path: Path) -> None:
@@ -139,7 +132,7 @@ def test_without_gravity_the_payload_alone_weighs(tmp_path: Path) -> None:
     arm /= hypot(LUG - GROUND[0], -DEPTH - GROUND[1])
     for name, payload, test in (("A", 1.34, 2.0), ("B", 1.1, 3.0)):
         force = 10.0 * (test * CAGE * G + payload * 1595.0) / arm
-        assert found[name]["cylinder force"].largest == pytest.approx(force, rel=1e-3)
+        assert found[name][CYLINDER].value == pytest.approx(force, rel=1e-3)
 
 
 def test_load_cases_in_millimetres_and_from_files(tmp_path: Path) -> None:
@@ -147,9 +140,7 @@ def test_load_cases_in_millimetres_and_from_files(tmp_path: Path) -> None:
     (tmp_path / "wind.csv").write_text("0,1\n1,1\n", encoding="utf-8")
     text = (LIFT + CASES).replace('group = "wind"', 'group = "wind", file = "wind.csv"')
     plain = results(tmp_path, LIFT + CASES)["level"]
-    assert results(tmp_path, text)["level"]["tip"].largest == pytest.approx(
-        plain["tip"].largest, rel=1e-12
-    )
+    assert results(tmp_path, text)["level"][TIP].value == pytest.approx(plain[TIP].value, rel=1e-12)
     case = read_case(tmp_path, LIFT + CASES)
     level = convert_to_si(case.model_copy(update={"units": "mm-t-s"})).load_cases[1]
     assert level.extension == {"fly": 0.002}
@@ -160,27 +151,26 @@ def test_the_states_of_combinations_have_a_progress(tmp_path: Path) -> None:
     """Reference: by construction. Two load cases in one combination, and one in another."""
     told: list[float] = []
     case = read_case(tmp_path, LIFT + CASES + FACTORS)
-    found = combination_results(case, lambda model, stage, part: told.append(part))
-    assert len(found) == 3
+    found = combination_rows(case, lambda model, stage, part: told.append(part))
+    assert len({row.state for row in found}) == 3
     assert told == [0.0, 1 / 3, 2 / 3, 1.0]
 
 
 def test_check_marks_the_governing_combination(tmp_path: Path) -> None:
     case = read_case(tmp_path, LIFT + CASES + FACTORS)
-    found = combination_results(case)
+    found = combination_rows(case)
     first, envelope = combination_tables(found, case)
-    extremes = [state.largest("tip") for state in found]
-    tips = [one.largest for one in extremes if one is not None]
-    assert len(tips) == len(found)
+    lowest = min(found.where(quantity="tip"), key=lambda row: row.value)
     marked = dict(zip(first.columns[0].cells, first.columns[1].text, strict=True))
-    governing = found[tips.index(min(tips))].name
+    governing = lowest.state.removeprefix(COMBINATION)
     assert [name for name, tip in marked.items() if "*" in tip] == [governing]
     cells = {row[0]: row[1:] for row in envelope.rows}
     assert cells["tip"][2] == governing
-    named = {state.name: {one.what for one in state.extremes} for state in found}
-    pads = [row for row in cells if row.startswith("pad, fly at ")]
+    of_pads = found.where(quantity="pad_pressure")
+    named = {(row.state.removeprefix(COMBINATION), row_name(row, case.system)) for row in of_pads}
+    pads = [name for name in cells if name.startswith("pad, fly at ")]
     assert len(pads) == 2
-    assert all(row in named[cells[row][2]] for row in pads)
+    assert all((cells[name][2], name) in named for name in pads)
     assert envelope.notes == [
         "Pads and contacts move with the extension; x is given for the governing combination."
     ]

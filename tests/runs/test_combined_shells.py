@@ -9,13 +9,15 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
+from protractile.analysis.measure import measure
 from protractile.analysis.model import AnalysisModel
+from protractile.analysis.rows import COMBINATION, extremes
+from protractile.analysis.states import States
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.combinations import CombinationState
 from protractile.runs.pipeline.combined_shells import shell_states
-from protractile.runs.pipeline.largest_loads import BeamStates
 from protractile.runs.pipeline.proofs import prove
 from tests.runs.case_texts import read_case
 from tests.runs.test_combinations import CASES, FACTORS, LIFT
@@ -66,12 +68,12 @@ def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationSta
         built = shell.build(joined, BuildContext(MPI.COMM_WORLD))
         lines = shell.lines(joined.boom, built)
         loaded = AnalysisModel.of(joined.boom, built.system, lines)
-        alone = BeamStates.at_rest(loaded, case.time.duration)
-        expected = {one.name: one.largest for one in alone.extremes(case.system)}
-        for one in state.result.extremes:
-            if one.name in expected:
+        alone = States.at_rest(loaded, case.time.duration)
+        expected = {row.key: row.value for row in extremes(measure(alone), "shell", "rest")}
+        for row in state.rows:
+            if row.quantity in ("tip", "stress", "pad_pressure", "cylinder_force"):
                 # The axial forces of the shared shell would change the tip of C by 0.7 %.
-                assert one.largest == pytest.approx(expected[one.name], rel=2e-4)
+                assert row.value == pytest.approx(expected[row.key], rel=2e-4)
         assert built.shell is not None
         system = built.system.gather_loads()
         factors = [
@@ -89,19 +91,21 @@ def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationSta
 def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path: Path) -> None:
     """Reference: by hand. The factor multiplies loads, and hence the stress, up to buckling."""
     case = read_case(tmp_path, TEXT)
-    proofs = {(one.kind, one.part): one for one in prove(case, states).proofs}
-    patches = {wall.segment: wall.patch for wall in states[0].walls}
-    patch = proofs["patch", "base"]
-    assert patch.demand == max(
-        next(wall.patch for wall in state.walls if wall.segment == "base") for state in states
-    )
-    assert patch.demand >= patches["base"]
+    proofs = {(row.quantity, row.part): row for row in prove(case, states).rows}
+    patches = [
+        float(wall.values.max())
+        for state in states
+        for wall in state.walls
+        if (wall.quantity, wall.part) == ("wall_stress", "base")
+    ]
+    assert len(patches) == len(states)
+    assert proofs["patch", "base"].value == max(patches)
     column = proofs["column", "boom"]
-    state = next(state for state in states if state.combined.name == column.combination)
+    state = next(state for state in states if COMBINATION + state.combined.name == column.state)
     stability = state.combined.combination.resistance.stability
     assert state.critical_factor is not None
-    expected = state.critical_factor * column.demand / stability
-    assert column.resistance == pytest.approx(expected, rel=1e-12)
+    expected = state.critical_factor * column.value / stability
+    assert column.limit == pytest.approx(expected, rel=1e-12)
     # Of both geometries, the state with the lowest estimate has factors.
     buckled = [state for state in states if state.buckling]
     assert [one.combined.name for one in buckled] == ["A, raised", "A, level"]
@@ -109,14 +113,14 @@ def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path:
     factor = next(
         found.factors[0]
         for state in buckled
-        if state.combined.name == one.combination
+        if COMBINATION + state.combined.name == one.state
         for found in state.buckling
         if found.segment == "base"
     )
-    slenderness = (3.55e8 / (one.demand * factor)) ** 0.5
+    slenderness = (3.55e8 / (one.value * factor)) ** 0.5
     reduction = min(1.0, (slenderness - 0.22) / slenderness**2) if slenderness > 0.673 else 1.0
     reduction = min(reduction, 0.83 / max(slenderness, 0.83))
-    assert one.resistance == pytest.approx(reduction * 3.55e8, rel=1e-9)
+    assert one.limit == pytest.approx(reduction * 3.55e8, rel=1e-9)
 
 
 def test_the_command_takes_a_shell(

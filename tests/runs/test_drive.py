@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from matplotlib import rc_context
 
+from protractile.analysis.rows import EXTENDED, MOTION, REST
 from protractile.cases import change, run_case
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import PiecewiseLinear, resolving_times
@@ -143,10 +144,13 @@ def test_static_states_with_and_without_play_have_equal_times(tmp_path: Path) ->
     text = drawn_out(*late) + table(
         "[[load]]", segment="inner", x="head", magnitude=500, frequency=1.2
     )
-    own = run_case(read_case(tmp_path, text), models=["kantorovich-5"]).summary.design.models
-    (begun, largest), bonded = own["kantorovich-5"].static, own["kantorovich-5"].static_bonded
-    assert largest.time == pytest.approx(0.25 / 1.2, abs=1e-9)
-    assert [rest.time for rest in bonded] == [begun.time, largest.time]
+    curves = run_case(read_case(tmp_path, text), models=["kantorovich-5"]).curves
+    loose, bonded = (
+        [one.time for one in curves.where(state=REST, play=play, segment="inner")]
+        for play in (True, False)
+    )
+    assert loose == pytest.approx([0.0, 0.25 / 1.2], abs=1e-9)
+    assert bonded == loose
 
 
 @pytest.mark.usefixtures("unprinted")
@@ -171,28 +175,35 @@ def test_run_reports_its_drive(tmp_path: Path) -> None:
     assert cells["work\nkJ"] == [pytest.approx(1.0e-3 * power.sum())]
     # With 1 m of overlap 14 mm of play turn by 14 mrad, which lifts the tip, 10 m on, by 133 mm;
     # the lever rule's forces press contacts of 1e9 N/m in by 2.2 and 2.8 µm.
-    own, table = results.summary.design.models["kantorovich-5"], summary_table(results)
-    (begun,), (ended,) = own.static, own.static_extended
+    rows, table = results.rows.where(model="kantorovich-5", play=True), summary_table(results)
+    begun, ended, moved = (
+        rows.where(state=state, quantity="tip")[0] for state in (REST, EXTENDED, MOTION)
+    )
     assert (begun.time, ended.time) == pytest.approx((0.0, 0.2))
-    assert ended.tilts[0].rotation == pytest.approx(0.014 + 4.956e-6, abs=1e-8)
-    assert ended.tilts[0].tip == pytest.approx(-0.007 - 2.2e-6 + 10.0 * 0.014004956, abs=1e-7)
-    assert [one.force for one in ended.stations] == pytest.approx([-2202.8, 2753.5], rel=1e-4)
-    assert own.motion.peaks[0].at_rest == ended.tip
+    values = {
+        name: [row.value for row in rows.where(state=EXTENDED, quantity=name)]
+        for name in ("rotation", "rotation_tip", "contact_force")
+    }
+    assert values["rotation"] == pytest.approx([0.014 + 4.956e-6], abs=1e-8)
+    assert values["rotation_tip"] == pytest.approx([-0.007 - 2.2e-6 + 0.14004956], abs=1e-7)
+    assert values["contact_force"] == pytest.approx([-2202.8, 2753.5], rel=1e-4)
+    assert rows.at_rest(moved) == abs(ended.value)
     cells = dict(zip(table.columns[0].cells, table.columns[1].cells, strict=True))
-    assert cells["Static tip deflection (t = 0), mm"] == f"{1e3 * begun.tip:.1f}"
-    assert cells["Static tip deflection (end of telescoping), mm"] == f"{1e3 * ended.tip:.1f}"
+    assert cells["Static tip deflection (t = 0), mm"] == f"{1e3 * begun.value:.1f}"
+    assert cells["Static tip deflection (end of telescoping), mm"] == f"{1e3 * ended.value:.1f}"
     # What the report shows at rest is the boom where its tip is farthest.
     tilts, pressed, _ = rest_tables(results)
     assert [column.cells for column in tilts.columns[2:]] == [
-        [ended.tilts[0].rotation],
-        [ended.tilts[0].tip],
+        values["rotation"],
+        values["rotation_tip"],
     ]
-    assert pressed.columns[1].cells == [one.force for one in ended.stations]
+    assert pressed.columns[1].cells == values["contact_force"]
     assert tilts.notes[0].endswith("to wall compliance. Extension as at 0.2 s.")
     # Both stand for too short to swing farther than they start.
-    standing = ["(with drives at rest", f"{1e3 * begun.tip:.1f}, {1e3 * ended.tip:.1f})"]
+    standing = ["(with drives at rest", f"{1e3 * begun.value:.1f}, {1e3 * ended.value:.1f})"]
     assert str(cells["Residual vibration of the tip, mm"]).splitlines()[1:] == standing
-    (table,), swing = record_tables(results), own.residual_vibration
+    (table,), design = record_tables(results), results.summary.design.models
+    swing = design["kantorovich-5"].residual_vibration
     told = swing.tip, swing.time, swing.initial, swing.final
     assert [c.cells for c in table.columns] == [["kantorovich-5"], *([value] for value in told)]
     drawn = {figure.path.stem: figure for figure in draw(results, tmp_path)}

@@ -14,7 +14,6 @@ from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.estimates import (
@@ -26,6 +25,7 @@ from protractile.runs.pipeline.estimates import (
     states_cost,
     sweep_cost,
 )
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.sweep import points as sweep_points
 from tests.runs.case_texts import (
     COARSE,

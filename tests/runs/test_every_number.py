@@ -9,10 +9,10 @@ from typing import Annotated, Any, get_args, get_origin
 import pytest
 
 from protractile.geometry.fields import fields_of, names_of
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import load_checked
 from protractile.runs.case.schema import Case
 from protractile.runs.case.usual_values import usual_of_tables
+from protractile.runs.process.bad_input import BadInput
 from tests.runs.case_texts import CASES, edited
 from tests.runs.test_usual_values import HOIST, LIFT, cautions
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from protractile.analysis.bonded import bonded_system
+from protractile.analysis.rows import INITIAL, MOTION
 from protractile.cases import change, run_case
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
@@ -22,9 +23,10 @@ from protractile.runs.case.motions import with_initial_slack
 from protractile.runs.case.reading import CheckedCase, select
 from protractile.runs.case.schema import Case, EnsembleTable
 from protractile.runs.check import check_case
-from protractile.runs.pipeline.combinations import combination_results, combination_states
-from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.combinations import combination_rows, combination_states
+from protractile.runs.pipeline.largest_loads import static_states
 from protractile.runs.pipeline.models import build, initial_motion
+from protractile.runs.pipeline.pad_walls import largest_tip
 from protractile.runs.pipeline.statics import boom_with_play, state_at_rest
 from tests.runs.case_texts import CLAMPED, REST, STEEL, elements, refusal, shipped, table
 from tests.runs.summaries import static_tip
@@ -54,10 +56,11 @@ def test_maximum_load_hangs_for_any_mass(case: Case, mass: float) -> None:
     lifted = change(case, **{"hoist.mass": mass})
     hung = change(lifted, **{"hoist.hanging": True})
     states, hanging = (
-        BeamStates.of(one, boom_with_play(one, build_boom(one))) for one in (lifted, hung)
+        static_states(one, boom_with_play(one, build_boom(one))) for one in (lifted, hung)
     )
-    assert states.farthest.tip == pytest.approx(hanging.farthest.tip, rel=1e-6)
-    assert states.farthest.tip < 1.2 * states.rests[0].tip < 0.0
+    (_, tip), (_, hanging_tip) = largest_tip(states), largest_tip(hanging)
+    assert tip == pytest.approx(hanging_tip, rel=1e-6)
+    assert tip < 1.2 * states.observed("tip")[0] < 0.0
 
 
 @pytest.mark.slow
@@ -110,9 +113,9 @@ def test_ensemble_and_comparison_without_play(case: Case) -> None:
     results = run_case(case.model_copy(update={"ensemble": table}))
     found = results.summary.models["series"].ensemble
     assert found.energy_residual < 1e-11
-    own = results.summary.design.models["series"]
-    assert own.motion_bonded is not None
-    static, bonded = (one[-1].tip for one in (own.static, own.static_bonded))
+    tips = results.rows.where(model="series", quantity="tip")
+    assert tips.where(state=MOTION, play=False)
+    static, bonded = (tips.where(state="rest", play=play)[0].value for play in (True, False))
     assert static < 1.02 * bonded < 0.0
 
 
@@ -148,9 +151,10 @@ def test_combinations_have_the_hoisted_mass_as_payload(case: Case, hanging: bool
             "load_cases": (LoadCaseTable(name="lift", payload=5000.0),),
         }
     )
-    (own,), (other,) = combination_results(hung), combination_results(by_hand)
-    assert own.extremes == other.extremes
-    assert own.largest("tip").largest < -2.0
+    own, other = combination_rows(hung), combination_rows(by_hand)
+    assert own == tuple(row._replace(state=own[0].state) for row in other)
+    (tip,) = own.where(quantity="tip")
+    assert tip.value < -2.0
     # An empty hook without a payload leaves the rope without force.
     empty = hung.model_copy(
         update={"payload": None, "load_cases": (LoadCaseTable(name="empty", payload=0.0),)}
@@ -159,8 +163,9 @@ def test_combinations_have_the_hoisted_mass_as_payload(case: Case, hanging: bool
     check_combinations(empty)
     # Without factors the state is that of the hanging load.
     (plain,) = combination_states(hung.model_copy(update={"combinations": ()}))
-    beam = BeamStates.of(hung, boom_with_play(hung, build_boom(hung)))
-    assert plain.beam.farthest.tip == pytest.approx(beam.farthest.tip, rel=1e-6)
+    beam = static_states(hung, boom_with_play(hung, build_boom(hung)))
+    (tip,) = plain.rows.where(quantity="tip")
+    assert tip.value == pytest.approx(largest_tip(beam)[1], rel=1e-6)
 
 
 def test_check_counts_the_load_on_the_rope() -> None:
@@ -170,12 +175,11 @@ def test_check_counts_the_load_on_the_rope() -> None:
     """
     checked = CheckedCase(select(shipped("hoist"), "", ["timoshenko"]))
     results = run_case(change(checked.case, **{"time.duration": 5.0, "time.output_step": 0.05}))
-    (model,) = results.summary.design.models.values()
     boom = boom_with_play(checked.case, checked.boom)
     rigid, elastic = (
         state_at_rest(checked.case, boom, walls=walls, time=5.0).tip for walls in (0.0, 1.0)
     )
-    right = min(one.tip for one in model.static)
+    right = results.rows.where(model="timoshenko", state="rest", quantity="tip")[0].value
     assert right == pytest.approx(-1.816, abs=0.001)
     assert rigid == pytest.approx(right, rel=3e-3)
     frame = check_case(checked).frames["Static results at t = 0 and under the maximum loads"]
@@ -290,8 +294,8 @@ def test_dropped_load_presses_along_the_boom_until_it_falls() -> None:
     right = -across / along * (np.tan(20.0 * k) / k - 20.0)
     for hung in (case, change(case, **{"hoist.dropped": True})):
         results = run_case(hung)
-        (model,) = results.summary.design.models.values()
-        assert model.static[0].tip == pytest.approx(right, rel=1e-3)
+        (tip,) = results.rows.where(model="fe", state=INITIAL, quantity="tip")
+        assert tip.value == pytest.approx(right, rel=1e-3)
         assert results.trajectories["tip"].values[0, 0] == pytest.approx(right, rel=1e-3)
         frames = check_case(CheckedCase(hung)).frames
         (clamp,) = frames["Reactions of supports and contacts at rest, t = 0"].values.tolist()
@@ -300,8 +304,9 @@ def test_dropped_load_presses_along_the_boom_until_it_falls() -> None:
         )
     # Then the bar carries its own weight alone, and vibrates as a cantilever.
     hertz = 1.8751**2 / (2.0 * np.pi * 20.0**2) * np.sqrt(2.1e11 * 2e-4 / 0.1)
-    assert model.static[-1].tip == pytest.approx(0.0, abs=1e-3)
-    assert model.modes[0].frequency == pytest.approx(hertz, rel=1e-4)
+    fallen = results.curves.where(model="fe", state="rest")[-1]
+    assert fallen.values["deflection"][-1] == pytest.approx(0.0, abs=1e-3)
+    assert results.rows.where(quantity="frequency")[0].value == pytest.approx(hertz, rel=1e-4)
 
 
 def test_load_hangs_aside_in_a_steady_wind(case: Case) -> None:

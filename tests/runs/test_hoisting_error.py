@@ -10,7 +10,7 @@ from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.hoisting_error import straight_path_error
-from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.largest_loads import static_states
 from protractile.runs.pipeline.statics import boom_with_play
 from tests.runs.case_texts import shipped
 from tests.runs.hoisting_elastica import HoistingBar
@@ -38,7 +38,7 @@ def bar_case(bending: float, duration: float, **hoist: object) -> Case:
 
 def estimated(case: Case) -> float:
     """Return the estimated error of the tip's motion over its range."""
-    return straight_path_error(case, BeamStates.of(case, build_boom(case)))
+    return straight_path_error(case, static_states(case, build_boom(case)))
 
 
 def actual(case: Case) -> tuple[float, list[str]]:
@@ -118,5 +118,5 @@ def test_level_boom_has_no_error_by_its_path() -> None:
 def test_estimated_error_of_shipped_cranes(name: str, expected: float) -> None:
     """Reference: other code, Dormand-Prince steps of order 8 to a tolerance of 1e-8."""
     case = shipped(name)
-    beam = BeamStates.of(case, boom_with_play(case, build_boom(case)))
+    beam = static_states(case, boom_with_play(case, build_boom(case)))
     assert straight_path_error(case, beam) == pytest.approx(expected, rel=1e-3)

@@ -32,6 +32,8 @@ ROOMS = {
     "protractile": BELOW | {"beam_model", "shell_model", "analysis", "runs"},
     "studies": BELOW | {"beam_model", "shell_model", "analysis", "runs", "protractile"},
 }
+# Packages of runs, each of which knows those before it.
+PARTS = "clients", "options", "process", "folder", "case", "pipeline", "cautions", "report", "sweep"
 OF_RUNS = {
     "basix", "dolfinx", "gmsh", "matplotlib", "mpi4py", "numba", "pandas", "petsc4py", "pyvista",
     "scipy.signal", "scipy.stats", "ufl", "vtkmodules", "xarray",
@@ -104,6 +106,15 @@ def test_a_room_knows_those_below(room: str, trees: dict[str, ast.Module]) -> No
     own = (tree for name, tree in trees.items() if room_of(name) == room)
     known = {room_of(found) for tree in own for found in imported(tree, True)}
     assert known & ROOMS.keys() <= ROOMS[room] | {room}
+
+
+def test_a_part_of_runs_knows_those_before_it(trees: dict[str, ast.Module]) -> None:
+    parts = {name: name.split(".")[2] for name in trees if name.startswith("protractile.runs.")}
+    order = (*PARTS, "check", "cli", *clients.CLIENTS)
+    assert {*parts.values()} == {*order}
+    for name, part in parts.items():
+        known = {parts[found] for found in imported(trees[name], True) if found in parts}
+        assert known <= {*order[: order.index(part) + 1]}, name
 
 
 @pytest.mark.parametrize("client", clients.CLIENTS)

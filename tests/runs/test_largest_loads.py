@@ -6,7 +6,20 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from protractile.analysis.curves import HIGH, LOW
+from protractile.analysis.measure import measure_boom
 from protractile.analysis.model import section_forces
+from protractile.analysis.rows import (
+    FARTHEST,
+    INITIAL,
+    MOTION,
+    REST,
+    Row,
+    Rows,
+    extremes,
+    static_rows,
+)
+from protractile.analysis.states import States
 from protractile.analysis.stresses import Fibres, outer_corners
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.lines import lines
@@ -20,18 +33,16 @@ from protractile.geometry.profiles import hexagon
 from protractile.geometry.section import BoxSection
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase, convert_to_si
+from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.response import deflections, utilisations
 from protractile.runs.check import check_case
-from protractile.runs.pipeline.design_results import ModelDesignResults
-from protractile.runs.pipeline.largest_loads import (
-    BeamStates,
-    StaticExtreme,
-    static_table,
-)
-from protractile.runs.pipeline.load_table import load_table
-from protractile.runs.pipeline.pad_walls import wall_part
-from protractile.runs.pipeline.statics import boom_with_play, reactions, statics
+from protractile.runs.pipeline.largest_loads import static_states
+from protractile.runs.pipeline.pad_walls import largest_tip, wall_part
+from protractile.runs.pipeline.results import Results
+from protractile.runs.pipeline.statics import boom_with_play, reaction_rows, statics
+from protractile.runs.report.load_table import load_table
+from protractile.runs.report.static_tables import static_table
 from studies.reference_models.statics import static_response
 from tests.runs.case_texts import (
     CLAMPED,
@@ -43,7 +54,7 @@ from tests.runs.case_texts import (
     shipped,
     table,
 )
-from tests.runs.summaries import answers_of, printed_check
+from tests.runs.summaries import finished, printed_check
 
 # Depth of outer fibres and second moment of area of the boxes below.
 ARM, FLY = (0.40, 0.30, 0.008, 0.006), (0.36, 0.26, 0.006, 0.005)
@@ -63,81 +74,93 @@ def boom_of(loads: str, of_joint: str = PAD) -> str:
     )
 
 
-def extremes_of(folder: Path, text: str) -> dict[str, StaticExtreme]:
-    case = read_case(folder, text)
-    found = BeamStates.of(case, boom_with_play(case, build_boom(case))).extremes(case.system)
-    return {one.what: one for one in found}
+def states_of(case: Case) -> States:
+    return static_states(case, boom_with_play(case, build_boom(case)))
+
+
+def rows_of(folder: Path, text: str) -> Rows:
+    return Rows(static_rows(states_of(read_case(folder, text)), "beam"))
+
+
+def largest(rows: Rows, quantity: str, part: str, place: str = "") -> Row:
+    """Return the row of a result under the largest loads."""
+    (row,) = rows.where(state=REST, quantity=quantity, part=part, place=place)
+    return row
 
 
 def test_stresses_and_pads_under_a_ramp(tmp_path: Path) -> None:
     """Reference: analytic, lever rule between the centres of pads, and M z/J of the boxes."""
     case = read_case(tmp_path, boom_of(RAMP))
-    found = extremes_of(tmp_path, boom_of(RAMP))
-    assert [*found] == [
+    found = rows_of(tmp_path, boom_of(RAMP))
+    table = static_table(case, build_boom(case), found)
+    assert table.columns[0].cells == [
         "tip", "stress, arm at 0 m", "stress, fly at 7.9 m",
-        "pad, fly at 6 m", "pad, fly at 8 m",
+        "pad, fly at 6 m, above", "pad, fly at 8 m, below",
     ]  # fmt: skip
     for segment, sizes, lever in zip(
         build_boom(case).segments, (ARM, FLY), (14.0, 6.1), strict=True
     ):
-        one = next(one for what, one in found.items() if segment.name in what)
+        one = largest(found, "stress", segment.name)
         fibre = 0.5 * (sizes[0] + sizes[2])
         stress = 2000.0 * lever * fibre / segment.second_moment_of_area
-        assert one.largest == pytest.approx(stress, rel=1e-6)
-        assert one.utilisation.value == pytest.approx(stress / 3e8, rel=1e-6)
-        assert (one.initial, one.time) == (pytest.approx(0.0, abs=1.0), 0.1)
-    for x, lever in ((6, 6.1), (8, 7.9)):
-        one = found[f"pad, fly at {x} m"]
+        assert abs(one.value) == pytest.approx(stress, rel=1e-6)
+        assert one.utilisation == pytest.approx(stress / 3e8, rel=1e-6)
+        (initial,) = found.where(state=INITIAL, quantity="stress", part=segment.name)
+        assert (initial.value, one.time) == (pytest.approx(0.0, abs=1.0), 0.1)
+    for place, lever in (("station 1, above", 6.1), ("station 2, below", 7.9)):
+        one = largest(found, "pad_pressure", "fly", place)
         # Two pads of 0.2 m x 0.05 m share the force of a side.
         pressure = 0.5 * 2000.0 * lever / 1.8 / 0.01
-        assert one.largest == pytest.approx(pressure, rel=1e-6)
-        assert one.utilisation.value == pytest.approx(pressure / 1e6, rel=1e-6)
+        assert one.value == pytest.approx(pressure, rel=1e-6)
+        assert one.utilisation == pytest.approx(pressure / 1e6, rel=1e-6)
 
 
 def test_a_uniform_load_bends_between_nodes(tmp_path: Path) -> None:
     """Reference: analytic, q l²/2 at the clamp and at the head's pad."""
     loads = '[[load]]\nsegment = "fly"\nmagnitude = -300.0\n'
-    found = extremes_of(tmp_path, boom_of(loads))
+    found = rows_of(tmp_path, boom_of(loads))
     (segment,) = (one for one in build_boom(read_case(tmp_path, boom_of(loads))).segments[1:])
     stress = 300.0 * 6.1**2 / 2.0 * 0.183 / segment.second_moment_of_area
     # Within the error q h²/12 of elements of 0.4 m.
-    assert found["stress, fly at 7.9 m"].largest == pytest.approx(stress, rel=1e-3)
+    one = largest(found, "stress", "fly")
+    assert one.x == pytest.approx(7.9)
+    assert abs(one.value) == pytest.approx(stress, rel=1e-3)
 
 
 def test_largest_values_of_a_sine_and_a_ramp(tmp_path: Path) -> None:
     """Reference: analytic, the sine at a quarter of its period, and the sum at three quarters."""
-    found = extremes_of(tmp_path, boom_of(RAMP + SINE))
-    arm = found["stress, arm at 0 m"]
+    arm = largest(rows_of(tmp_path, boom_of(RAMP + SINE)), "stress", "arm")
     inertia = build_boom(read_case(tmp_path, boom_of(RAMP))).segments[0].second_moment_of_area
     assert arm.time == pytest.approx(0.375)
     moment = 2000.0 * 14.0 + 500.0 * 6.0
-    assert arm.largest == pytest.approx(moment * 0.204 / inertia, rel=1e-6)
+    assert abs(arm.value) == pytest.approx(moment * 0.204 / inertia, rel=1e-6)
 
 
 def test_of_equal_extremes_the_first_counts() -> None:
     """Reference: analytic. Lateral loads after t = 0 change no vertical force of this arm."""
     case = shipped("inspection-arm")
-    states = BeamStates.of(case, boom_with_play(case, build_boom(case)))
-    found = [one for one in states.extremes(case.system) if one.kind == "pad"]
-    upright = [one for one in found if "lateral" not in one.part]
+    states = states_of(case)
+    pads = Rows(static_rows(states, "beam")).where(state=REST, quantity="pad_pressure")
+    upright = [row for row in pads if row.value and "lateral" not in row.place]
     assert states.time.size > 2
-    assert [one.time for one in upright] == [0.0] * 4
+    assert [row.time for row in upright] == [0.0] * 4
 
 
 def test_overloads_are_cautions(tmp_path: Path) -> None:
     """Reference: exact messages, with pressures above 0.1 MPa by the lever rule."""
     text = boom_of(RAMP.replace("ramp = 0.1\n", ""), PAD.replace("1e6", "1e5"))
-    found = [*extremes_of(tmp_path, text).values()]
-    far = StaticExtreme("tip", "", "tip", "m", -0.1, -2.38, 0.25)
+    found = rows_of(tmp_path, text)
+    far = largest(found, "tip", "tip")._replace(value=-2.38, time=0.25)
     case = read_case(tmp_path, text)
-    context = Context(case, build_boom(case), extremes=[far, *found[1:]])
+    rows = Rows([far, *(row for row in found if row.quantity != "tip")])
+    context = Context(case, build_boom(case), rows=rows)
     assert [*deflections(context), *utilisations(context)] == [
         "under the loads at t = 0.25 s the tip rests at -2.38 m, 17 % of the boom's length: small "
         "displacements make it about 3.2 % too large, and moments about 1.9 %; check units and "
         "loads",
-        "static utilisation under the loads at t = 0 s: 339 % by pad pressure (fly segment, "
+        "static utilisation under the loads at t = 0 s: 339 % by pad pressure (fly, "
         "x = 6 m): exceeds the allowable pressure",
-        "static utilisation under the loads at t = 0 s: 439 % by pad pressure (fly segment, "
+        "static utilisation under the loads at t = 0 s: 439 % by pad pressure (fly, "
         "x = 8 m): exceeds the allowable pressure",
     ]
 
@@ -147,13 +170,14 @@ def test_a_joint_rotates_by_its_play_and_by_walls(tmp_path: Path) -> None:
     walls in the tip, which :func:`wall_part` computes by rigid walls.
     """
     case = read_case(tmp_path, boom_of(RAMP))
-    beam = BeamStates.of(case, boom_with_play(case, build_boom(case)))
-    (tilt,) = beam.farthest.tilts
+    beam = states_of(case)
+    found = Rows(extremes(measure_boom(beam.farthest), "beam", FARTHEST))
+    (tilted,), (tip,) = (found.where(quantity=name) for name in ("rotation_tip", "tip"))
     part = wall_part(case, beam)
     assert part is not None
-    play, walls = 0.002 - 0.004 / 1.8 * (14.0 - 6.1), part * beam.farthest.tip
+    play, walls = 0.002 - 0.004 / 1.8 * (14.0 - 6.1), part * tip.value
     assert walls < -0.002
-    assert tilt.tip == pytest.approx(play + walls, abs=1e-4)
+    assert tilted.value == pytest.approx(play + walls, abs=1e-4)
 
 
 def test_pads_on_corners_bend_no_wall(tmp_path: Path) -> None:
@@ -162,8 +186,8 @@ def test_pads_on_corners_bend_no_wall(tmp_path: Path) -> None:
     for bears in ("wall", "corner"):
         case = read_case(tmp_path, boom_of(RAMP, PAD.replace("}", f', bears = "{bears}" }}')))
         boom = boom_with_play(case, build_boom(case))
-        rest = BeamStates.of(case, boom).farthest
-        tips[bears] = rest.tip, static_state(boom, walls=0.0, time=rest.time).tip
+        time, tip = largest_tip(static_states(case, boom))
+        tips[bears] = tip, static_state(boom, walls=0.0, time=time).tip
         shown = " ".join(printed_check(case).split())
         # The walls that may buckle are a table of their own.
         assert ("walls under pads" in shown or "rigid walls" in shown) == (bears == "wall")
@@ -185,9 +209,10 @@ def test_a_joint_of_a_shell_rotates_by_walls(tmp_path: Path) -> None:
     for bears in ("offset = 0.05", 'bears = "corner"'):
         text = boom_of(RAMP.replace("ramp = 0.1\n", ""), PAD.replace("}", f", {bears} }}"))
         run = run_case(read_case(tmp_path, text + shell), ["shell"])
-        (rest,) = run.summary.design.models["shell"].static
-        tips.append(rest.tip)
-        rotated.append(rest.tilts[0].tip)
+        at_start = run.rows.where(model="shell", state=INITIAL, play=True)
+        (tip,), (tilted,) = (at_start.where(quantity=name) for name in ("tip", "rotation_tip"))
+        tips.append(tip.value)
+        rotated.append(tilted.value)
     assert tips[0] < 1.1 * tips[1]
     assert rotated[0] - rotated[1] == pytest.approx(tips[0] - tips[1], rel=0.03)
 
@@ -198,17 +223,22 @@ def test_statics_include_a_released_load_up_to_its_release(tmp_path: Path) -> No
     load = weight.replace("500", "1500")
     ways = ("released = true\n", "table = [[0.0, 1.0], [1e-3, 0.0]]\n")
     texts = [boom_of(weight + load + way) for way in ways]
-    released, fallen = (extremes_of(tmp_path, text) for text in texts)
-    assert released.keys() == fallen.keys()
-    for what, one in released.items():
-        assert (one.initial, one.largest, one.time) == pytest.approx(fallen[what][4:7], rel=1e-9)
+    released, fallen = (rows_of(tmp_path, text) for text in texts)
+    for one, other in zip(released, fallen, strict=True):
+        assert (one.state, one.key, one.time) == (other.state, other.key, other.time)
+        assert one.value == pytest.approx(other.value, rel=1e-9, abs=1e-9)
     case = read_case(tmp_path, texts[0])
     boom = build_boom(case)
     note = "Static results at t = 0 are those before the release."
-    assert note in static_table(case, boom, [*released.values()]).notes
+    assert note in static_table(case, boom, released).notes
     static = statics(case, boom)
     assert static is not None
-    assert sum(one.force for one in reactions(static.with_play)) == pytest.approx(2000.0, rel=1e-6)
+    forces = [
+        row.value
+        for row in reaction_rows(static.with_play)
+        if row.quantity == "reaction" and not row.place.startswith("contact")
+    ]
+    assert sum(forces) == pytest.approx(2000.0, rel=1e-6)
 
 
 def test_check_compares_limits_with_static_stresses_and_pads(tmp_path: Path) -> None:
@@ -268,9 +298,9 @@ def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
     assert load_table(case, boom).rows == [
         ("load[1]", "fly at 14000 mm", "z", "ramp of 0.1 s", "−2000 N", "0.1")
     ]
-    table = static_table(case, boom, BeamStates.of(case, boom).extremes(case.system))
+    table = static_table(case, boom, Rows(static_rows(static_states(case, boom), "beam")))
     rows = {row[0]: row for row in table.rows}
-    assert rows["pad, fly at 6000 mm"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
+    assert rows["pad, fly at 6000 mm, above"][1:] == ("0 MPa", "0.339 MPa", "0.1", "33.9")
     assert rows["tip"][2].endswith(" mm")
 
 
@@ -308,50 +338,51 @@ SIDEWAYS = (
 )
 
 
-def answers(model: str, folder: Path, case: str = CASE) -> ModelDesignResults:
-    return answers_of(read_case(folder, case + model)).models["one"]
+def answers(model: str, folder: Path, case: str = CASE) -> Results:
+    return finished(read_case(folder, case + model)).results
 
 
 def test_sudden_load_doubles_the_static_results(tmp_path: Path) -> None:
     """Reference: analytic. One coordinate: twice the static result after half a period."""
     series = table("[[model]]", name="one", kind="kantorovich", terms=[1], base="complete")
     found = answers(series, tmp_path)
-    assert {peak.what for peak in found.motion.peaks} == {"deflection", "bending moment"}
-    for peak in found.motion.peaks:
-        assert peak.factor == pytest.approx(2.0, rel=2e-4)
-        assert peak.time * found.modes[0].frequency % 1.0 == pytest.approx(0.5, abs=0.01)
-    (fibre,) = found.motion.fibres
-    assert abs(fibre.stress) == pytest.approx(2.0 * fibre.at_rest, rel=2e-4)
-    (envelope,) = found.motion.envelopes
-    np.testing.assert_allclose(envelope.low["deflection"][-1], 2.0 * found.static[0].tip, rtol=2e-4)
-    assert envelope.high["deflection"][-1] == pytest.approx(0.0, abs=1e-12)
+    frequency = found.rows.where(state=INITIAL, quantity="frequency")[0].value
+    peaks = found.rows.where(state=MOTION, quantity=["tip", "bending_moment", "stress"])
+    assert len(peaks) == 3
+    for peak in peaks:
+        assert found.rows.dynamic_factor(peak) == pytest.approx(2.0, rel=2e-4)
+        assert peak.time * frequency % 1.0 == pytest.approx(0.5, abs=0.01)
+    (low,), (high,) = (found.curves.where(state=state) for state in (LOW, HIGH))
+    (tip,) = found.rows.where(state=REST, quantity="tip")
+    np.testing.assert_allclose(low.values["deflection"][-1], 2.0 * tip.value, rtol=2e-4)
+    assert high.values["deflection"][-1] == pytest.approx(0.0, abs=1e-12)
 
 
 def test_stress_and_reactions_at_rest_are_those_of_hand(tmp_path: Path) -> None:
     """Reference: by hand. 1000 N/m on 10 m: 10 kN, 50 kN m, σ = M c/J with c = 0.204 m."""
-    found = answers(BEAM, tmp_path)
-    still = {peak.what: peak.at_rest for peak in found.motion.peaks}
+    found = answers(BEAM, tmp_path).rows
+    still = {row.quantity: abs(row.value) for row in found.where(state=REST)}
     assert still["reaction"] == pytest.approx(1e4, rel=1e-6)
-    assert still["moment at the support"] == pytest.approx(5e4, rel=1e-3)
-    assert still["bending moment"] == pytest.approx(5e4, rel=2e-4)
+    assert still["support_moment"] == pytest.approx(5e4, rel=1e-3)
+    assert still["bending_moment"] == pytest.approx(5e4, rel=2e-4)
     box = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
-    (fibre,) = found.motion.fibres
-    assert fibre.at_rest == pytest.approx(5e4 * 0.204 / box.second_moment_of_area, rel=2e-4)
-    assert (fibre.x, abs(fibre.z)) == (0.0, pytest.approx(0.204))
-    assert fibre.utilisation == pytest.approx(abs(fibre.stress) / 3e8)
-    assert found.motion.walls == []
+    assert still["stress"] == pytest.approx(5e4 * 0.204 / box.second_moment_of_area, rel=2e-4)
+    (fibre,) = found.where(state=MOTION, quantity="stress")
+    assert (fibre.x, abs(fibre.z or 0.0)) == (0.0, pytest.approx(0.204))
+    assert fibre.utilisation == pytest.approx(abs(fibre.value) / 3e8)
+    assert not found.where(quantity="wall_stress")
 
 
 def test_lateral_reactions_are_reported(tmp_path: Path) -> None:
     """Reference: by hand: 11 and 5.5 kN, 1000 (6 · 3 + 5 · 7.5) N m and half of it, no torque."""
-    found = answers(BEAM, tmp_path, SIDEWAYS)
-    wall = {p.what: p.at_rest for p in found.motion.peaks if "arm" in p.where}
+    found = answers(BEAM, tmp_path, SIDEWAYS).rows.where(state=REST, play=True, part="arm")
+    wall = {row.quantity: abs(row.value) for row in found}
     assert wall["reaction"] == pytest.approx(1.1e4, rel=1e-6)
-    assert wall["lateral reaction"] == pytest.approx(5.5e3, rel=1e-6)
-    assert wall["moment at the support"] == pytest.approx(5.55e4, rel=1e-3)
-    assert wall["lateral moment at the support"] == pytest.approx(2.775e4, rel=1e-3)
-    assert wall["lateral bending moment"] == pytest.approx(2.775e4, rel=1e-3)
-    assert wall["torque at the support"] == pytest.approx(0.0, abs=1e-3)
+    assert wall["lateral_reaction"] == pytest.approx(5.5e3, rel=1e-6)
+    assert wall["support_moment"] == pytest.approx(5.55e4, rel=1e-3)
+    assert wall["lateral_support_moment"] == pytest.approx(2.775e4, rel=1e-3)
+    assert wall["lateral_bending_moment"] == pytest.approx(2.775e4, rel=1e-3)
+    assert wall["support_torque"] == pytest.approx(0.0, abs=1e-3)
 
 
 def test_outer_corners_lie_on_the_outer_surfaces() -> None:

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from protractile.analysis.motion_results import Peak
+from protractile.analysis.rows import MOTION, REST, Row, Rows
 from protractile.cases import change, run_case
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.integrator import AdaptiveStep, FixedStep
@@ -12,7 +12,6 @@ from protractile.dynamics.motion import Motion
 from protractile.dynamics.trajectory import Trajectory
 from protractile.runs.case.reading import select
 from protractile.runs.case.schema import DampingTable
-from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.run import run_case as run_models
@@ -24,10 +23,9 @@ def short(name: str, model: str, **values: object) -> Run:
     return run_models(change(select(shipped(name), "", [model]), **values), "", RunContext())
 
 
-def answers(run: Run) -> ModelDesignResults:
+def answers(run: Run) -> Rows:
     run.evaluate()
-    (own,) = run.results.summary.design.models.values()
-    return own
+    return run.results.rows
 
 
 PULLED = {"joint.drive.time": 0.02, "time.duration": 0.03, "joint.play": 0.0}
@@ -71,10 +69,13 @@ def test_bonded_rest_is_known_without_a_motion(monkeypatch: pytest.MonkeyPatch) 
 
     monkeypatch.setattr(AdaptiveStep, "__call__", fail)
     left = answers(run)
-    assert whole.motion_bonded is not None
-    assert left.motion_bonded is None
-    assert left.static_bonded == whole.static_bonded != []
-    assert left.modes_bonded == whole.modes_bonded != []
+    assert whole.where(play=False, state=MOTION)
+    assert not left.where(play=False, state=MOTION)
+    assert left.where(play=False) == tuple(
+        row for row in whole.where(play=False) if row.state != MOTION
+    )
+    assert left.where(play=False, quantity="tip")
+    assert left.where(play=False, quantity="frequency")
 
 
 @pytest.mark.parametrize(("at_rest", "factor"), [(2.0, 1.5), (1e-4, None), (None, None)])
@@ -82,7 +83,10 @@ def test_factor_needs_a_static_value_of_some_size(
     at_rest: float | None, factor: float | None
 ) -> None:
     """Reference: by hand; a torque of round-off at rest gives no factor of 30000."""
-    assert Peak("torque", "foot", "N m", 3.0, 1.0, at_rest).factor == factor
+    moved = Row("beam", MOTION, True, "support_torque", "base", "at 0 m", -3.0)
+    rest = [] if at_rest is None else [moved._replace(state=REST, value=at_rest)]
+    other = moved._replace(state=REST, place="at 2 m", value=5.0)
+    assert Rows([moved, *rest, other]).dynamic_factor(moved) == factor
 
 
 @pytest.mark.parametrize("damping", [{"modal": 0.015}, {"stiffness": 3e-4}], ids=str)

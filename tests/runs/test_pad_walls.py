@@ -10,12 +10,12 @@ import pytest
 import xarray as xr
 
 from protractile.runs import CASES
-from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.rules import cautions
 from protractile.runs.check import check_case
+from protractile.runs.pipeline.results import Results
 from tests.docs.conftest import toml_blocks
 from tests.runs.case_texts import (
     REST,
@@ -160,7 +160,7 @@ def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) ->
         {"tip": (("model", "time"), np.full((2, 1), -2.0)), "time": [0.0], "model": names}
     )
     summary = summary_of({name: model_summary(static_tip=-1.7) for name in names})
-    lines = cautions(Context.of_run(case, build_boom(case), data, summary))
+    lines = cautions(Context.of_run(Results(case, data, summary)))
     assert [line.rpartition(" %; ")[2] for line in lines if " tip " in line] == 2 * [
         cause,
         "check units and loads",

@@ -3,18 +3,27 @@
 
 from dataclasses import replace
 from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from protractile.analysis.equilibria import equilibria
-from protractile.analysis.plate_buckling import normal_coefficient, panel_factor, weakest_panels
-from protractile.analysis.states import Diagram, StaticResult, station_loads
+from protractile.analysis.measure import measure_boom
+from protractile.analysis.model import AnalysisModel
+from protractile.analysis.plate_buckling import (
+    measure_plates,
+    normal_coefficient,
+    panel_factor,
+    weakest_plates,
+)
+from protractile.analysis.rows import INITIAL, REST, Rows, extremes, static_rows
+from protractile.analysis.states import States
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.line import Line
+from protractile.geometry.boom import Boom, Support
 from protractile.geometry.material import Material
 from protractile.geometry.section import BoxSection
 from protractile.geometry.segment import Segment
-from protractile.geometry.station import stations
 from protractile.runs import CASES
 from protractile.runs.case import reading
 from protractile.runs.case.build import build_boom
@@ -22,9 +31,10 @@ from protractile.runs.case.reading import CheckedCase
 from protractile.runs.cautions.context import Context, State
 from protractile.runs.cautions.response import bulges
 from protractile.runs.check import check_case
-from protractile.runs.pipeline.largest_loads import BeamStates
+from protractile.runs.pipeline.largest_loads import static_states
 from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.statics import boom_with_play
+from tests.modal import modal_system
 from tests.runs import case_texts
 from tests.runs.case_texts import read_case, shipped
 
@@ -69,14 +79,19 @@ def test_the_weakest_wall_of_a_segment() -> None:
     forces compress them.
     """
     box = BoxSection(height=0.5, width=0.4, flange=0.006, web=0.008)
-    segment = Segment.of_section("outer", 0.0, 2.0, STEEL, box)
+    segment = Segment.of_section("outer", 0.0, 2.0, STEEL, box, supports=(Support(0.0, "clamped"),))
 
     def weakest(normal: float = 0.0, **curves: list[float]) -> tuple[str, float, float]:
         nothing = {"deflection": [0.0, 0.0], "moment": [0.0, 0.0]}
-        diagram = Diagram("outer", [0.0, 2.0], [0.5 * normal, normal], nothing | curves)
-        rest = StaticResult(0.0, 0.0, None, [diagram], [], [], {})
-        (found,) = weakest_panels((segment,), rest)
-        return found.wall, found.x, found.factor
+        values = nothing | {"normal": [0.5 * normal, normal]} | curves
+        # One coordinate of value 1 has these section forces.
+        line = Line(
+            np.array([0.0, 2.0]), {k: np.array(v)[:, None] for k, v in values.items()}, True
+        )
+        model = AnalysisModel(Boom((segment,), ()), modal_system([1.0], [0.0]), [line])
+        rest = States(model, np.zeros(1), np.ones((1, 1)))
+        (row,) = weakest_plates(Rows(extremes(measure_plates(rest), "beam", REST)))
+        return row.place, row.x, row.value
 
     flange = np.pi**2 * 2.1e11 / (12.0 * 0.91) * (0.006 / 0.4) ** 2
     stress = 1.0e5 * 0.25 / box.second_moment_of_area
@@ -122,45 +137,47 @@ def test_bulging_walls_give_a_caution() -> None:
     """Reference: by hand, right walls moved by a part of the play. Beams do not bulge."""
     case = shipped("spatial")
     boom, model = build_boom(case), next(m for m in case.models if m.name == "timoshenko")
-    system = build(case, boom, model).system.gather_loads()
-    position = equilibria(system)[0.0]
-    (plain,) = station_loads(boom, system, position[None])
-    assert [one.closed for one in plain] == pytest.approx([0.0] * 4, abs=1e-12)
+    built = build(case, boom, model)
+    loaded = AnalysisModel.of(boom, built.system, model.lines(boom, built))
+    system, rests = loaded.system, equilibria(loaded.system)
+    position, play = rests[0.0], boom.joints[0].lateral_play
 
-    play = boom.joints[0].lateral_play
+    def closed(of: GapSystem) -> Rows:
+        states = States.of(replace(loaded, system=of), rests)
+        rows = Rows(extremes(measure_boom(states), "shell", INITIAL))
+        return rows.where(quantity="closed_play")
+
+    assert [row.value for row in closed(system)] == pytest.approx([0.0, 0.0], abs=1e-12)
     rows = system.rows.copy()
     for part, name in ((0.05, "9y"), (0.3, "10y")):
-        station = next(k for k, one in enumerate(plain) if one.place == name)
+        station = next(one.index for one in boom.stations if one.name == name)
         right = [
             row
             for row in np.flatnonzero(system.station_of_row == station)
             if system.laws[row].one_sided(1) is not None
         ]
         rows[right] += part * play * position / (position @ position)
-    (bulging,) = station_loads(boom, replace(system, rows=rows), position[None])
-    assert [one.closed / play for one in bulging] == pytest.approx([0.0, 0.0, 0.05, 0.3])
+    bulging = closed(replace(system, rows=rows))
+    assert [row.value / play for row in bulging] == pytest.approx([0.05, 0.3])
+    assert [row.limit for row in bulging] == [play, play]
 
     told = [
         "in shell, static pad forces make walls bulge, which reduces the lateral play: by "
         f"{300.0 * play:.2g} of {1000.0 * play:g} mm at x = 10 m; beams with rigid walls do not "
         "show this"
     ]
-    static = StaticResult(0.0, 0.0, 0.0, [], [], bulging, {})
-    assert [*bulges(Context(case, boom, [State("in shell", rest=static)]))] == told
-    # Stations of another joint at the same places have their own play.
-    joints = boom.joints[0], replace(boom.joints[0], lateral_play=10.0 * play)
-    two = SimpleNamespace(stations=stations(joints, (), ("y",)))
-    static = StaticResult(0.0, 0.0, 0.0, [], [], 2 * [*bulging[2:]], {})
-    assert [*bulges(Context(case, two, [State("in shell", rest=static)]))] == told
+    assert [*bulges(Context(case, boom, [State("in shell", closed=bulging)]))] == told
 
 
 def test_check_names_plays_closed_by_walls() -> None:
     """Reference: other code, the static shell of the arm with edges of 0.2 m."""
     checked = reading.load_checked(str(CASES / "inspection-arm.toml"))
     boom = boom_with_play(checked.case, checked.boom)
-    (rest, *_) = BeamStates.of(checked.case, boom).rests
-    closed = [one.closed for one in rest.stations if one.direction == "y"]
-    assert closed == pytest.approx([1.1985e-3, 1.8414e-3, 0.8242e-3, 1.3873e-3], rel=0.02)
-    state = State("in the beam estimate", rest=rest)
+    rows = Rows(static_rows(static_states(checked.case, boom), "beam"))
+    closed = rows.where(state=INITIAL, quantity="closed_play")
+    assert [row.value for row in closed] == pytest.approx(
+        [1.1985e-3, 1.8414e-3, 0.8242e-3, 1.3873e-3], rel=0.02
+    )
+    state = State("in the beam estimate", closed=closed)
     (caution,) = bulges(Context(checked.case, boom, [state]))
     assert "1.2 of 4 mm at x = 3.5 m, 1.8 of 4 mm at x = 4.5 m" in caution

@@ -219,8 +219,7 @@ def test_terminal_does_not_read_markup(results: Results) -> None:
 
 
 def told(results: Results) -> list[str]:
-    found = results.case, results.boom, results.trajectories, results.summary
-    return cautions(Context.of_run(*found))
+    return cautions(Context.of_run(results))
 
 
 def test_large_displacement_gives_a_caution(results: Results) -> None:

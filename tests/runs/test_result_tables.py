@@ -8,14 +8,14 @@ from typing import Any
 import numpy as np
 import pytest
 
-from protractile.analysis.fatigue import HAS_RAINFLOW, Life
-from protractile.analysis.pads import PadLoad
-from protractile.analysis.stresses import WallStress
+from protractile.analysis.curves import Curves
+from protractile.analysis.fatigue import HAS_RAINFLOW
+from protractile.analysis.rows import BEAM, INITIAL, MOTION, REST, Row, Rows
 from protractile.cases import change, run_case
-from protractile.runs.pipeline.design_results import DesignResults, PlayDifference, PlayEffect
+from protractile.geometry.typography import signed_percent
+from protractile.runs.pipeline.design_results import DesignResults
 from protractile.runs.pipeline.results import Results
-from protractile.runs.pipeline.statics import Reaction
-from protractile.runs.report.formatting import signed_percent
+from protractile.runs.report.labels import label
 from protractile.runs.report.result_tables import (
     mode_table,
     play_table,
@@ -43,14 +43,23 @@ def results() -> Results:
     return run_case(case, [PLAYED, BONDED])
 
 
-def answering(results: Results, **changes: Any) -> Results:
-    """Return results with changed design results of the run, or of the model with play."""
-    answers = results.summary.design
-    if own := changes.pop("own", None):
-        changed = replace(answers.models[PLAYED], **own)
-        changes["models"] = answers.models | {PLAYED: changed}
-    summary = results.summary.model_copy(update={"design": replace(answers, **changes)})
-    return replace(results, summary=summary)
+def with_rows(results: Results, *rows: Row, without: tuple[str, ...] = ()) -> Results:
+    """Return results with other rows of their quantities, and without some quantities."""
+    changed = {*without} | {row.quantity for row in rows}
+    kept = (row for row in results.rows if row.quantity not in changed)
+    return replace(results, rows=Rows([*kept, *rows]))
+
+
+def row_of(quantity: str, value: float, state: str = MOTION, **more: Any) -> Row:
+    """Return a row of the model with play."""
+    labels = {"model": PLAYED, "play": True, "part": "outer", "place": ""} | more
+    return Row(state=state, quantity=quantity, value=value, **labels)
+
+
+def with_and_without(with_play: float, without: float, *where: Any, **more: Any) -> tuple[Row, Row]:
+    """Return the rows of a quantity with and without play."""
+    one = row_of(where[0], with_play, *where[1:], **more)
+    return one, one._replace(play=False, value=without)
 
 
 def cells(table: Table | None) -> dict[str, dict[str, str]]:
@@ -58,21 +67,22 @@ def cells(table: Table | None) -> dict[str, dict[str, str]]:
 
 
 def test_summary_table_equals_the_design_results(results: Results) -> None:
-    """Reference: summary.json, in mm, Hz, s and kN. A vibration decays as exp(−2π ζ f t)."""
-    own = results.summary.design.models[PLAYED]
+    """Reference: results.csv, in mm, Hz, s and kN. A vibration decays as exp(−2π ζ f t)."""
+    rows = results.rows.where(model=PLAYED, play=True)
     found = cells(summary_table(results))
     said = {
         asked: row[PLAYED].replace("−", "-").split("\n")[0].split(" ")[0]
         for asked, row in found.items()
     }
-    frequency = own.modes[0].frequency
+    frequency = rows.where(quantity="frequency")[0].value
+    (tip,) = rows.where(state=INITIAL, quantity="tip")
     assert float(said["Static tip deflection (t = 0), mm"]) == pytest.approx(
-        1e3 * own.static[0].tip, abs=0.06
+        1e3 * tip.value, abs=0.06
     )
     assert float(said["First natural frequency, Hz"]) == pytest.approx(frequency, rel=6e-3)
     dying = log(10.0) / (2.0 * pi * 0.02 * frequency)
     assert float(said["Decay time to 10 %, s"]) == pytest.approx(dying, rel=0.06)
-    hardest = max(p.largest for p in own.motion.peaks if p.what == "contact force")
+    hardest = abs(rows.where(state=MOTION, quantity="contact_force").largest.value)
     assert float(said["Contact force, maximum, kN"]) == pytest.approx(hardest / 1e3, rel=6e-3)
     assert found["Contact force, maximum, kN"][BONDED] == "–"
     assert "Fatigue damage (Miner)" not in found
@@ -80,9 +90,10 @@ def test_summary_table_equals_the_design_results(results: Results) -> None:
 
 def test_all_tables_have_the_same_largest_static_tip(results: Results) -> None:
     """Reference: by hand, -30 mm at t = 0 is larger than later deflections."""
-    (rest, *_) = results.summary.design.models[PLAYED].static
-    rests = [replace(rest, time=t, tip=tip) for t, tip in ((0.0, -0.03), (0.1, 0.0), (0.2, -0.02))]
-    told = answering(results, own={"static": rests})
+    tips = (row_of("tip", -0.03, state, part="tip", time=0.0) for state in (INITIAL, REST))
+    (curve, *_) = results.curves.where(model=PLAYED, state=REST)
+    later = Curves([*results.curves, curve._replace(time=0.1)])
+    told = replace(with_rows(results, *tips), curves=later)
     row = cells(summary_table(told))["Static tip deflection (maximum load), mm"]
     shown = cells(result_table(told))[PLAYED]
     (heading,) = (one for one in shown if "max." in one)
@@ -100,29 +111,29 @@ def test_period_is_measured_from_the_motion(results: Results) -> None:
 
 def test_play_is_said_in_a_sentence(results: Results) -> None:
     """Reference: by hand, from given numbers."""
-    numbers = [
-        PlayDifference("deflection at rest", "tip", "m", 0.15, 0.10),
-        PlayDifference("first frequency", "bending in z", "Hz", 1.5, 2.0),
-        PlayDifference("stress", "inner", "Pa", 9e7, 10e7),
-        PlayDifference("stress", "outer", "Pa", 12e7, 10e7),
-    ]
-    told = answering(results, play=[PlayEffect(PLAYED, numbers)])
+    told = with_rows(
+        results,
+        *with_and_without(-0.15, -0.10, "tip", REST, part="tip"),
+        *with_and_without(1.5, 2.0, "frequency", INITIAL, part="bending in z", place="1"),
+        *with_and_without(9e7, 10e7, "stress", part="inner"),
+        *with_and_without(12e7, -10e7, "stress"),
+    )
     assert play_effect(told) == (
         "Play adds 50 mm (+50 %) to the static tip deflection (maximum load) and 20 MPa (+20 %) to "
         "the maximum bending stress. First natural frequency: 1.5 Hz with joints in contact, 2 Hz "
         "with bonded joints."
     )
     rows = cells(play_table(told))
-    assert rows["bending stress, inner"]["play adds"] == "−10 MPa"
-    assert rows["bending stress, inner"]["%"] == "−10"
-    assert rows["bending stress, inner"]["without play"] == "100 MPa"
+    assert rows["maximum bending stress, inner"]["play adds"] == "−10 MPa"
+    assert rows["maximum bending stress, inner"]["%"] == "−10"
+    assert rows["maximum bending stress, inner"]["without play"] == "100 MPa"
     assert rows["static tip deflection (maximum load)"]["with play"] == "150 mm"
 
 
 def test_percentages_are_plain_numbers(results: Results) -> None:
     """Reference: by hand. An increase from nearly nothing has no percentage."""
-    near_zero = PlayDifference("torque at the support", "outer at 0 m", "N m", 404.0, 1.0)
-    told = answering(results, play=[PlayEffect(PLAYED, [near_zero])])
+    torques = with_and_without(-404.0, 1.0, "support_torque", place="at 0 m")
+    told = replace(results, rows=Rows(torques))
     (row,) = cells(play_table(told)).values()
     assert (row["play adds"], row["%"]) == ("0.403 kN m", "–")
     assert [signed_percent(part) for part in (1.0, -0.0123, 0.0)] == ["+100 %", "−1.2 %", "0 %"]
@@ -130,8 +141,12 @@ def test_percentages_are_plain_numbers(results: Results) -> None:
 
 def test_tables_of_rest_name_their_loads(results: Results) -> None:
     """Reference: by hand. The moment of a hinge is round-off, compared with 5 kN m of a clamp."""
-    bears = [Reaction("outer", x, 1e3, m, None) for x, m in ((0.0, 5e3), (3.0, 1.6e-7))]
-    tables = rest_tables(answering(results, reactions=bears))
+    bears = [
+        row_of(name, value, INITIAL, model=BEAM, x=x, place=f"at {x:g} m")
+        for x, moment in ((0.0, 5e3), (3.0, 1.6e-7))
+        for name, value in (("reaction", 1e3), ("support_moment", moment))
+    ]
+    tables = rest_tables(with_rows(results, *bears))
     titles = 2 * ["Static state with the largest tip deflection"] + ["Static state at t = 0"]
     assert [table.title.partition(":")[0] for table in tables] == titles
     assert [row[2] for row in tables[-1].rows] == ["5", "0"]
@@ -142,11 +157,8 @@ USED = "In this run, without safety factors, the utilisation is"
 
 def with_stress(results: Results, stress: float) -> Results:
     """Return results with a stress in Pa, 10 % more in plates, and f_y = 355 MPa."""
-    moved = results.summary.design.models[PLAYED].motion
-    fibre = replace(moved.fibres[0], stress=-stress, x=2.0, utilisation=stress / 355e6)
-    patch = 1.1 * stress
-    wall = WallStress("outer", 10.0, patch, 0.5, 3.0 * patch, patch / 355e6)
-    return answering(results, own={"motion": replace(moved, fibres=[fibre], walls=[wall])})
+    fibre = row_of("stress", -stress, x=2.0, limit=355e6)
+    return with_rows(results, fibre, row_of("wall_stress", 1.1 * stress, x=10.0, limit=355e6))
 
 
 def test_stresses_near_the_yield_strength_are_marked(results: Results) -> None:
@@ -167,37 +179,34 @@ def test_the_verdict_names_the_governing_utilisation_first(results: Results) -> 
     """Reference: by hand, as above. Without a yield strength there is no verdict."""
     assert utilisation_verdict(results) == ""
     assert utilisation_verdict(with_stress(results, 340e6)) == (
-        f"{USED} 105 % by local plate stress (outer segment, x = 10 m): exceeds yield; 95.8 % by "
-        "bending stress (outer segment, x = 2 m): below yield. No yield strength is given of outer "
+        f"{USED} 105 % by local plate stress (outer, x = 10 m): exceeds yield; 95.8 % by "
+        "bending stress (outer, x = 2 m): below yield. No yield strength is given of outer "
         "and inner."
     )
 
 
 def test_the_verdict_names_pads_of_unknown_strength(results: Results) -> None:
     """Reference: by hand, a pad without an allowable pressure, and an unloaded pad."""
-    of = {"model": PLAYED, "outer": "outer", "inner": "inner", "x": 10.0, "side": "below"}
-    pad = PadLoad(**of, force=2.7e3, pressure=27e6, utilisation=None)
+    pad = row_of("pad_pressure", 27e6, part="inner", place="station 2, below", x=10.0)
     steel = change(results.case, **{"material.yield_strength": 355e6})
     told = with_stress(replace(results, case=steel), 300e6)
-    unpressed, known = replace(pad, force=0.0, pressure=0.0), replace(pad, utilisation=1.35)
     plate, below = f"{USED} 93 % by local plate stress", "below yield."
-    where = "(inner segment, x = 10 m): exceeds the allowable pressure"
+    where = "(inner, x = 10 m): exceeds the allowable pressure"
     for one, start, end in (
         (pad, plate, "No allowable pressure is given of pads of inner."),
-        (unpressed, plate, below),
-        (known, f"{USED} 135 % by pad pressure {where}", below),
+        (pad._replace(value=0.0), plate, below),
+        (pad._replace(limit=20e6), f"{USED} 135 % by pad pressure {where}", below),
     ):
-        found = replace(told, summary=told.summary.model_copy(update={"pads": [one]}))
+        found = with_rows(told, one)
         assert utilisation_verdict(found).startswith(start)
         assert utilisation_verdict(found).endswith(end)
 
 
 def test_exhausted_fatigue_life_exceeds_the_limit(results: Results) -> None:
     """Reference: by hand, a damage of 3.2."""
-    life = Life("inner", 10.0, 0.0, 0.2, 4.0, 9e7, 8e7, [9e7], [4.0], 1.6e-4, 3.2)
-    told = answering(results, own={"life": [life]})
+    told = with_rows(results, row_of("damage", 3.2, part="inner", x=10.0, limit=1.0))
     assert utilisation_verdict(told) == (
-        f"{USED} 320 % by fatigue damage (inner segment, x = 10 m): exceeds the fatigue life. No "
+        f"{USED} 320 % by fatigue damage (inner, x = 10 m): exceeds the fatigue life. No "
         "yield strength is given of outer and inner."
     )
     terminal = printed(print_results, told, width=250).splitlines()
@@ -221,13 +230,16 @@ def test_tip_travel_begins_at_the_initial_deflection(results: Results) -> None:
 def test_one_line_says_how_near_models_are(results: Results) -> None:
     """Reference: by hand, a second model with a static tip lower by a tenth."""
     assert deviation_note(results) == ""
-    answers = results.summary.design
-    own = answers.models[PLAYED]
-    other = replace(own, static=[replace(rest, tip=0.9 * rest.tip) for rest in own.static])
-    models = {"kantorovich-4": other, **answers.models}
+    own = results.rows.where(model=PLAYED, play=True)
+    other = (row._replace(model="kantorovich-4") for row in own if row.quantity != "tip")
+    tip = own.where(state=REST, quantity="tip").largest
+    lower = tip._replace(model="kantorovich-4", value=0.9 * tip.value)
+    design = results.summary.design
     summary = results.summary.model_copy(
         update={
-            "design": replace(answers, models=models),
+            "design": replace(
+                design, models={"kantorovich-4": design.models[PLAYED], **design.models}
+            ),
             "models": {"kantorovich-4": results.summary.models[PLAYED], **results.summary.models},
         }
     )
@@ -235,7 +247,8 @@ def test_one_line_says_how_near_models_are(results: Results) -> None:
     tips = tips.assign_coords(model=["kantorovich-4", PLAYED, BONDED])
     four = results.case.models[0].model_copy(update={"name": "kantorovich-4"})
     case = results.case.model_copy(update={"models": (four, *results.case.models)})
-    both = replace(results, case=case, summary=summary, trajectories=tips)
+    rows = Rows([lower, *other, *results.rows])
+    both = replace(results, case=case, summary=summary, trajectories=tips, rows=rows)
     line = f"Deviation of the static tip deflection (maximum load) from {PLAYED}: "
     assert deviation_note(both) == f"{line}kantorovich-4 −10 %."
     table = summary_table(both)
@@ -247,22 +260,44 @@ def test_every_answer_has_its_table(results: Results) -> None:
     titles = [table.name for table in result_tables(results)]
     expected = ["play", "tilts", "pressed", "reactions", "modes", "peaks", "stress"]
     assert titles == [*expected, *(["life"] if HAS_RAINFLOW else [])]
+    # Contact forces are no support reactions.
+    (reactions,) = (one for one in result_tables(results) if one.name == "reactions")
+    assert reactions.columns[0].cells == ["support, outer at 0 m", "support, outer at 2 m"]
     modes = cells(mode_table(results))
-    own = results.summary.design
-    assert own.quality_notes
-    first = own.models[BONDED].modes[0]
-    assert float(modes[f"{first.motion} 1"][f"{BONDED}\nHz"]) == pytest.approx(
-        first.frequency, rel=1e-3
-    )
+    assert results.summary.design.quality_notes
+    first = results.rows.where(model=BONDED, quantity="frequency")[0]
+    assert float(modes[f"{first.part} 1"][f"{BONDED}\nHz"]) == pytest.approx(first.value, rel=1e-3)
     table = stress_table(results)
     assert not any("wall" in heading for heading in table.headings)
 
 
 def test_a_folder_without_answers_has_no_tables(results: Results) -> None:
     """Reference: a summary of an earlier version."""
-    without = replace(
-        results, summary=results.summary.model_copy(update={"design": DesignResults({})})
-    )
+    summary = results.summary.model_copy(update={"design": DesignResults({})})
+    without = replace(results, summary=summary, rows=Rows(), curves=Curves())
     assert summary_table(without) is None
     assert result_tables(without) == []
     assert play_effect(without) == ""
+
+
+@pytest.mark.parametrize(
+    ("row", "text"),
+    [
+        (row_of("tip", 0.1, part="tip"), "maximum dynamic tip deflection"),
+        (row_of("tip", 0.1, REST, part="tip"), "static tip deflection (maximum load)"),
+        (row_of("cylinder_force", 1e3, part="cylinder", x=1.0), "cylinder force"),
+        (row_of("cylinder_force", 1e3, part="cylinder 2"), "cylinder force, cylinder 2"),
+        (row_of("bending_moment", 1e3, x=2.0), "bending moment, outer"),
+        (row_of("reaction", 1e3, place="at 0 m", x=0.0), "transverse reaction, outer at 0 m"),
+        (row_of("rotation", 1e-3, part="inner", place="in outer"),
+         "rotation of the joint, inner in outer"),
+        (row_of("contact_force", 1e3, part="inner", place="station 1, lateral", x=3.8),
+         "contact force, inner, x = 3.8 m, lateral"),
+        (row_of("contact_force", 1e3, place="stop 1", x=5.0), "contact force, outer, x = 5 m"),
+        (row_of("frequency", 1.5, INITIAL, part="twist", place="2"),
+         "natural frequency, twist 2"),
+    ],
+)  # fmt: skip
+def test_labels_name_the_result_and_its_place(row: Row, text: str) -> None:
+    """Reference: by hand."""
+    assert label(row) == text

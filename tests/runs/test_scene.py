@@ -22,9 +22,8 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion
 from protractile.runs.report import theme
 from protractile.runs.report.boom_drawing import boom_sheet
-from protractile.runs.report.overlap_pictures import smooth_corners
+from protractile.runs.report.overlap_pictures import OverlapView
 from protractile.runs.report.scene import Scene, round_scale
-from protractile.runs.report.snapshots import place_of_largest_force
 from protractile.runs.report.symbols import PAYLOAD, abbreviate, boom_symbols
 from protractile.runs.report.viewer import TRUNCATION, View, few_shapes, pack_view, symbol_lines
 from studies.gallery import change_of_shape
@@ -68,6 +67,7 @@ def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
     boom = replace(BOOM, joints=(replace(BOOM.joints[0], drive=out),))
     extended = replace(shell, boom=boom, motion=moving_scene(extension=-2.0 * TIME).motion)
     assert extended.telescopes(extended.overlaps[0])
+    assert OverlapView.of_largest_force([extended], 0.5) is None
     np.testing.assert_allclose(extended.along(0.5), np.where(shell.owner == 1, -1.0, 0.0))
     assert extended.reach([0.5]) == pytest.approx((0.0, BOOM.tip))
 
@@ -140,20 +140,19 @@ def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
 
 
 @pytest.mark.parametrize(
-    ("station", "place"),
-    [(1, " (joint 1)"), (2, " (joint 2)"), (4, " (joint 1, lateral)"), (8, " (a stop)")],
+    ("station", "above", "outer"), [(1, False, 0), (2, False, 1), (4, True, 0), (7, True, 1)]
 )
-def test_of_several_joints_the_pressed_one_is_named(
-    shell: Scene, in_space: list[Scene], station: int, place: str
+def test_the_pressed_overlap_is_drawn(
+    shell: Scene, in_space: list[Scene], station: int, above: bool, outer: int
 ) -> None:
     """Reference: the fixture, with a force up or down at one station only."""
-    side, _ = in_space
-    peak = xr.zeros_like(side.motion["contact_force_peak"])
-    peak[200, station] = (-1.0) ** (station // 2) * 3.0e4
-    side = replace(side, motion=side.motion.assign(contact_force_peak=peak))
-    assert place_of_largest_force(side, float(TIME[200])) == place
-    # The only joint of a boom is not named.
-    assert place_of_largest_force(shell, 0.5) == ""
+    force = xr.zeros_like(in_space[0].motion["contact_force"])
+    force[200, station] = (-1.0) ** (station // 2) * 3.0e4
+    motion = in_space[0].motion.assign(contact_force=force)
+    views = [replace(view, motion=motion) for view in in_space]
+    found = OverlapView.of_largest_force(views, float(TIME[200]))
+    assert found is not None
+    assert (found.scene.from_above, found.overlap.outer) == (above, outer)
 
 
 def test_from_above_y_points_up(shell: Scene) -> None:
@@ -192,18 +191,6 @@ def test_rigid_motion_of_an_overlap_is_subtracted(shell: Scene) -> None:
     np.testing.assert_allclose(
         taken[:, 0], taken[0, 0] - turn * (z[inner] - z[inner][0]), atol=1e-12
     )
-
-
-def test_smoothed_stresses_keep_to_their_walls(shell: Scene) -> None:
-    """Reference: analytic, a stress per wall stays so up to the folds; a linear field is a mean."""
-    stress = shell.stress
-    walls = stress.wall.astype(float) + 10.0 * shell.segment
-    smooth = smooth_corners(stress, shell.triangles, walls)
-    np.testing.assert_allclose(smooth, np.repeat(walls[:, None], 3, axis=1))
-    corners = smooth_corners(stress, shell.triangles, stress.centroids[:, 0])
-    places = shell.points[shell.triangles, 0]
-    inside = np.abs(places - 5.0) < 3.0
-    assert np.abs(corners - places)[inside].max() < 0.15  # half an edge
 
 
 def still(boom: Boom, output: BeamOutput) -> tuple[Scene, np.ndarray]:

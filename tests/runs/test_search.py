@@ -15,11 +15,11 @@ from protractile.cases import run_case
 from protractile.runs import CASES
 from protractile.runs.case import reading
 from protractile.runs.case.actions import STANDARD_GRAVITY
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import CheckedCase, load
 from protractile.runs.case.schema import Case
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.quantities import case_limits, decay_time
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report.summary_table import limit_faults, limit_table
 from protractile.runs.sweep import output, sampling
 from protractile.runs.sweep.points import Plan, plan, tables_of

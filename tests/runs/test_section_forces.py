@@ -11,7 +11,9 @@ import pytest
 import xarray as xr
 from PIL import Image
 
+from protractile.analysis.curves import Curves, histories
 from protractile.analysis.model import section_forces
+from protractile.analysis.rows import BEAM, MOTION, Row
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.lines import lines
 from protractile.beam_model.segment_model import gap_system
@@ -26,7 +28,6 @@ from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
 from protractile.runs.case.toml import dumps
-from protractile.runs.pipeline.design_results import DesignResults
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report import theme
 from protractile.runs.report.figure_context import FigureContext
@@ -76,7 +77,7 @@ def test_shear_force_uses_the_extended_axial_forces() -> None:
 
 
 @pytest.fixture(scope="module")
-def answers(tmp_path_factory: pytest.TempPathFactory) -> DesignResults:
+def answers(tmp_path_factory: pytest.TempPathFactory) -> Results:
     return answers_of(read_case(tmp_path_factory.mktemp("arm"), CASE))
 
 
@@ -85,60 +86,69 @@ ALONG, ACROSS = 500.0, 1000.0 * np.cos(np.pi / 6.0)  # N/m
 FORCE = ACROSS * 10.0 * 4.0 / (0.6 * 3.0)
 
 
-def test_a_cylinder_pulls_the_boom_off_its_pin(answers: DesignResults) -> None:
+def moved(results: Results, quantity: str) -> Row:
+    (row,) = results.rows.where(model="beam", state=MOTION, quantity=quantity)
+    return row
+
+
+def reactions(results: Results) -> dict[str, float]:
+    """Return the axial reactions at rest by place."""
+    rows = results.rows.where(model=BEAM, play=True, quantity="axial_reaction")
+    return {row.place: row.value for row in rows}
+
+
+def test_a_cylinder_pulls_the_boom_off_its_pin(answers: Results) -> None:
     """Reference: by hand. 4/5 of its force act along the boom, between the pin and the lug."""
-    (rest,) = answers.models["beam"].static
-    assert rest.cylinders["cylinder_force"] == pytest.approx(FORCE, rel=1e-3)
-    (arm,) = rest.diagrams
+    (force,) = answers.rows.where(model="beam", state="rest", quantity="cylinder_force")
+    assert force.value == pytest.approx(FORCE, rel=1e-3)
+    (arm,) = answers.curves.where(model="beam", state="rest")
     for x, normal in (
         (0.5, 0.5 * ALONG),
         (2.0, -8.0 * ALONG + 0.8 * FORCE),
         (6.0, -4.0 * ALONG),
     ):
-        assert np.interp(x, arm.x, arm.normal) == pytest.approx(normal, rel=2e-3)
+        assert np.interp(x, arm.x, arm.values["normal"]) == pytest.approx(normal, rel=2e-3)
 
 
-def test_pin_carries_axial_forces(answers: DesignResults) -> None:
+def test_pin_carries_axial_forces(answers: Results) -> None:
     """Reference: by hand, both components and the resultant, at rest and in a motion from rest."""
     along, across = 10.0 * ALONG - 0.8 * FORCE, 10.0 * ACROSS - 0.6 * FORCE
-    pin, lug = answers.reactions
-    assert pin.along == pytest.approx(along, rel=1e-3)
-    assert lug.along == pytest.approx(0.8 * FORCE, rel=1e-3)
-    moved = answers.models["beam"].motion
-    joint_thrust = {peak.what: peak for peak in moved.peaks if "reaction" in peak.what}
-    for what, force in (
+    assert reactions(answers) == {
+        "at 1 m": pytest.approx(along, rel=1e-3),
+        "lug at 4 m": pytest.approx(0.8 * FORCE, rel=1e-3),
+    }
+    for quantity, force in (
         ("reaction", across),
-        ("reaction along the boom", along),
-        ("reaction, across and along", np.hypot(along, across)),
+        ("axial_reaction", along),
+        ("foot_reaction", np.hypot(along, across)),
     ):
-        assert joint_thrust[what].largest == pytest.approx(abs(force), rel=2e-3)
-        assert joint_thrust[what].at_rest == pytest.approx(abs(force), rel=2e-3)
+        row = moved(answers, quantity)
+        assert abs(row.value) == pytest.approx(abs(force), rel=2e-3)
+        assert answers.rows.at_rest(row) == pytest.approx(abs(force), rel=2e-3)
 
 
 def test_pin_carries_a_mass_at_the_pin(tmp_path: Path) -> None:
     """Reference: by hand, as above with 200 kg at the pin, which have no moment."""
     text = CASE.replace("[[cylinder]]", "masses = [{ x = 1.0, mass = 200.0 }]\n[[cylinder]]")
-    pin, _ = answers_of(read_case(tmp_path, text)).reactions
-    assert pin.along == pytest.approx(10.0 * ALONG + 1000.0 - 0.8 * FORCE, rel=1e-3)
+    along = reactions(answers_of(read_case(tmp_path, text)))["at 1 m"]
+    assert along == pytest.approx(10.0 * ALONG + 1000.0 - 0.8 * FORCE, rel=1e-3)
 
 
 def test_a_pin_at_the_very_end_bears_the_same(tmp_path: Path) -> None:
     """Reference: by hand, the arm without the part before its pin."""
     text = CASE.replace("span = [0.0, 10.0]", "span = [1.0, 10.0]")
     force = ACROSS * 9.0 * 4.5 / (0.6 * 3.0)
-    moved = answers_of(read_case(tmp_path, text)).models["beam"].motion
-    (joint_thrust,) = (peak for peak in moved.peaks if peak.what == "reaction along the boom")
-    assert joint_thrust.largest == pytest.approx(0.8 * force - 9.0 * ALONG, rel=2e-3)
+    along = moved(answers_of(read_case(tmp_path, text)), "axial_reaction").value
+    assert abs(along) == pytest.approx(0.8 * force - 9.0 * ALONG, rel=2e-3)
 
 
-def test_the_fibre_feels_the_normal_force(answers: DesignResults) -> None:
+def test_the_fibre_feels_the_normal_force(answers: Results) -> None:
     """Reference: by hand, M z/J + N/A before the lug, with M = q 6²/2."""
-    moved = answers.models["beam"].motion
-    (fibre,) = moved.fibres
+    fibre = moved(answers, "stress")
     bent = 0.5 * ACROSS * 6.0**2 * 0.204 / BOX.second_moment_of_area
     pulled = (0.8 * FORCE - 6.0 * ALONG) / BOX.area
     assert fibre.x == pytest.approx(4.0)
-    assert fibre.stress == pytest.approx(bent + pulled, rel=2e-3)
+    assert fibre.value == pytest.approx(bent + pulled, rel=2e-3)
     assert pulled > 0.05 * bent
 
 
@@ -160,13 +170,6 @@ STRESS: dict[str, Any] = {
             "forces": {"top": {"axial": -12500.0, "shear": 3.0, "moment": 3060.0}},
         }
     ],
-    "history": {
-        "time": [0.15, 0.45],
-        "places": [
-            {"segment": s, "x": 9.0, "von_mises": [1e7, 9e7], "von_mises_patch": [5e6, 3.1e7]}
-            for s in ("outer", "inner")
-        ],
-    },
 }
 
 
@@ -177,7 +180,16 @@ def results(stress: dict[str, Any] | None) -> Results:
         coords={"model": ["shell"], "time": np.arange(601) / 1000},
     )
     changes = {} if stress is None else {"stress": stress}
-    return Results(case, data, summary_of({"shell": model_summary(**changes)}))
+    stresses = np.array([[[1e7], [1e7]], [[9e7], [3.1e7]]]) * np.ones((2, 2, 1))
+    near = xr.Dataset(
+        {
+            name: (("time", "segment", "place"), part * stresses)
+            for name, part in (("von_mises", 1.0), ("von_mises_patch", 31.0 / 90.0))
+        },
+        coords={"time": [0.15, 0.45], "segment": ["outer", "inner"], "place": [9.0]},
+    )
+    curves = Curves(histories(near, "shell") if stress else ())
+    return Results(case, data, summary_of({"shell": model_summary(**changes)}), curves=curves)
 
 
 def test_stress_figure_states_maximum_and_limits(tmp_path: Path) -> None:

@@ -12,14 +12,17 @@ import numpy as np
 import pytest
 
 from protractile.analysis.bonded import bonded_system
+from protractile.analysis.curves import diagrams
 from protractile.analysis.equilibria import (
     equilibria,
     extended_equilibria,
     extended_instants,
     instants,
 )
+from protractile.analysis.measure import measure_boom
 from protractile.analysis.model import AnalysisModel
-from protractile.analysis.states import static_results
+from protractile.analysis.rows import BEAM, FARTHEST, INITIAL, MOTION, REST, Rows
+from protractile.analysis.states import States
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
@@ -31,9 +34,9 @@ from protractile.runs.case.load_tables import LoadTable
 from protractile.runs.case.reading import select
 from protractile.runs.case.schema import Case, StopTable, TimeTable
 from protractile.runs.pipeline.combinations import combination_states
-from protractile.runs.pipeline.design_results import DesignResults, PlayDifference
 from protractile.runs.pipeline.model_quality import quality_notes
 from protractile.runs.pipeline.models import build
+from protractile.runs.pipeline.results import Results
 from studies.reference_models.statics import static_response
 from tests.modal import modal_system
 from tests.runs.case_texts import (
@@ -89,8 +92,8 @@ def test_combinations_of_bonded_models_have_no_play() -> None:
     case = shipped("coarse")
     bonded = tuple(model for model in case.models if model.bonded)
     (state,) = combination_states(case.model_copy(update={"models": bonded}))
-    assert state.beam is not None
-    assert state.beam.farthest.tip == pytest.approx(9.916e-3, rel=1e-3)
+    (tip,) = state.rows.where(quantity="tip")
+    assert tip.value == pytest.approx(9.916e-3, rel=1e-3)
 
 
 def test_a_boom_without_play_has_no_tilt_and_its_stops_are_its_own() -> None:
@@ -202,15 +205,16 @@ def test_a_load_after_the_drive_bends_the_drawn_boom() -> None:
     found = equilibria(system, instants(system, case.time.duration))
     assert list(found) == [0.0, 6.0]
     assert list(extended_equilibria(system, case.time.duration)) == [5.0]
-    (rest,) = static_results(loaded, np.array([6.0]), found[6.0][None])
-    outer = rest.diagrams[0]
-    moment = np.interp(2.0, outer.x, outer.curves["moment"])
+    rest = States.of(loaded, {6.0: found[6.0]})
+    (outer, *_) = diagrams(rest, "beam", "rest")
+    moment = np.interp(2.0, outer.x, outer.values["moment"])
     assert abs(moment) == pytest.approx(2e3 * 17.0 + 550.7 * 12.0 + 0.5 * 83.16 * 8.0**2, rel=1e-4)
     # Of 1 m of overlap, 4.5 m before the middle and 9 m before the tip of the inner segment.
     head = 550.7 * 5.0 + 2e3 * 10.0
     pressed = (2.0 * head - 550.7 - 2e3) / 1e9
-    assert rest.tilts[0].rotation == pytest.approx(0.014 + pressed, abs=1e-7)
-    assert rest.stations[1].force == pytest.approx(head, rel=1e-4)
+    measured = {(one.quantity, one.place): one.values.item() for one in measure_boom(rest)}
+    assert measured["rotation", "in outer"] == pytest.approx(0.014 + pressed, abs=1e-7)
+    assert measured["contact_force", "station 2"] == pytest.approx(head, rel=1e-4)
 
 
 def test_an_instant_without_rest_is_left_out() -> None:
@@ -225,52 +229,54 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
 
-def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> DesignResults:
+def run_of(names: list[str], comm: MPI.Intracomm | None = None) -> Results:
     return answers_of(select(shipped("coarse"), "", names), comm)
 
 
 @pytest.fixture(scope="module")
-def answers() -> DesignResults:
-    """Return the design results of a series and elements with play, and of bonded elements."""
+def answers() -> Results:
+    """Return the results of a series and elements with play, and of bonded elements."""
     return run_of(["kantorovich-5", "beam-fe", "beam-fe-bonded"])
 
 
-def numbers(found: DesignResults, model: str) -> dict[tuple[str, str], PlayDifference]:
-    (play,) = (one for one in found.play if one.model == model)
-    return {(one.what, one.where): one for one in play.numbers}
+def added(results: Results, model: str, state: str, quantity: str) -> tuple[float, float]:
+    """Return what play adds to the first result of a quantity, and the result without play."""
+    rows = results.rows.where(model=model, state=state, quantity=quantity)
+    with_play, without = (abs(rows.where(play=play)[0].value) for play in (True, False))
+    return with_play - without, without
 
 
-def test_play_adds_its_lever_at_rest_and_no_moment(answers: DesignResults) -> None:
+def test_play_adds_its_lever_at_rest_and_no_moment(answers: Results) -> None:
     """Reference: by hand. 14 mrad of play and 5 µrad of contacts are 133 mm and 47 µm."""
-    assert [play.model for play in answers.play] == ["kantorovich-5", "beam-fe"]
-    at_rest = numbers(answers, "beam-fe")["deflection at rest", "tip"]
-    assert at_rest.increase == pytest.approx(0.133 + 10.0 * 4.956e-6 - 2.2e-6, abs=1e-7)
-    assert at_rest.share == pytest.approx(at_rest.increase / at_rest.bonded)
-    series = numbers(answers, "kantorovich-5")["deflection at rest", "tip"]
-    assert series.increase == pytest.approx(0.133, rel=5e-3)
-    found = answers.models["beam-fe"]
-    (rest,), (bonded,) = found.static, found.static_bonded
+    without_play = answers.rows.where(play=False)
+    assert {row.model for row in without_play} == {"kantorovich-5", "beam-fe", BEAM}
+    increase, _ = added(answers, "beam-fe", REST, "tip")
+    assert increase == pytest.approx(0.133 + 10.0 * 4.956e-6 - 2.2e-6, abs=1e-7)
+    assert added(answers, "kantorovich-5", REST, "tip")[0] == pytest.approx(0.133, rel=5e-3)
     # The stations of the bonded boom bend nothing: what is added is the tilt alone.
-    assert rest.tip - bonded.tip == pytest.approx(rest.tilts[0].tip, rel=1e-6)
-    depths = [pressed.depth for pressed in rest.stations]
+    rest = answers.rows.where(model="beam-fe", play=True, state=FARTHEST)
+    (tilt,) = rest.where(quantity="rotation_tip")
+    assert increase == pytest.approx(abs(tilt.value), rel=1e-6)
+    depths = [row.value for row in rest.where(quantity="penetration")]
     assert depths == pytest.approx([2.2028e-6, 2.7535e-6], rel=1e-4)
-    for one, other in zip(rest.diagrams, bonded.diagrams, strict=True):
-        np.testing.assert_allclose(one.curves["moment"], other.curves["moment"], atol=0.1)
+    curves = answers.curves.where(model="beam-fe", state=REST)
+    for one, other in zip(curves.where(play=True), curves.where(play=False), strict=True):
+        np.testing.assert_allclose(one.values["moment"], other.values["moment"], atol=0.1)
 
 
-def test_motions_are_held_against_those_without_play(answers: DesignResults) -> None:
+def test_motions_are_held_against_those_without_play(answers: Results) -> None:
     """Reference: other model, the bonded model of the case with the same elements."""
-    own, bonded = (answers.models[name] for name in ("beam-fe", "beam-fe-bonded"))
-    assert bonded.motion_bonded is None
-    for peak, other in zip(own.motion_bonded.peaks, bonded.motion.peaks, strict=True):
-        assert (peak.what, peak.where) == (other.what, other.where)
-        assert peak.largest == pytest.approx(other.largest, rel=1e-6)
-    found = numbers(answers, "beam-fe")
-    for one in found.values():
-        assert one.with_play >= 0.0
-    largest = own.motion.peaks[0].largest - bonded.motion.peaks[0].largest
-    assert found["deflection", "tip"].increase == pytest.approx(largest, rel=1e-6)
-    assert ("stress", "inner") in found
+    moved = answers.rows.where(state=MOTION)
+    own = moved.where(model="beam-fe", play=False)
+    bonded = moved.where(model="beam-fe-bonded", play=True)
+    assert not moved.where(model="beam-fe-bonded", play=False)
+    for row, other in zip(own, bonded, strict=True):
+        assert row.key == other.key
+        assert row.value == pytest.approx(other.value, rel=1e-6)
+    largest = abs(moved.where(model="beam-fe", play=True, quantity="tip")[0].value)
+    increase, without = added(answers, "beam-fe", MOTION, "tip")
+    assert increase == pytest.approx(largest - without, rel=1e-6)
+    assert own.where(quantity="stress", part="inner")
 
 
 @pytest.mark.slow
@@ -278,19 +284,20 @@ def test_play_adds_equal_deflections_to_shells_and_beams() -> None:
     """Reference: by hand, the same lever at rest; other code, elements in motion."""
     mpi = pytest.importorskip("mpi4py.MPI")
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-    found = run_of(["timoshenko", "shell"], mpi.COMM_SELF)
-    shell, beam = (numbers(found, name) for name in ("shell", "timoshenko"))
-    assert shell["deflection at rest", "tip"].increase == pytest.approx(0.133, rel=2e-3)
-    farther = [one["deflection", "tip"].increase for one in (shell, beam)]
+    found, both = run_of(["timoshenko", "shell"], mpi.COMM_SELF), ("shell", "timoshenko")
+    assert added(found, "shell", REST, "tip")[0] == pytest.approx(0.133, rel=2e-3)
+    farther = [added(found, name, MOTION, "tip")[0] for name in both]
     assert farther[0] == pytest.approx(farther[1], rel=0.01)
-    frequencies = [one["first frequency", "bending in z"].bonded for one in (shell, beam)]
+    frequencies = [added(found, name, INITIAL, "frequency")[1] for name in both]
     assert frequencies[0] == pytest.approx(frequencies[1], rel=5e-3)
 
 
-def test_models_agree_within_the_stated_difference(answers: DesignResults) -> None:
+def test_models_agree_within_the_stated_difference(answers: Results) -> None:
     """Reference: other results of the same run, the static tips of both models."""
-    agreement = [known.line for known in answers.quality_notes if known.what == "agreement"]
-    series, beam = (answers.models[name].static[0].tip for name in ("kantorovich-5", "beam-fe"))
+    notes = answers.summary.design.quality_notes
+    agreement = [known.line for known in notes if known.what == "agreement"]
+    tips = answers.rows.where(play=True, state=INITIAL, quantity="tip")
+    series, beam = (tips.where(model=name)[0].value for name in ("kantorovich-5", "beam-fe"))
     off = f"{100.0 * (series / beam - 1.0):+.2g}".replace("-", "−")
     (line,) = agreement
     start = f"kantorovich-5 differs from beam-fe by {off} % in the static tip deflection, "
@@ -312,7 +319,7 @@ def test_chaos_note_names_chaotic_models_only() -> None:
             "calm": model_summary(ensemble=ensemble(None), energy_residual=2e-4),
         }
     )
-    chaotic, regular, energy = quality_notes(summary, DesignResults({}), TEN)
+    chaotic, regular, energy = quality_notes(summary, Rows(), None, TEN)
     assert [one.what for one in (chaotic, regular, energy)] == ["horizon", "horizon", "energy"]
     assert "after these times: wild 3.20 s." in chaotic.line
     assert regular.line == "The motion of calm can be predicted over the whole 10 s."
@@ -321,7 +328,7 @@ def test_chaos_note_names_chaotic_models_only() -> None:
         "largest error."
     )
     none = summary_of({"plain": model_summary()})
-    assert [one.what for one in quality_notes(none, DesignResults({}), TEN)] == ["energy"]
+    assert [one.what for one in quality_notes(none, Rows(), None, TEN)] == ["energy"]
 
 
 def test_step_note_names_models_above_the_tolerance() -> None:
@@ -333,7 +340,7 @@ def test_step_note_names_models_above_the_tolerance() -> None:
         "steps."
     )
     for time, line in ((TEN, error + above), (TimeTable(duration=10.0, step=1e-5), error)):
-        step, _ = quality_notes(summary_of(models), DesignResults({}), time)
+        step, _ = quality_notes(summary_of(models), Rows(), None, time)
         assert (step.what, step.line) == ("step", line)
 
 

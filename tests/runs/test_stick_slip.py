@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Elastic drives of a case, residual vibration in telescoping, and admissible speeds."""
+"""Elastic drives of a case, residual vibration in telescoping."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib import rc_context
-from matplotlib.figure import Figure as Sheet
 
 from protractile.cases import change, run_case
 from protractile.dynamics.contact import PowerContact
@@ -29,13 +28,6 @@ from protractile.runs.report import theme
 from protractile.runs.report.figure_context import FigureContext
 from protractile.runs.report.force_figures import drives
 from protractile.runs.report.result_tables import result_tables, stick_slip_table
-from protractile.runs.sweep.residual_vibration import (
-    VibrationCurve,
-    admissible_speed,
-    describe,
-    draw_vibration,
-    vibration_curves,
-)
 from tests.runs.case_texts import edited, read_case, refusal, shipped
 from tests.runs.summaries import printed_check
 from tests.runs.test_drive import DRAWN, ROPE
@@ -321,8 +313,8 @@ def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
         standing = run_case(case(tmp_path, "", extension), models=["kantorovich-5"])
         data = standing.trajectories.sel(model="kantorovich-5")
         ramp = np.minimum(data["time"].values / 0.2, 1.0)
-        answers = standing.summary.design
-        first, last = (rest.tip for rest in answers.models["kantorovich-5"].static)
+        curves = standing.curves.where(state="rest", play=True, segment="inner")
+        first, last = (curve.values["deflection"][-1] for curve in curves)
         rest = first + ramp * (last - first)
         assert level == pytest.approx(np.abs(data["tip"].values - rest).max(), rel=1e-3)
 
@@ -337,69 +329,3 @@ def test_boom_at_rest_has_no_residual_vibration(tmp_path: Path) -> None:
     # Nor has one whose drive does not end, or that has none.
     assert swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.7 }")) is None
     assert swing_of(case(tmp_path, "")) is None
-
-
-@pytest.mark.parametrize(
-    ("level", "fastest"), [(4.0, 2.5), (6.0, 3.0), (1.0, None), (2.99, 2.0), (1.99, 1.0)]
-)
-def test_admissible_speed_is_at_the_crossing_of_lines(level: float, fastest: float | None) -> None:
-    """Reference: by hand. Less than 1 % above the level does not count."""
-    one = VibrationCurve(
-        np.array([1.0, 2.0, 3.0]), np.array([2.0, 3.0, 5.0]), {"end": np.full(3, level)}
-    )
-    assert admissible_speed(one, "end") == pytest.approx(fastest)
-
-
-def swept() -> xr.Dataset:
-    """Return invented numbers of three points; the second failed, the last is slowest."""
-    known = {
-        "residual_vibration": [0.05, np.nan, 0.02],
-        "drive_speed": [2.0, np.nan, 1.0],
-        "residual_vibration_initial": [0.03, np.nan, 0.03],
-        "residual_vibration_final": [0.06, np.nan, 0.06],
-    }
-    variables = {name: (("key", "model"), np.array([v]).T) for name, v in known.items()}
-    return xr.Dataset(variables, coords={"key": [1.0, 1.5, 2.0], "model": ["beam"]})
-
-
-FINAL = "that without telescoping, at the final extension (60 mm)"
-LAST = ", the fastest speed with a result"
-
-
-def test_a_chart_says_how_fast_it_may_be_drawn_out(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    """Reference: by hand."""
-    data = swept()
-    assert list(describe("beam", vibration_curves(data)["beam"])) == [
-        "beam: vibration within that without telescoping, at the initial extension (30 mm) up to "
-        "1.33 m/s",
-        f"beam: vibration within {FINAL} up to 2 m/s{LAST}",
-    ]
-    tight = data.assign(residual_vibration_initial=0.1 * data["residual_vibration_initial"])
-    assert next(describe("beam", vibration_curves(tight)["beam"])) == (
-        "beam: vibration of 20 mm at the slowest speed, 1 m/s, exceeds that without telescoping, "
-        "at the initial extension (3 mm)"
-    )
-    # Of a speed whose standing boom has no motion the level is not known, and the others count.
-    gap = xr.concat([swept(), swept().isel(key=[2]).assign_coords(key=[1.2])], "key")
-    gap["residual_vibration_final"][-1], gap["drive_speed"][-1] = np.nan, 3.0
-    assert list(describe("beam", vibration_curves(gap)["beam"]))[1] == (
-        f"beam: vibration within {FINAL} up to 2 m/s{LAST}"
-    )
-    # Booms that are drawn to different places swing about as much as each does there, or less.
-    elsewhere = data.assign(residual_vibration_initial=data["residual_vibration"] + 0.01)
-    assert next(describe("beam", vibration_curves(elsewhere)["beam"])) == (
-        "beam: vibration within that without telescoping, at the initial extension (30 to 60 mm) "
-        f"up to 2 m/s{LAST}"
-    )
-    saved: list[Sheet] = []
-    monkeypatch.setattr(Sheet, "savefig", lambda sheet, path: saved.append(sheet))
-    draw_vibration(data, theme.line_styles(["beam"], ()), tmp_path / "swing.png")
-    curve, *levels = saved[0].axes[0].get_lines()
-    np.testing.assert_allclose(curve.get_xydata(), [[1.0, 20.0], [2.0, 50.0]])
-    assert [line.get_ydata()[0] for line in levels] == [30.0, 60.0]
-    # Without speeds there is no chart.
-    data = swept().isel(key=[0])
-    draw_vibration(data, theme.line_styles(["beam"], ()), tmp_path / "swing.png")
-    assert not list(tmp_path.iterdir())

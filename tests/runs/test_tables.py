@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+from protractile.geometry.typography import fixed, number, scientific
 from protractile.runs.pipeline.model_quality import main_models
 from protractile.runs.report import theme
 from protractile.runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
-from protractile.runs.report.formatting import fixed, number, scientific
 from protractile.runs.report.tables import ROOMY, Column, Table
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import printed

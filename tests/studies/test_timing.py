@@ -14,8 +14,8 @@ from rich.console import Console
 
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
+from protractile.geometry.typography import repeated
 from protractile.runs.case import reading as case_file
-from protractile.runs.report.formatting import repeated
 from studies.cost import other_programs, timing
 from studies.cost.bench import (
     PAPER,

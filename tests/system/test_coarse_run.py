@@ -78,7 +78,7 @@ def test_every_file_of_a_whole_run_opens(whole: Path) -> None:
     snapshots = summary["snapshots"]
     if can_draw():
         kinds = {picture.split("-")[0] for picture in snapshots["written"]}
-        assert {"boom", "overlap", "stress", "motion.gif"} <= kinds
+        assert {"boom", "overlap", "motion.gif"} <= kinds
     else:
         assert snapshots["skipped"]
     for picture in snapshots["written"]:
@@ -167,7 +167,7 @@ def test_snapshots_of_given_times_join_the_others(whole: Path, again: Path) -> N
     assert protractile("snapshot", again, "--time", "0.25") == 0
     names = {path.name for path in (again / "snapshots").iterdir()}
     assert names == {path.name for path in (whole / "snapshots").iterdir()} | {
-        "boom-0.25s.png", "overlap-0.25s.png", "stress-0.25s.png",
+        "boom-0.25s.png", "overlap-0.25s.png",
     }  # fmt: skip
     check_common_files(again, [*BEAMS, "shell"])
 

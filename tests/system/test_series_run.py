@@ -13,10 +13,10 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from protractile.runs.case.messages import BadInput
 from protractile.runs.case.reading import load
 from protractile.runs.paper.rules import judge
 from protractile.runs.pipeline.results import Results, read_fields
+from protractile.runs.process.bad_input import BadInput
 from tests.runs.case_texts import CLAMPED, table
 from tests.runs.test_actions import CANTILEVER
 from tests.system.run_folder import (
@@ -63,7 +63,8 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> Refusal:
 def test_every_file_of_a_series_run_opens(series: Path) -> None:
     check_common_files(series, SERIES)
     assert {name for name in files(series) if not name.startswith("figures/")} == {
-        "case.toml", "trajectories.nc", "trajectories.csv", "summary.json", "verdicts.json",
+        "case.toml", "results.csv", "curves.nc", "trajectories.nc", "trajectories.csv",
+        "summary.json", "verdicts.json",
         "report.html", "viewer.html", ".manifest", ".drawn-of",
     }  # fmt: skip
 

@@ -10,11 +10,14 @@ import ast
 import re
 import tomllib
 from collections import defaultdict
+from dataclasses import replace
 from typing import Any, NamedTuple
 
 import pytest
 
 import protractile as pt
+from protractile.analysis.rows import INITIAL
+from protractile.analysis.rows import REST as AT_REST
 from protractile.dynamics.damping import closed_contact_damping
 from protractile.geometry.boom import Boom
 from protractile.runs.case.build import build_boom
@@ -27,6 +30,7 @@ from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.models import build, initial_motion
 from protractile.runs.pipeline.proofs import prove
+from protractile.runs.report.result_tables import peaks
 from protractile.runs.sweep.frequencies import first_frequencies
 from tests.runs.case_texts import REST, STEEL, elements, joint, table
 
@@ -153,35 +157,37 @@ def of_check(checked: Check, shown: dict[str, list[View]]) -> None:
 def of_prove(case: pt.Case, boom: Boom, shown: dict[str, list[View]]) -> None:
     plain = case.model_copy(update={"combinations": (), "load_cases": (), "spectra": ()})
     (state,) = combination_states(plain)
-    assert state.beam is not None
-    shown["largest tip"].append(View("prove", 1e3 * state.beam.farthest.tip, NONE, True))
+    (tip,) = state.rows.where(quantity="tip")
+    shown["largest tip"].append(View("prove", 1e3 * tip.value, NONE, True))
     for kind in ("cylinder force", "foot reaction"):
-        if (one := state.result.largest(kind)) is not None:
-            shown[kind].append(View("prove", 1e-3 * one.largest, NONE, True))
+        row = state.rows.where(quantity=kind.replace(" ", "_")).largest
+        if row is not None:
+            shown[kind].append(View("prove", 1e-3 * row.value, NONE, True))
     table = state.combined.combination.model_copy(update={"proofs": ("column",)})
-    state = state._replace(combined=state.combined._replace(combination=table))
-    for proof in prove(plain, [state]).proofs:
+    state = replace(state, combined=state.combined._replace(combination=table))
+    for proof in prove(plain, [state]).rows:
         if not boom.telescopes:
-            factor = proof.resistance / proof.demand
+            assert proof.limit is not None
+            factor = proof.limit / proof.value
             shown["buckling factor"].append(View("prove", factor, NONE, True))
 
 
 def of_run(case: pt.Case, boom: Boom, shown: dict[str, list[View]]) -> None:
     results = pt.run_case(case)
-    design, motion = results.summary.design.models["beam"], results.trajectories
-    tips = [1e3 * one.tip for one in design.static]
-    shown["tip at t = 0"].append(View("run", tips[0], NONE))
-    shown["largest tip"].append(View("run", max(tips, key=abs), NONE))
+    rows, motion = results.rows.where(model="beam", play=True), results.trajectories
+    static = rows.where(state=[INITIAL, AT_REST])
+    for state, what in ((INITIAL, "tip at t = 0"), (AT_REST, "largest tip")):
+        (tip,) = static.where(state=state, quantity="tip")
+        shown[what].append(View("run", 1e3 * tip.value, NONE))
     if case.start.at_rest:
         shown["tip at t = 0"].append(View("motion", 1e3 * float(motion["tip"][0, 0]), NONE))
-    shown["first frequency"].append(View("run", design.modes[0].frequency, NONE))
-    forces = [1e-3 * force for one in design.static for force in one.cylinders.values()]
-    if forces:
-        shown["cylinder force"].append(View("run", max(forces, key=abs), NONE))
+    frequencies = static.where(quantity="frequency")
+    shown["first frequency"].append(View("run", frequencies[0].value, NONE))
+    if force := static.where(quantity="cylinder_force").largest:
+        shown["cylinder force"].append(View("run", 1e-3 * force.value, NONE))
     if not (boom.telescopes or boom.spatial or case.slew or case.luff):
-        for peak in design.motion.peaks:
-            if peak.what == "reaction, across and along":
-                shown["foot reaction"].append(View("run", 1e-3 * peak.at_rest, NONE))
+        for peak in peaks(rows).where(quantity="foot_reaction"):
+            shown["foot reaction"].append(View("run", 1e-3 * rows.at_rest(peak), NONE))
     for check in results.check_limits():
         if check.limit.quantity.name == "tip_at_rest":
             tip = -1e3 * check.values["beam"]

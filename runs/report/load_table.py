@@ -11,11 +11,11 @@ import numpy as np
 from protractile.dynamics.excitation import resolving_times
 from protractile.geometry.boom import Boom
 from protractile.geometry.load import Load, PartialLoad
+from protractile.geometry.typography import SHOWN, in_shown_unit, number
 from protractile.geometry.units import System
 from protractile.runs.case.actions import thrusts
 from protractile.runs.case.load_tables import HistoryTable, LoadTable, build_history
 from protractile.runs.case.schema import Case
-from protractile.runs.report.formatting import SHOWN, in_shown_unit, number
 from protractile.runs.report.tables import Table
 
 # Forces and moments from this number on are in kN and kN m in all systems of units.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Buckling of the walls of a shell in the static state with the largest tip deflection."""
+"""Buckling of the walls of a shell in a static state."""
 
 from __future__ import annotations
 
@@ -11,11 +11,9 @@ import numpy as np
 
 from protractile.analysis.equilibria import equilibria, extended_equilibria, instants
 from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.boom import Boom
 from protractile.geometry.telescoping import travel
-from protractile.runs.case.kinds.model import BuiltModel
-from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.schema import Case
 
 # Relative difference below which two displacements of a mode count as equal.
 _MIRRORED = 1.0e-3
@@ -25,6 +23,7 @@ if TYPE_CHECKING:
     from mpi4py import MPI
 
     from protractile.geometry.plating import PlatedMesh
+    from protractile.shell_model.boom_shell import ShellOptions
     from protractile.shell_model.buckling import SegmentBuckling, ShellState
 
 
@@ -54,28 +53,32 @@ class BuckledShell:
 
 def buckle_shell(
     boom: Boom,
-    model: Shell,
-    built: BuiltModel,
+    meshes: Sequence[PlatedMesh],
     state: ShellState | None,
+    options: ShellOptions,
     count: int,
     comm: MPI.Comm,
 ) -> BuckledShell | None:
     """Return the buckling of a shell's walls in a static state, on rank 0. Collective.
 
-    ``boom`` has the contacts of the model, ``state`` is given on rank 0, and ``count`` is the
-    number of modes of each segment.
+    Args:
+        boom: boom with the contacts of the shell.
+        meshes: meshes of the segments, on rank 0; empty elsewhere.
+        state: the static state, on rank 0; None without an equilibrium.
+        options: options of the shell.
+        count: number of modes of each segment.
+        comm: the ranks that share the work.
 
     Raises:
         NumericsError: there is no static state, or the modes of a segment cannot be computed.
     """
     from protractile.shell_model.buckling import buckle_segments
 
-    assert built.shell is not None
-    meshes: Sequence[PlatedMesh | None] = built.shell.meshes or [None] * len(boom.segments)
     state = comm.bcast(state)
     if state is None:
         raise NumericsError("the boom has no static state in which its walls could buckle")
-    results = buckle_segments(boom, meshes, state, model.options(), count, comm)
+    of_segments: Sequence[PlatedMesh | None] = meshes or [None] * len(boom.segments)
+    results = buckle_segments(boom, of_segments, state, options, count, comm)
     if comm.rank != 0:
         return None
     names = [segment.name for segment in boom.segments]
@@ -83,15 +86,21 @@ def buckle_shell(
     return BuckledShell(segments, _first_shapes(results))
 
 
-def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> ShellState | None:
+def farthest_state(
+    boom: Boom, system: GapSystem, fields: xr.Dataset, duration: float
+) -> ShellState | None:
     """Return the static state with the largest tip deflection, None without an equilibrium.
 
-    In space, the tip deflection is the resultant of both directions. ``boom`` has the contacts of
-    the model, and the fields of the shell are on this rank.
+    In space, the tip deflection is the resultant of both directions.
+
+    Args:
+        boom: boom with the contacts of the shell.
+        system: gap system of the shell, whose ``load`` includes all constant loads.
+        fields: fields of the reduced shell.
+        duration: duration of the motion in s.
     """
     from protractile.shell_model.buckling import ShellState
 
-    system, duration = built.system.gather_loads(), case.time.duration
     rests = equilibria(system, instants(system, duration))
     rests |= extended_equilibria(system, duration)
     if not rests:
@@ -104,9 +113,7 @@ def farthest_state(boom: Boom, case: Case, built: BuiltModel) -> ShellState | No
         number: distances[joint.inner] - distances[joint.outer]
         for number, joint in enumerate(boom.joints)
     }
-    assert built.shell is not None
-    assert built.shell.fields is not None
-    return ShellState.from_fields(built.shell.fields, system.at_time(time), rests[time], extensions)
+    return ShellState.from_fields(fields, system.at_time(time), rests[time], extensions)
 
 
 def with_locations(name: str, buckling: SegmentBuckling) -> WallBuckling:

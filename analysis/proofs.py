@@ -1,0 +1,199 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Proofs: design effects on parts of a boom, and their limit design values.
+
+A proof is a row of a quantity of :data:`.analysis.quantities.PROVED`. Its value is the design
+effect, and its limit the limit design value. Stresses are those of outer fibres and of walls from
+section forces of second order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from protractile.analysis.plate_buckling import (
+    PlateStress,
+    plate_stresses,
+    reduced_stress,
+    reduction_factors,
+    relative_slenderness,
+)
+from protractile.analysis.rows import Row, Rows
+from protractile.analysis.states import States
+from protractile.analysis.wall_buckling import WallBuckling
+
+# Pairs of a slenderness and a reduction factor; empty for the curves of EN 1993-1-5.
+ReductionCurve = Sequence[tuple[float, float]]
+
+#: Kinds of proofs by beams.
+BY_BEAMS = "yield", "plate", "column", "pad", "cylinder", "pin", "deflection"
+
+# Relative difference below which utilisations are equal.
+_EQUAL = 1.0e-9
+
+# Kinds of proofs by a shell, and the kind that requests each.
+_OF_SHELLS = {"patch": "yield", "buckling": "plate"}
+
+
+class Resistance(NamedTuple):
+    """Factors by which resistances are divided."""
+
+    material: float = 1.0  #: factor on yield strengths
+    stability: float = 1.0  #: factor on buckling resistances of plates and of the boom
+    pad: float = 1.0  #: factor on allowable pressures of pads
+    cylinder: float = 1.0  #: factor on capacities of cylinders
+    pin: float = 1.0  #: factor on shear resistances of pins
+
+
+def proofs(
+    states: States,
+    rows: Rows,
+    requested: Collection[str],
+    resistance: Resistance,
+    curve: ReductionCurve = (),
+    permitted_tip: float | None = None,
+    critical_factor: float | None = None,
+    buckling: Iterable[WallBuckling] = (),
+) -> Iterator[Row]:
+    """Yield the proofs of states for which the boom has numbers.
+
+    Args:
+        states: states under the loads of a combination.
+        rows: extremes of these states, and wall stresses of a shell.
+        requested: kinds of proofs, of :data:`BY_BEAMS`; ``yield`` and ``plate`` include those by a
+            shell.
+        resistance: factors on resistances.
+        curve: reduction factors of plates.
+        permitted_tip: permitted tip deflection in m; None without a limit.
+        critical_factor: buckling factor of the axial forces; None if it is unknown.
+        buckling: buckling of the segments of a shell.
+    """
+    proved = [
+        *_of_plates(states, resistance, curve),
+        *_of_shells(states, rows, resistance, curve, buckling),
+        *_of_forces(states, rows, resistance),
+        *_of_column(states, resistance, critical_factor),
+    ]
+    if permitted_tip is not None:
+        (tip,) = rows.where(quantity="tip")
+        proved.append(_proof("deflection", "tip", "", tip.value, permitted_tip))
+    model, state = rows[0].model, rows[0].state
+    for one in proved:
+        if _OF_SHELLS.get(one.quantity, one.quantity) in requested:
+            yield one._replace(model=model, state=state)
+
+
+def governing(proved: Iterable[Row]) -> Rows:
+    """Return the governing proof of each part of the boom, that with the largest utilisation first.
+
+    The plates of a segment are one part, and so are the pads of a station.
+    """
+    found: dict[tuple[str, str, str], Row] = {}
+    for row in proved:
+        key = row.quantity, row.part, row.place.rpartition(", ")[0]
+        other = found.setdefault(key, row)
+        # Plates that mirror each other are equal; the first one counts.
+        if (row.utilisation or 0.0) > (1.0 + _EQUAL) * (other.utilisation or 0.0):
+            found[key] = row
+    return Rows(sorted(found.values(), key=lambda row: -(row.utilisation or 0.0)))
+
+
+def _proof(
+    kind: str, part: str, place: str, effect: float, limit: float, x: float | None = None
+) -> Row:
+    return Row("", "", True, kind, part, place, abs(effect), x, limit=limit)
+
+
+def _of_plates(states: States, resistance: Resistance, curve: ReductionCurve) -> Iterator[Row]:
+    """Yield the proofs of strength and buckling of each plate by section forces."""
+    for plate, strength in strong_plates(states):
+        equivalent = np.sqrt(np.abs(plate.fibres).max(axis=0) ** 2 + 3.0 * plate.shear**2)
+        reduced = reduced_stress(plate, strength, curve)
+        for kind, stress, factor in (
+            ("yield", equivalent, resistance.material),
+            ("plate", reduced, resistance.stability),
+        ):
+            step, at = np.unravel_index(int(stress.argmax()), stress.shape)
+            where = plate.segment.name, plate.plate.name
+            yield _proof(
+                kind, *where, float(stress[step, at]), strength / factor, float(plate.x[at])
+            )
+
+
+def strong_plates(states: States) -> Iterator[tuple[PlateStress, float]]:
+    """Yield the stresses of each plate with a yield strength, and this strength in Pa."""
+    for plate in plate_stresses(states):
+        strength = plate.segment.material.strength(plate.plate.thickness)
+        if strength is not None:
+            yield plate, strength
+
+
+def most_slender_plate(states: Iterable[States]) -> tuple[float, PlateStress] | None:
+    """Return the largest slenderness λ̄ of a plate in all states, and the plate; None if none."""
+    slender = (
+        (float(relative_slenderness(plate, strength).max()), plate)
+        for each in states
+        for plate, strength in strong_plates(each)
+    )
+    return max(slender, key=lambda one: one[0], default=None)
+
+
+def _of_shells(
+    states: States,
+    rows: Rows,
+    resistance: Resistance,
+    curve: ReductionCurve,
+    buckling: Iterable[WallBuckling],
+) -> Iterator[Row]:
+    """Yield the proofs by wall stresses and buckling factors of a shell."""
+    for row in rows.where(quantity="wall_stress"):
+        if row.limit is not None:
+            limit = row.limit / resistance.material
+            yield _proof("patch", row.part, "", row.value, limit, row.x)
+    for one in buckling:
+        plates = [plate for plate in plate_stresses(states) if plate.segment.name == one.segment]
+        strength = plates[0].segment.yield_strength if plates else None
+        if strength is None or not one.factors:
+            continue
+        stress = max(
+            float(np.hypot(np.abs(plate.edges).max(axis=0), np.sqrt(3.0) * plate.shear).max())
+            for plate in plates
+        )
+        slenderness = float(np.sqrt(strength / (stress * one.factors[0])))
+        reduction = float(min(reduction_factors(slenderness, 1.0, curve)))
+        limit = reduction * strength / resistance.stability
+        yield _proof("buckling", one.segment, one.walls[0], stress, limit, one.x[0])
+
+
+def _of_forces(states: States, rows: Rows, resistance: Resistance) -> Iterator[Row]:
+    """Yield the proofs of pads, cylinders and pins."""
+    for row in rows.where(quantity="pad_pressure"):
+        if row.limit is not None and row.value:
+            limit = row.limit / resistance.pad
+            yield _proof("pad", row.part, row.place, row.value, limit, row.x)
+    forces = rows.where(quantity="cylinder_force")
+    for row, cylinder in zip(forces, states.boom.cylinders, strict=True):
+        if cylinder.capacity is not None:
+            limit = cylinder.capacity / resistance.cylinder
+            yield _proof("cylinder", row.part, "", row.value, limit)
+        if cylinder.pin is not None:
+            limit = cylinder.pin.resistance / resistance.pin
+            yield _proof("pin", row.part, "lug", row.value, limit, cylinder.x)
+    feet = {segment.name: segment.foot for segment in states.boom.segments}
+    for row in rows.where(quantity="foot_reaction"):
+        foot = feet[row.part]
+        if foot is not None and foot.pin is not None:
+            limit = foot.pin.resistance / resistance.pin
+            yield _proof("pin", f"foot, {row.part}", "", row.value, limit, foot.x)
+
+
+def _of_column(states: States, resistance: Resistance, factor: float | None) -> Iterator[Row]:
+    """Yield the proof of column buckling by the buckling factor of the axial forces."""
+    normal = min(
+        float(states.section_forces(number)["normal"].min())
+        for number in range(len(states.boom.segments))
+    )
+    if factor is not None and np.isfinite(factor) and normal < 0.0:
+        yield _proof("column", "boom", "", normal, -normal * factor / resistance.stability)
