@@ -24,8 +24,8 @@ from protractile.beam_model.component import (
     SegmentModel,
     natural_modes,
 )
-from protractile.dynamics.excitation import HistorySum
 from protractile.dynamics.gap_builder import GapBuilder
+from protractile.dynamics.motion_laws import HistorySum
 from protractile.dynamics.second_order import buckling_factor, soften_modes
 from protractile.dynamics.travel import MovingAxialForce, RowTable, Travel
 from protractile.geometry.arrays import Array

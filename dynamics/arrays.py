@@ -28,3 +28,13 @@ def is_finite(value: Any) -> bool:
 def are_finite(values: Any) -> bool:
     """Return whether values are a sequence of such numbers."""
     return isinstance(values, Sequence | np.ndarray) and all(map(is_finite, values))
+
+
+def check_positive(name: str, value: float, unit: str) -> None:
+    """Check that an argument is a finite number above 0.
+
+    Raises:
+        ValueError: it is none.
+    """
+    if not (is_finite(value) and value > 0.0):
+        raise ValueError(f"{name} must be finite and positive, got {value} {unit}")

@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 
 from protractile.dynamics.arrays import Array
-from protractile.dynamics.excitation import HistorySum, MotionLaw
+from protractile.dynamics.motion_laws import HistorySum, MotionLaw
 
 # Number of times, in addition to kinks, at which the peak of an acceleration is searched.
 _SAMPLES = 2001

@@ -28,9 +28,10 @@ import numpy as np
 
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.contact import ContactLaw, PowerContact
-from protractile.dynamics.excitation import Excitation, History, MotionLaw, PiecewiseLinear
+from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear
 from protractile.dynamics.frame_motion import FrameMotion, PathAcceleration
 from protractile.dynamics.gap_system import GapSystem, Observer
+from protractile.dynamics.motion_laws import MotionLaw
 from protractile.dynamics.trajectory import Trajectory
 from protractile.dynamics.travel import RowKind, RowTable, Travel
 

@@ -136,7 +136,7 @@ class Drive:
     (0.0, 1.5)
 
     Args:
-        history: extension in m over time, 0 at t = 0; see :mod:`.dynamics.excitation`.
+        history: extension in m over time, 0 at t = 0; see :mod:`.dynamics.motion_laws`.
         carriers: segment to which each station of the joint is fixed.
         least_overlap: minimum overlap in m.
         locked: segment to which the lock is fixed, where the inner segment transfers its axial

@@ -16,13 +16,12 @@ from functools import cached_property
 from numbers import Real
 
 import numpy as np
+from protractile.geometry.box import OUTWARDS, BoxSection
 
 from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.fields import format_value, is_positive
 from protractile.geometry.section import (
     COMPONENT,
-    OUTWARDS,
-    BoxSection,
     Direction,
     Face,
     Offset,
@@ -55,7 +54,7 @@ class PolygonSection(Section):
     """Closed section of flat plates, described by the corners of their mid-lines.
 
     Area, centroid and second moments include the thickness of plates, with mitred corners as in
-    :class:`.geometry.section.BoxSection`. Shear areas follow from the shear flow of the mid-lines.
+    :class:`.geometry.box.BoxSection`. Shear areas follow from the shear flow of the mid-lines.
 
     >>> corners = ((-0.15, -0.3), (0.15, -0.3), (0.2, 0.3), (-0.2, 0.3))
     >>> trapezoid = pt.PolygonSection(corners, thicknesses=(0.01, 0.006, 0.008, 0.006))

@@ -25,7 +25,7 @@ from protractile.geometry.polygon import closed_polygon as closed_polygon
 from protractile.geometry.profiles import hexagon as hexagon
 from protractile.geometry.profiles import octagon as octagon
 from protractile.geometry.profiles import u_section as u_section
-from protractile.geometry.section import BoxSection as BoxSection
+from protractile.geometry.box import BoxSection as BoxSection
 
 # Contact laws
 from protractile.dynamics.contact import ContactLaw as ContactLaw
@@ -34,9 +34,9 @@ from protractile.dynamics.contact import restitution_damping as restitution_damp
 from protractile.dynamics.contact_table import TableContact as TableContact
 
 # Loads, and how they change over time
-from protractile.dynamics.excitation import SCurve as SCurve
-from protractile.dynamics.excitation import Shaped as Shaped
-from protractile.dynamics.excitation import Stroke as Stroke
+from protractile.dynamics.motion_laws import SCurve as SCurve
+from protractile.dynamics.motion_laws import Shaped as Shaped
+from protractile.dynamics.motion_laws import Stroke as Stroke
 from protractile.dynamics.excitation import Ramp as Ramp
 from protractile.dynamics.excitation import Sine as Sine
 from protractile.dynamics.excitation import Step as Step

@@ -27,9 +27,9 @@ from typing import NamedTuple
 import numpy as np
 from mpi4py import MPI
 
-from protractile.dynamics.excitation import HistorySum
 from protractile.dynamics.gap_builder import GapBuilder
 from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.motion_laws import HistorySum
 from protractile.dynamics.reduction import reduce_modes, with_coordinates
 from protractile.dynamics.travel import ROW_KINDS, MovingAxialForce, RowKind, RowTable, Travel
 from protractile.geometry.arrays import Array, Mask

@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
+from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.boom_modes import critical_factor
 from protractile.beam_model.component import SegmentModel
@@ -17,11 +18,10 @@ from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.kantorovich import kantorovich_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import PowerContact
-from protractile.dynamics.excitation import SCurve
+from protractile.dynamics.motion_laws import SCurve
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Joint, Segment
 from protractile.geometry.joint import Drive
-from protractile.geometry.section import BoxSection
 from studies.second_order import (
     BOX,
     CLAMP,

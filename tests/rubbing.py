@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from protractile.dynamics.contact import DryFriction, PowerContact
-from protractile.dynamics.excitation import SCurve
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.kernels.march import march
 from protractile.dynamics.motion import Motion
+from protractile.dynamics.motion_laws import SCurve
 from tests.dynamics.test_moving_thrust import pressed_along
 from tests.dynamics.test_telescoping import lossy
 from tests.modal import modal_system

@@ -8,16 +8,8 @@ from typing import Annotated, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
-from protractile.dynamics.excitation import (
-    History,
-    MotionLaw,
-    PiecewiseLinear,
-    SCurve,
-    Shaped,
-    Spline,
-    Stroke,
-    resolving_times,
-)
+from protractile.dynamics.excitation import History, PiecewiseLinear, resolving_times
+from protractile.dynamics.motion_laws import MotionLaw, SCurve, Shaped, Spline, Stroke
 from protractile.geometry.boom import BoomError
 from protractile.geometry.fields import (
     Few,

@@ -8,11 +8,12 @@ from dataclasses import replace
 from math import pi
 
 from protractile.dynamics.contact import Gap
-from protractile.dynamics.excitation import History, HistorySum, is_constant
+from protractile.dynamics.excitation import History, is_constant
 from protractile.dynamics.frame_motion import FrameAcceleration, FrameMotion, Spin
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.hanging_load import HangingLoad, Pendulum, Release, RopeForce
 from protractile.dynamics.motion import initial_state
+from protractile.dynamics.motion_laws import HistorySum
 from protractile.dynamics.stick_slip import ElasticDrive
 from protractile.geometry.axial import AxialChange, Thrust, lumped_masses, with_compression
 from protractile.geometry.boom import Boom, BoomError, Direction, Joint, PointMass, Segment

@@ -8,6 +8,7 @@ from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
+from protractile.geometry.box import BoxSection
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
 from protractile.geometry.fields import (
@@ -24,7 +25,7 @@ from protractile.geometry.fields import (
 from protractile.geometry.material import Material
 from protractile.geometry.polygon import closed_polygon
 from protractile.geometry.profiles import hexagon, octagon, u_section
-from protractile.geometry.section import BoxSection, Section
+from protractile.geometry.section import Section
 from protractile.geometry.segment import PointMass
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Support

@@ -7,10 +7,11 @@ from collections.abc import Iterator
 from math import isclose
 
 import numpy as np
+from protractile.geometry.box import BoxSection
 
 from protractile.geometry.fit import room
 from protractile.geometry.joint import SIDES, SlidePad
-from protractile.geometry.section import BoxSection, Direction
+from protractile.geometry.section import Direction
 from protractile.geometry.typography import TO_MILLI
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.kinds.model import select_kind

@@ -12,8 +12,9 @@ import numpy as np
 from protractile.analysis.quantities import Quantity, Record
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.damping import closed_contact_damping, closed_contact_modes
-from protractile.dynamics.excitation import HistorySum, MotionLaw, Shaped, resolving_times
+from protractile.dynamics.excitation import resolving_times
 from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.motion_laws import HistorySum, MotionLaw, Shaped
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.axial import lumped_masses
 from protractile.geometry.boom import Boom

@@ -11,7 +11,7 @@ import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from protractile.dynamics.excitation import HistorySum
+from protractile.dynamics.motion_laws import HistorySum
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.telescoping import drives_of

@@ -1,21 +1,18 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables of design results: static states, modes, motion, drives, pads, stresses, fatigue."""
+"""Tables of design results: static states, modes, motion, pads, stresses, fatigue."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-import numpy as np
-
 from protractile.analysis.quantities import records
 from protractile.analysis.rows import BEAM, FARTHEST, INITIAL, MOTION, REST, Row, Rows
-from protractile.geometry.cylinder import force_name
 from protractile.geometry.typography import ROUND_OFF, without_round_off
-from protractile.runs.case.motions import frame_motion
 from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
 from protractile.runs.pipeline.results import Results
+from protractile.runs.report.drive_tables import drive_table, luffing_table, stick_slip_table
 from protractile.runs.report.figure_context import extension_note
 from protractile.runs.report.labels import amount_of, label, place, times
 from protractile.runs.report.model_tables import metric_columns
@@ -248,103 +245,6 @@ def peak_table(results: Results) -> Table:
     columns = _side_by_side("maximum", texts, main)
     notes = ("Absolute values. In brackets: ratio to the static value under the maximum load.",)
     return Table("Forces and deflections in motion", columns, notes, "peaks")
-
-
-def drive_table(results: Results) -> Table:
-    """Return the table of forces, powers and work of drives."""
-    data = results.trajectories
-    rows = [
-        (str(model), inner, *_effort(results, str(model), suffix))
-        for suffix, inner in results.case.driven_segments.items()
-        if f"drive_power{suffix}" in data
-        for model in data["model"].values
-    ]
-    columns = (
-        "model",
-        "drive of",
-        ("against friction:\nmean", ".3g", "kN"),
-        ("at most", ".3g", "kN"),
-        ("power, at most", ".3g", "kW"),
-        ("work", ".3g", "kJ"),
-    )
-    notes = (
-        "Forces against the friction of the pads during telescoping. Power and work include "
-        "contact forces on sloping segments and axial loads.",
-    )
-    return Table.of_rows("drives", "Drives", columns, rows, notes)
-
-
-def luffing_table(results: Results) -> Table | None:
-    """Return the table of cylinder lengths and forces in luffing; None without luffing."""
-    boom, data = results.boom, results.trajectories
-    foot = next((one.foot for one in boom.segments if one.foot), None)
-    if results.case.luff is None or not boom.cylinders or foot is None:
-        return None
-    frame = frame_motion(results.case, boom.segments)
-    time, rows = data["time"].values, []
-    turns = frame.luff_angle(time) - frame.luff_angle(time[0])
-    for position, cylinder in enumerate(boom.cylinders, start=1):
-        luffed = [cylinder.luffed(turn, foot) for turn in turns.tolist()]
-        lengths = np.array([one.length for one in luffed])
-        arms = cylinder.arm(foot) / np.array([one.arm(foot) for one in luffed])
-        for model in data["model"].values:
-            force = arms * data[force_name(position)].sel(model=model).values
-            ends = lengths[0], lengths[-1], np.ptp(lengths)
-            rows.append((str(model), position, *ends, force.min(), force.max()))
-    columns = (
-        "model",
-        "cylinder",
-        ("length at\nthe start", ".4g", "m"),
-        ("at the end", ".4g", "m"),
-        ("stroke", ".4g", "m"),
-        ("least force", ".4g", "kN"),
-        ("largest force", ".4g", "kN"),
-    )
-    notes = ("Compression is positive. Forces refer to the lever arm at the current angle.",)
-    return Table.of_rows("luffing", "Luffing", columns, rows, notes)
-
-
-def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, float, float]:
-    """Return a drive's mean and maximum friction force in N, maximum power in W and work in J."""
-    data = results.trajectories.sel(model=model)
-    extension, friction, power = (
-        np.asarray(data[name + suffix].values, dtype=float)
-        for name in ("extension", "drive_friction", "drive_power")
-    )
-    moving = np.diff(extension, prepend=extension[0]) != 0.0
-    mean = float(np.abs(friction[moving]).mean()) if moving.any() else 0.0
-    work = float((power[1:] * np.diff(data["time"].values)).sum())
-    return mean, float(np.abs(friction).max()), float(power.max()), work
-
-
-def stick_slip_table(results: Results) -> Table:
-    """Return the table of stick-slip results of elastic drives."""
-    rows = [
-        (model, inner, model_summary.stick_slip[name])
-        for suffix, inner in results.case.driven_segments.items()
-        for model, model_summary in results.summary.models.items()
-        if (name := f"drive_force{suffix}") in model_summary.stick_slip
-    ]
-    motions = [one for *_, one in rows]
-    columns = (
-        Column("model", [model for model, *_ in rows]),
-        Column("drive of", [inner for _, inner, _ in rows]),
-        Column("force:\nmean", [one.mean for one in motions], ".3g", "kN"),
-        Column("at most", [one.peak for one in motions], ".3g", "kN"),
-        Column("sticks", [one.sticks for one in motions], unit="times"),
-        Column("slips by at most", [one.slip for one in motions], ".3g", "mm"),
-        Column("lag at the end", [one.behind for one in motions], ".3g", "mm"),
-        Column("at most", [one.speed for one in motions], ".3g", "m/s"),
-        Column("at most", [one.acceleration for one in motions], ".3g", "m/s²"),
-    )
-    notes = (
-        "Force: against friction, weight and inertia. Sticks: number of stops during telescoping. "
-        "Slips: largest advance in one slip. Speed and acceleration of the segment. "
-        "The boom moves as with a rigid drive. Friction follows the mean contact force of each "
-        "output step; "
-        "where pads chatter faster, use a smaller output_step.",
-    )
-    return Table("Elastic drives: stick-slip", columns, notes, "stick-slip")
 
 
 def record_tables(results: Results) -> Iterator[Table]:

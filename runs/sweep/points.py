@@ -16,9 +16,9 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+from protractile.geometry.box import BoxSection
 
 from protractile.geometry.fields import names_of
-from protractile.geometry.section import BoxSection
 from protractile.geometry.typography import choices
 from protractile.runs.case import reading as case_file
 from protractile.runs.case import toml

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.calibration import (
     effective_stiffness,
@@ -16,7 +17,6 @@ from protractile.beam_model.calibration import (
 from protractile.beam_model.finite_element import finite_element_segment
 from protractile.geometry.boom import Material, Segment, Support
 from protractile.geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
-from protractile.geometry.section import BoxSection
 from tests.beam_model.test_section_fields import MODES, system
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)

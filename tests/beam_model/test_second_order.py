@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.boom_modes import ContactPlace, StationCompliance, critical_factor
 from protractile.beam_model.component import Motion, SegmentModel
@@ -28,7 +29,6 @@ from protractile.geometry.boom import (
 )
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import octagon
-from protractile.geometry.section import BoxSection
 from tests.touching import touching
 
 Build = Callable[[Boom], Sequence[SegmentModel]]

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 from scipy.integrate import quad
 
 from protractile.beam_model.boom_modes import critical_factor
@@ -20,7 +21,6 @@ from protractile.geometry.axial import with_compression
 from protractile.geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import octagon
-from protractile.geometry.section import BoxSection
 from protractile.runs.case.kinds.finite_element import BeamElements
 from studies import taper
 from studies.reference_models.statics import static_response

@@ -22,10 +22,11 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
-from protractile.dynamics.excitation import History, HistorySum, PiecewiseLinear, SCurve
+from protractile.dynamics.excitation import History, PiecewiseLinear
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
+from protractile.dynamics.motion_laws import HistorySum, SCurve
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, BoomError, Joint, PointMass, Segment, Stop, Support
 from protractile.geometry.joint import Carrier, Drive

@@ -9,21 +9,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from protractile.dynamics.arrays import Array
-from protractile.dynamics.excitation import (
-    HistorySum,
-    MotionLaw,
-    PiecewiseLinear,
-    Ramp,
-    SCurve,
-    Shaped,
-    Spline,
-    Stroke,
-)
+from protractile.dynamics.excitation import PiecewiseLinear, Ramp
 from protractile.dynamics.frame_motion import FrameAcceleration, FrameMotion
 from protractile.dynamics.gap_system import GapSystem, Observer
 from protractile.dynamics.hanging_load import HangingLoad, Pendulum
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import build_motion
+from protractile.dynamics.motion_laws import HistorySum, MotionLaw, SCurve, Shaped, Spline, Stroke
 from protractile.dynamics.trajectory import Trajectory
 from tests.dynamics.test_telescoping import lossy
 from tests.modal import modal_system

@@ -10,10 +10,11 @@ from scipy.linalg import eigh
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
-from protractile.dynamics.excitation import PiecewiseLinear, SCurve
+from protractile.dynamics.excitation import PiecewiseLinear
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
+from protractile.dynamics.motion_laws import SCurve
 from protractile.dynamics.travel import MovingAxialForce, RowTable, Travel
 from tests.dynamics.reference import errors_in_the_step, runge_kutta, slopes
 from tests.modal import modal_system

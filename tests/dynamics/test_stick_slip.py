@@ -10,7 +10,8 @@ from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
 from protractile.dynamics.arrays import Array
-from protractile.dynamics.excitation import PiecewiseLinear, SCurve, Stroke
+from protractile.dynamics.excitation import PiecewiseLinear
+from protractile.dynamics.motion_laws import SCurve, Stroke
 from protractile.dynamics.stick_slip import DriveMotion, ElasticDrive, move_segment
 from protractile.runs.pipeline.drives import critical_speed
 

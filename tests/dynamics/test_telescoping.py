@@ -12,18 +12,11 @@ import pytest
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.contact import ContactLaw, DryFriction, PowerContact
 from protractile.dynamics.equilibrium import equilibrium
-from protractile.dynamics.excitation import (
-    Excitation,
-    History,
-    HistorySum,
-    PiecewiseLinear,
-    Ramp,
-    SCurve,
-    Stroke,
-)
+from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp
 from protractile.dynamics.gap_system import GapSystem, Observer
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
+from protractile.dynamics.motion_laws import HistorySum, SCurve, Stroke
 from protractile.dynamics.travel import RowTable, Travel
 from tests.dynamics.reference import end_of, table_slope, with_rates
 from tests.dynamics.test_moving_thrust import pressed_along

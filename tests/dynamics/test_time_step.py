@@ -15,11 +15,12 @@ from protractile.dynamics.contact import ContactLaw, DryFriction, PowerContact
 from protractile.dynamics.contact_table import TableContact
 from protractile.dynamics.energy import check_energy
 from protractile.dynamics.equilibrium import equilibrium
-from protractile.dynamics.excitation import Excitation, PiecewiseLinear, SCurve, Sine, Stroke
+from protractile.dynamics.excitation import Excitation, PiecewiseLinear, Sine
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem, Observer
 from protractile.dynamics.integrator import AdaptiveStep, FixedStep
 from protractile.dynamics.motion import Motion
+from protractile.dynamics.motion_laws import SCurve, Stroke
 from studies.reference_models.impacting_beam import ELEMENTS, HEIGHT, falling, moreau_jean
 from tests.dynamics.reference import (
     end_of,

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.excitation import PiecewiseLinear
 from protractile.geometry.axial import (
@@ -24,7 +25,6 @@ from protractile.geometry.boom import (
     Support,
 )
 from protractile.geometry.joint import Carrier, Drive
-from protractile.geometry.section import BoxSection
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)

@@ -17,6 +17,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from protractile.geometry.box import BoxSection
 from scipy.spatial import cKDTree
 
 from protractile.geometry.arrays import Array, Indices
@@ -30,7 +31,7 @@ from protractile.geometry.mesh import (
 )
 from protractile.geometry.plating import add_thickness, plain_thickness
 from protractile.geometry.refinement import RefinementZone, refinement_zones
-from protractile.geometry.section import COMPONENT, BoxSection, Section
+from protractile.geometry.section import COMPONENT, Section
 from tests.geometry.test_polygon import ALL, regular
 from tests.shell_model.booms import box_segment
 

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.polygon import PolygonSection, closed_polygon
 from protractile.geometry.profiles import hexagon, octagon, u_section
-from protractile.geometry.section import BoxSection, Section
+from protractile.geometry.section import Section
 from protractile.geometry.taper import check_alike, interpolate_section
 
 TRAPEZOID = PolygonSection(

@@ -7,16 +7,10 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
+from protractile.geometry.box import BoxSection, infer_inner_section, infer_outer_section
 
 from protractile.geometry.polygon import PolygonSection, ShearFlow
-from protractile.geometry.section import (
-    BoxSection,
-    Direction,
-    Section,
-    SectionError,
-    infer_inner_section,
-    infer_outer_section,
-)
+from protractile.geometry.section import Direction, Section, SectionError
 from protractile.geometry.walls import free_room
 from studies.reference_models.statics import shear_centre
 from tests.geometry.test_polygon import ALL, HEXAGON

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import Ramp, ReleasedLoad, Step
@@ -21,7 +22,6 @@ from protractile.geometry.boom import (
     Support,
 )
 from protractile.geometry.observation import Observation
-from protractile.geometry.section import BoxSection
 from protractile.geometry.support_check import check_contacts_at_rest
 from tests.space import in_space
 

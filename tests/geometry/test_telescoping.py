@@ -5,8 +5,9 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from protractile.geometry.box import BoxSection
 
-from protractile.dynamics.excitation import SCurve
+from protractile.dynamics.motion_laws import SCurve
 from protractile.geometry.boom import (
     Boom,
     BoomError,
@@ -20,7 +21,6 @@ from protractile.geometry.boom import (
 )
 from protractile.geometry.fit import room
 from protractile.geometry.joint import Drive
-from protractile.geometry.section import BoxSection
 
 BASE = BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 FLY = BoxSection(height=0.34, width=0.24, flange=0.006, web=0.005)

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection, infer_inner_section
 
 from protractile.dynamics.contact import PowerContact
 from protractile.geometry.boom import (
@@ -22,7 +23,7 @@ from protractile.geometry.boom import (
 from protractile.geometry.joint import PadSide
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.profiles import hexagon, octagon, u_section
-from protractile.geometry.section import BoxSection, Section, infer_inner_section
+from protractile.geometry.section import Section
 from protractile.geometry.walls import free_room, trapezoids
 from tests.geometry.test_polygon import HEXAGON, offset_corners
 

@@ -67,7 +67,7 @@ def in_a_process(
 
 
 def test_check_prints_inferred_boxes(protractile: Protractile) -> None:
-    """Reference: non-regression, the boxes that :mod:`.geometry.section` infers."""
+    """Reference: non-regression, the boxes that :mod:`.geometry.box` infers."""
     answer = protractile("check case.toml")
     assert (answer.status, answer.err) == (0, "")
     for part in (

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.analysis.curves import HIGH, LOW
 from protractile.analysis.measure import measure_boom
@@ -30,7 +31,6 @@ from protractile.dynamics.excitation import Step
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Load, Material, Segment, Support
 from protractile.geometry.profiles import hexagon
-from protractile.geometry.section import BoxSection
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase, convert_to_si
 from protractile.runs.case.schema import Case

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.analysis.equilibria import equilibria
 from protractile.analysis.measure import measure_boom
@@ -22,7 +23,6 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.line import Line
 from protractile.geometry.boom import Boom, Support
 from protractile.geometry.material import Material
-from protractile.geometry.section import BoxSection
 from protractile.geometry.segment import Segment
 from protractile.runs import CASES
 from protractile.runs.case import reading

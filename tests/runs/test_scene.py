@@ -10,14 +10,14 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
+from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.contact import PowerContact
-from protractile.dynamics.excitation import SCurve
 from protractile.dynamics.line import Line
+from protractile.dynamics.motion_laws import SCurve
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.boom import Boom, Material, Segment, Stop, Support
 from protractile.geometry.joint import Drive
-from protractile.geometry.section import BoxSection
 from protractile.runs.case.build import build_boom
 from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion
 from protractile.runs.report import theme

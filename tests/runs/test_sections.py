@@ -7,10 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.geometry.boom import Boom, Collar, Diaphragm, Segment
 from protractile.geometry.profiles import hexagon, octagon, u_section
-from protractile.geometry.section import BoxSection, Section
+from protractile.geometry.section import Section
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import load
 from protractile.runs.pipeline.models import build

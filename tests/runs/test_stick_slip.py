@@ -11,10 +11,11 @@ from matplotlib import rc_context
 
 from protractile.cases import change, run_case
 from protractile.dynamics.contact import PowerContact
-from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, SCurve, Sine
+from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem, Observer
 from protractile.dynamics.integrator import simulate
+from protractile.dynamics.motion_laws import SCurve
 from protractile.dynamics.trajectory import Trajectory
 from protractile.dynamics.travel import RowTable, Travel
 from protractile.runs.case.build import build_boom
@@ -25,9 +26,10 @@ from protractile.runs.cautions.response import lag
 from protractile.runs.pipeline.residual_vibration import ResidualVibration, farthest_from_rest
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.report import theme
+from protractile.runs.report.drive_tables import stick_slip_table
 from protractile.runs.report.figure_context import FigureContext
 from protractile.runs.report.force_figures import drives
-from protractile.runs.report.result_tables import result_tables, stick_slip_table
+from protractile.runs.report.result_tables import result_tables
 from tests.runs.case_texts import edited, read_case, refusal, shipped
 from tests.runs.summaries import printed_check
 from tests.runs.test_drive import DRAWN, ROPE

@@ -13,11 +13,11 @@ from scipy.integrate import solve_ivp, trapezoid
 
 from protractile.beam_model.lines import lines
 from protractile.cases import change, run_case
-from protractile.dynamics.excitation import SCurve, Stroke
 from protractile.dynamics.frame_motion import FrameMotion
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import build_motion
+from protractile.dynamics.motion_laws import SCurve, Stroke
 from protractile.geometry.boom import Boom, Material, PointMass, Segment
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.joint import Drive
@@ -40,7 +40,7 @@ from protractile.runs.pipeline.turning import (
     turning_lines,
 )
 from protractile.runs.report.crane_position import CranePosition
-from protractile.runs.report.result_tables import luffing_table
+from protractile.runs.report.drive_tables import luffing_table
 from tests.runs.case_texts import read_case, refusal, refused, shipped
 from tests.runs.summaries import static_tip
 

@@ -9,11 +9,12 @@ import pytest
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
+from protractile.geometry.box import BoxSection
 
 from protractile.geometry.boom import PointMass, Support
 from protractile.geometry.mesh import mesh_segment
 from protractile.geometry.plating import add_thickness
-from protractile.geometry.section import BoxSection, Section
+from protractile.geometry.section import Section
 from protractile.shell_model.segment.cross_section import Row
 from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from protractile.shell_model.segment.solver import ShiftedSolver

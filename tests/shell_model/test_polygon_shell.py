@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
@@ -23,7 +24,7 @@ from protractile.geometry.boom import (
 )
 from protractile.geometry.contact_places import ContactInterval, ContactLine
 from protractile.geometry.polygon import PolygonSection
-from protractile.geometry.section import BoxSection, Section
+from protractile.geometry.section import Section
 from protractile.shell_model.contact.wall_rows import CornerLines, Wall, WallPoints
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.symmetry import SymmetryReduction

@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.finite_element import Theory, finite_element_segment
 from protractile.geometry.boom import Direction, PointMass, Support
 from protractile.geometry.contact_places import ContactInterval
-from protractile.geometry.section import BoxSection
 from protractile.shell_model.contact.wall_rows import CornerLines
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.symmetry import SymmetryReduction

@@ -8,13 +8,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from mpi4py import MPI
+from protractile.geometry.box import BoxSection
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Collar, Diaphragm, PadSize, Support
 from protractile.geometry.mesh import diaphragm_breaks, mesh_segment
 from protractile.geometry.plating import PlatedMesh, add_thickness
 from protractile.geometry.profiles import octagon
-from protractile.geometry.section import BoxSection, Section
+from protractile.geometry.section import Section
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment

@@ -13,10 +13,10 @@ from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
-from protractile.dynamics.excitation import SCurve, Stroke
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
+from protractile.dynamics.motion_laws import SCurve, Stroke
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import Thrust, with_compression
