@@ -18,7 +18,7 @@ from protractile.beam_model.elements import GAUSS, Theory, element, quadrature
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import SAME_PLACE, Boom, BoomError, Segment
 from protractile.geometry.contact_places import load_places
-from protractile.geometry.segment import APART
+from protractile.geometry.segment_checks import APART
 
 # Distance from another node, as a fraction of a segment's length, within which a mass or a jump of
 # the axial force has no node of its own: eigenvalues lose digits with the inverse fourth power of

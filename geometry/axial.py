@@ -18,9 +18,10 @@ import numpy as np
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.compression import NO_COMPRESSION, Compression
-from protractile.geometry.fields import In, Number, Place, SegmentRef, part, resolve_segments
+from protractile.geometry.fields import In, Number, part
 from protractile.geometry.joint import Joint, sample_times
 from protractile.geometry.load import LoadedSegment
+from protractile.geometry.place import Place, SegmentRef, resolve_segments
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import SAME_PLACE, PointMass, Segment
 from protractile.geometry.taper import mean_area

@@ -13,11 +13,12 @@ from functools import cached_property
 from protractile.geometry.axial import AxialChange, moving_force_places
 from protractile.geometry.boom_checks import check_boom
 from protractile.geometry.cylinder import Cylinder
-from protractile.geometry.fields import BoomError, check_kind, format_value, resolve_segments
+from protractile.geometry.fields import BoomError, check_kind, format_value
 from protractile.geometry.joint import Joint, PadSize, SlidePad, Stop
 from protractile.geometry.load import Load
 from protractile.geometry.material import Material
 from protractile.geometry.observation import Observation, Quantity
+from protractile.geometry.place import resolve_segments
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import SAME_PLACE, Lateral, PointMass, Segment
 from protractile.geometry.station import Station, stations

@@ -15,6 +15,7 @@ from protractile.geometry.load import PartialLoad
 from protractile.geometry.observation import KINDS, SPATIAL_QUANTITIES
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import SAME_PLACE
+from protractile.geometry.segment_checks import check_segment
 from protractile.geometry.support_check import check_supported
 from protractile.geometry.telescoping import check_drives
 
@@ -32,7 +33,7 @@ def check_boom(boom: Boom) -> None:
         BoomError: they are not; see :class:`.geometry.boom.Boom`.
     """
     for number, segment in enumerate(boom.segments):
-        segment.check(f"segments[{number}]")
+        check_segment(segment, f"segments[{number}]")
     for number, joint in enumerate(boom.joints):
         _check_joint(boom, f"joints[{number}]", joint)
     _check_order(boom)

@@ -18,13 +18,12 @@ from protractile.geometry.fields import (
     In,
     NotNegative,
     Number,
-    Place,
     Positive,
-    SegmentRef,
     is_number,
     part,
 )
 from protractile.geometry.load import LoadedSegment
+from protractile.geometry.place import Place, SegmentRef
 from protractile.geometry.support import Pin, Support
 
 if TYPE_CHECKING:

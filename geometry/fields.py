@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Types of the fields of a boom's parts: numbers with limits and units, names, positions along x.
+"""Types of the fields of a boom's parts: numbers with limits and units, names, laws.
 
 Parts are pydantic dataclasses for Python and for case files. Field names are the keys in case
 files. The attribute docstring of a field is its description in the JSON Schema and in messages.
@@ -8,18 +8,15 @@ files. The attribute docstring of a field is its description in the JSON Schema 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import field as dataclass_field
-from dataclasses import fields, is_dataclass, replace
+from dataclasses import is_dataclass
 from itertools import pairwise
-from numbers import Integral, Real
+from numbers import Real
 from typing import (
-    TYPE_CHECKING,
     Annotated,
     Any,
-    Literal,
     LiteralString,
-    Protocol,
     TypeVar,
     dataclass_transform,
     get_args,
@@ -27,21 +24,18 @@ from typing import (
 
 from pydantic import (
     AfterValidator,
-    BeforeValidator,
     ConfigDict,
     Field,
     GetCoreSchemaHandler,
     GetJsonSchemaHandler,
     ValidationError,
-    WithJsonSchema,
 )
 from pydantic.dataclasses import dataclass
 from pydantic.fields import FieldInfo
 from pydantic.json_schema import JsonSchemaValue
-from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
+from pydantic_core import CoreSchema, PydanticCustomError, core_schema
 
 from protractile.dynamics.contact import ContactLaw
-from protractile.geometry.typography import choices
 
 
 class BoomError(ValueError):
@@ -278,36 +272,6 @@ def check_kind(where: str, value: Any, kind: type) -> None:
         raise BoomError(where, f"must be a {kind.__name__}, got {format_value(value)}")
 
 
-@part
-class Distance:
-    """Distance from an end of a segment or of an overlap."""
-
-    tail: Annotated[NotNegative, In("m")] | None = None
-    """the distance in m from the start of the segment, or of a joint's inner segment"""
-    head: Annotated[NotNegative, In("m")] | None = None
-    """the distance in m from the end of the segment, or of a joint's outer segment"""
-
-
-# Names of the ends as places.
-End = Literal["tail", "head"]
-
-
-def _place(value: Any) -> Any:
-    """Validate a number or a distance. Errors of a union type would be unreadable."""
-    if isinstance(value, Distance):
-        return value
-    if is_number(value):
-        if not is_finite(value):
-            raise PydanticKnownError("finite_number")
-        return float(value)
-    distances = {value: 0.0} if isinstance(value, str) else value
-    if isinstance(distances, Mapping) and len(distances) == 1:
-        ((end, distance),) = distances.items()
-        if end in get_args(End) and is_number(distance) and 0.0 <= distance < math.inf:
-            return Distance(**{end: distance})
-    raise PydanticCustomError("place", "a place")
-
-
 def is_number(value: Any) -> bool:
     """Return whether a value is a number; booleans are not."""
     return isinstance(value, int | float) and not isinstance(value, bool)
@@ -339,23 +303,6 @@ def rising(what: str, falling: str = "", least: int = 1) -> AfterValidator:
         return pairs
 
     return AfterValidator(check)
-
-
-class _AnyPlace:
-    """Validation of a position: x, or a distance from an end."""
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        check = BeforeValidator(_place, json_schema_input_type=Number | End | Distance)
-        return handler.generate_schema(Annotated[float | Distance, check])
-
-
-# Type of a position: x in m. Until the part is in a boom, it may be a distance from an end.
-Place = Annotated[float, _AnyPlace(), In("m")]
-
-# Type of the segment of a part: its name, or its index if the part is in a boom.
-SegmentRef = Annotated[Any, WithJsonSchema({"type": "string"})]
 
 
 class Having:
@@ -394,63 +341,3 @@ def _is_history(value: Any) -> Any:
 LawRef = Annotated[ContactLaw, Having("contact_law", "with_clearance", optional=False)]
 LawOrNone = Annotated[ContactLaw | None, Having("contact_law", "with_clearance")]
 HistoryRef = Annotated[Any, AfterValidator(_is_history)]
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
-_Part = TypeVar("_Part", bound="DataclassInstance")
-
-
-def at(place: float | Distance, tail: float, head: float) -> float:
-    """Return the x in m of a position on a segment with the ends ``tail`` and ``head`` in m."""
-    if not isinstance(place, Distance):
-        return place
-    if place.head is not None:
-        return head - place.head
-    assert place.tail is not None
-    return tail + place.tail
-
-
-def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
-    """Return a part with x in m instead of distances from the ends ``tail`` and ``head`` in m."""
-    resolved: dict[str, Any] = {}
-    for field in fields(part):
-        value = getattr(part, field.name)
-        if isinstance(value, Distance):
-            resolved[field.name] = at(value, tail, head)
-        elif isinstance(value, tuple) and any(isinstance(one, Distance) for one in value):
-            resolved[field.name] = tuple(at(one, tail, head) for one in value)
-    return replace(part, **resolved) if resolved else part
-
-
-class _Spanned(Protocol):
-    """Name of a segment, and x of its ends in m."""
-
-    @property
-    def name(self) -> str: ...
-    @property
-    def start(self) -> float: ...
-    @property
-    def end(self) -> float: ...
-
-
-def resolve_segments(part: _Part, where: str, segments: Sequence[_Spanned]) -> _Part:
-    """Return a part with indices of segments instead of names, and x in m instead of distances.
-
-    Args:
-        part: joint, load, stop, observation or cylinder.
-        where: attribute of the boom with this part, for messages.
-
-    Raises:
-        BoomError: a segment is unknown.
-    """
-    names = [segment.name for segment in segments]
-    for key in ("outer", "inner", "segment"):
-        name = getattr(part, key, 0)
-        if isinstance(name, str) and name in names:
-            part = replace(part, **{key: names.index(name)})
-        elif not (isinstance(name, Integral) and 0 <= int(name) < len(names)):
-            what = f"{format_value(name)} is no segment; give {choices(names)}"
-            raise BoomError(f"{where}.{key}", what)
-    outer, inner = (getattr(part, key, getattr(part, "segment", 0)) for key in ("outer", "inner"))
-    return resolve_distances(part, segments[inner].start, segments[outer].end)

@@ -24,11 +24,10 @@ from protractile.geometry.fields import (
     LawRef,
     Length,
     NotNegative,
-    Place,
     Positive,
-    SegmentRef,
     part,
 )
+from protractile.geometry.place import Place, SegmentRef
 from protractile.geometry.section import EACH_SIDE, Direction, Side
 
 PadSide = Literal["above", "below", "left", "right"]

@@ -7,7 +7,8 @@ from collections.abc import Mapping
 from typing import Protocol
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.fields import Flag, HistoryRef, Number, Place, SegmentRef, part
+from protractile.geometry.fields import Flag, HistoryRef, Number, part
+from protractile.geometry.place import Place, SegmentRef
 from protractile.geometry.section import Direction
 
 

@@ -6,7 +6,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal, NamedTuple
 
-from protractile.geometry.fields import Name, Place, SegmentRef, part
+from protractile.geometry.fields import Name, part
+from protractile.geometry.place import Place, SegmentRef
 
 # Quantities that a case may request.
 Recorded = Literal["deflection", "rotation", "velocity", "acceleration", "lateral", "twist"]

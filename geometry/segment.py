@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from itertools import combinations, pairwise, product
 from typing import Annotated, Any
 
 import numpy as np
@@ -21,32 +20,25 @@ from protractile.geometry.fields import (
     In,
     NotNegative,
     Number,
-    Place,
     Positive,
     check_kind,
     format_value,
     part,
-    resolve_distances,
 )
 from protractile.geometry.material import Material
-from protractile.geometry.section import COMPONENT, Direction, Section, SectionError
+from protractile.geometry.place import Place, resolve_distances
+from protractile.geometry.section import Direction, Section
 from protractile.geometry.stiffeners import Collar, Diaphragm
-from protractile.geometry.support import Support, check_support
+from protractile.geometry.support import Support
 from protractile.geometry.taper import (
     areas,
-    check_alike,
     interpolate_section,
     mean_area,
     middle_section,
 )
-from protractile.geometry.typography import choices
 
 # Fraction of a segment's length below which two x are equal: far below any part, above round-off.
 SAME_PLACE = 1.0e-10
-
-# Minimum distance of supports as a fraction of a segment's length. The stiffness of an element
-# between them is proportional to the inverse cube of its length and would cause loss of digits.
-APART = 1.0e-4
 
 
 @part
@@ -347,118 +339,6 @@ class Segment:
                 load=self.load,
             ),
         )
-
-    def check(self, where: str) -> None:
-        """Check the data of the segment.
-
-        Args:
-            where: attribute of the boom, for example ``segments[1]``.
-
-        Raises:
-            BoomError: the length is not positive, or a support, mass, collar or diaphragm is
-                invalid or not on the segment.
-        """
-        if not self.start < self.end:
-            raise BoomError(
-                f"{where}.start",
-                f"must run from a smaller to a larger x, got [{self.start:g}, {self.end:g}] m",
-            )
-        self._check_taper(f"{where}.head_section")
-        for support in self.supports:
-            self.check_place(f"{where}.supports", support.x)
-            check_support(f"{where}.supports", support)
-        places, near = sorted(support.x for support in self.supports), APART * self.length
-        if any(right - left <= near for left, right in pairwise(places)):
-            raise BoomError(
-                f"{where}.supports",
-                f"two are within {near:g} m of one another; give one, or move them farther apart",
-            )
-        for mass in self.masses:
-            self.check_place(f"{where}.masses", mass.x)
-        self._check_collars(where)
-        self._check_diaphragms(where)
-
-    def _check_taper(self, where: str) -> None:
-        if self.head_section is None:
-            return
-        if self.section is None:
-            raise BoomError(where, "a segment tapers from a section; give section, at its tail")
-        try:
-            check_alike(self.section, self.head_section)
-        except SectionError as error:
-            raise BoomError(where, str(error)) from None
-
-    def _check_collars(self, where: str) -> None:
-        for number, collar in enumerate(self.collars):
-            key = f"{where}.collars[{number}]"
-            self._check_strips(key, collar)
-            self._check_thickness(key, collar.thickness)
-            if not collar.length > SAME_PLACE * self.length:
-                raise BoomError(
-                    f"{key}.span",
-                    "must run from a smaller to a larger x, got "
-                    f"[{collar.span[0]:g}, {collar.span[1]:g}] m",
-                )
-            for x in collar.span:
-                self.check_place(f"{key}.span", x)
-        for one, other in combinations(self.collars, 2):
-            start = max(one.span[0], other.span[0])
-            common = min(one.span[1], other.span[1]) - start
-            if common > SAME_PLACE * self.length and self._share_wall(one, other):
-                raise BoomError(
-                    f"{where}.collars",
-                    f"two lie on one another from {start:g} m on; give one of the thickness of "
-                    "both there",
-                )
-
-    def _share_wall(self, one: Collar, other: Collar) -> bool:
-        """Return whether two collars cover a common part of a wall."""
-        if self.section is None:
-            return True
-        return any(
-            a.wall == b.wall and min(a.high, b.high) - max(a.low, b.low) > self.widest.near
-            for a, b in product(one.strips(self.widest), other.strips(self.widest))
-        )
-
-    def _check_strips(self, where: str, collar: Collar) -> None:
-        if self.section is None:
-            return
-        plates = {plate.name: plate for plate in self.widest.plates}
-        for name in collar.walls:
-            if name not in plates:
-                raise BoomError(
-                    f"{where}.walls",
-                    f"{name!r} is no wall of {self.name!r}; give {choices([*plates])}",
-                )
-        if collar.across is not None:
-            low, high = collar.across
-            half = 0.5 * min(plates[name].length for name in collar.walls or plates)
-            if not low < high <= half * (1.0 + SAME_PLACE):
-                raise BoomError(
-                    f"{where}.across",
-                    "must run from a smaller to a larger distance from the middle of the wall, at "
-                    f"most {half:.6g} m, got [{low:g}, {high:g}] m",
-                )
-
-    def _check_diaphragms(self, where: str) -> None:
-        for number, diaphragm in enumerate(self.diaphragms):
-            key = f"{where}.diaphragms[{number}]"
-            self._check_thickness(key, diaphragm.thickness)
-            self.check_place(f"{key}.x", diaphragm.x)
-        places = sorted(diaphragm.x for diaphragm in self.diaphragms)
-        if any(right - left <= SAME_PLACE * self.length for left, right in pairwise(places)):
-            raise BoomError(f"{where}.diaphragms", "a place is given twice; give each once")
-
-    def _check_thickness(self, where: str, thickness: float) -> None:
-        if self.section is None:
-            return
-        ends = self.section, self.head_section or self.section
-        half = 0.5 * min(end.size(axis) for end in ends for axis in COMPONENT)
-        if thickness > half:
-            raise BoomError(
-                f"{where}.thickness",
-                f"must be at most {half:.6g} m, half of the box's smallest size, got {thickness:g}",
-            )
 
     def check_place(self, where: str, x: float) -> None:
         """Check that a position is on the segment.

@@ -8,16 +8,8 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from pydantic import Field
 
-from protractile.geometry.fields import (
-    Category,
-    In,
-    Length,
-    Name,
-    NotNegative,
-    Place,
-    Positive,
-    part,
-)
+from protractile.geometry.fields import Category, In, Length, Name, NotNegative, Positive, part
+from protractile.geometry.place import Place
 from protractile.geometry.section import COMPONENT, Direction, Section
 
 

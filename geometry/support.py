@@ -9,7 +9,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from protractile.geometry.fields import BoomError, In, NotNegative, Number, Place, Positive, part
+from protractile.geometry.fields import BoomError, In, NotNegative, Number, Positive, part
+from protractile.geometry.place import Place
 from protractile.geometry.section import Direction
 
 

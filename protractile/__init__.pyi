@@ -4,7 +4,7 @@
 # What a boom is made of
 from protractile.geometry.boom import Boom as Boom
 from protractile.geometry.cylinder import Cylinder as Cylinder
-from protractile.geometry.fields import Distance as Distance
+from protractile.geometry.place import Distance as Distance
 from protractile.geometry.joint import Drive as Drive
 from protractile.geometry.joint import Joint as Joint
 from protractile.geometry.joint import PadSize as PadSize

@@ -13,16 +13,10 @@ from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, BoomError, Direction, Segment, Stop
-from protractile.geometry.fields import (
-    Distance,
-    at,
-    check_kind,
-    check_numbers,
-    error_in_python,
-    resolve_segments,
-)
+from protractile.geometry.fields import check_kind, check_numbers, error_in_python
 from protractile.geometry.joint import BareStop
 from protractile.geometry.load import AngularAcceleration, Load, Moment, PartialLoad
+from protractile.geometry.place import Distance, at, resolve_segments
 from protractile.geometry.typography import choices
 from protractile.runs.case.load_tables import AxialTable, LoadTable, PayloadTable, build_history
 from protractile.runs.case.schema import Case, GravityTable, VelocityTable

@@ -14,8 +14,8 @@ from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, BoomError, Joint
 from protractile.geometry.boom_checks import check_order
 from protractile.geometry.cylinder import Cylinder, EarthPoint
-from protractile.geometry.fields import resolve_distances
 from protractile.geometry.joint import BareJoint
+from protractile.geometry.place import resolve_distances
 from protractile.geometry.support import Support
 from protractile.geometry.support_check import check_contacts_at_rest
 from protractile.runs.case import actions, motions

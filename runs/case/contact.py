@@ -12,17 +12,9 @@ from pydantic.dataclasses import dataclass
 from protractile.dynamics.contact import ContactLaw, PowerContact, restitution_damping
 from protractile.dynamics.contact_table import TableContact
 from protractile.geometry.boom import Direction
-from protractile.geometry.fields import (
-    PART,
-    BoomError,
-    Distance,
-    In,
-    NotNegative,
-    Number,
-    Positive,
-    rising,
-)
+from protractile.geometry.fields import PART, BoomError, In, NotNegative, Number, Positive, rising
 from protractile.geometry.joint import BareJoint, Carrier, Drive
+from protractile.geometry.place import Distance
 from protractile.runs.case.limits import (
     CaseTable,
     Exponent,

@@ -18,11 +18,11 @@ from protractile.geometry.fields import (
     Name,
     NotNegative,
     Number,
-    Place,
     Positive,
     is_number,
     rising,
 )
+from protractile.geometry.place import Place
 from protractile.runs.case.limits import MOST_TIMES, CaseTable, Count, Text, error_at
 
 # Groups of loads with a common factor in a combination.

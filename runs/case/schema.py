@@ -23,7 +23,6 @@ from protractile.geometry.fields import (
     In,
     NotNegative,
     Number,
-    Place,
     Positive,
     is_number,
     rising,
@@ -31,6 +30,7 @@ from protractile.geometry.fields import (
 from protractile.geometry.joint import BareStop
 from protractile.geometry.material import Material
 from protractile.geometry.observation import Observation, Recorded
+from protractile.geometry.place import Place
 from protractile.geometry.support import Support
 from protractile.geometry.units import System, SystemName
 from protractile.runs import clients

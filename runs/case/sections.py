@@ -8,11 +8,10 @@ from functools import reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
-from protractile.geometry.box import BoxSection
 from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 
+from protractile.geometry.box import BoxSection
 from protractile.geometry.fields import (
-    End,
     Few,
     In,
     Length,
@@ -23,6 +22,7 @@ from protractile.geometry.fields import (
     is_number,
 )
 from protractile.geometry.material import Material
+from protractile.geometry.place import End
 from protractile.geometry.polygon import closed_polygon
 from protractile.geometry.profiles import hexagon, octagon, u_section
 from protractile.geometry.section import Section

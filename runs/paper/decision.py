@@ -8,10 +8,14 @@ every processor gives the same verdict.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import ndtr, stdtrit
 
+from protractile.geometry.arrays import Array
 from protractile.runs.paper.verdicts import Judgement
 
 # Least distance from a threshold, in standard errors, that decides a verdict.
@@ -46,3 +50,35 @@ def decide(*parts: Excess) -> tuple[Judgement, float | None]:
     if abs(lowest) < DECISIVE:
         return "undecided", distance
     return ("reproduced" if lowest > 0.0 else "contradicted"), distance
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """Result of a rule. Its fields are those of :class:`.runs.paper.verdicts.Verdict`."""
+
+    verdict: Judgement
+    why: str
+    measured: float | None = None
+    threshold: float | None = None
+    unit: str = ""
+    distance: float | None = None
+
+
+def finding(
+    parts: Sequence[Excess], why: str, measured: float, threshold: float, unit: str
+) -> Finding:
+    """Return the finding on a statement of several parts."""
+    judgement, distance = decide(*parts)
+    return Finding(judgement, why, measured, threshold, unit, distance)
+
+
+def mean_of(samples: Array) -> tuple[float, float]:
+    """Return the mean of samples, and its standard error.
+
+    The error of few samples is larger, so that three errors have the probability of a normal
+    distribution (Student 1908).
+    """
+    error = samples.std(ddof=1) / np.sqrt(samples.size)
+    return float(samples.mean()), float(
+        error * stdtrit(samples.size - 1, ndtr(DECISIVE)) / DECISIVE
+    )

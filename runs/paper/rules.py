@@ -9,17 +9,16 @@ first peak. For later times rules count the members of an ensemble that show a d
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from itertools import combinations, pairwise
 
 import numpy as np
-from scipy.special import ndtr, stdtrit
 
 from protractile.geometry.arrays import Array, Mask
 from protractile.runs.case.kinds.kantorovich import Kantorovich
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.schema import Model
-from protractile.runs.paper.decision import DECISIVE, Excess, decide
+from protractile.runs.paper.decision import DECISIVE, Excess, Finding, finding, mean_of
 from protractile.runs.paper.keys import Keys
 from protractile.runs.paper.run_query import (
     MissingData,
@@ -29,7 +28,7 @@ from protractile.runs.paper.run_query import (
     peak_distances,
 )
 from protractile.runs.paper.statements import STATEMENTS
-from protractile.runs.paper.verdicts import Judgement, Verdict
+from protractile.runs.paper.verdicts import Verdict
 from protractile.runs.pipeline.results import Results
 
 # S1. The two series differ by round-off only: about 1e-14 of the range.
@@ -66,18 +65,6 @@ DOUBLINGS_ERROR = 0.5
 SEGMENTS = 3
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """Result of a rule. Its fields are those of :class:`.runs.paper.verdicts.Verdict`."""
-
-    verdict: Judgement
-    why: str
-    measured: float | None = None
-    threshold: float | None = None
-    unit: str = ""
-    distance: float | None = None
-
-
 def judge(results: Results) -> list[Verdict]:
     """Return the verdicts on all statements that the case of a run names."""
     case = results.case
@@ -107,7 +94,7 @@ def _s1(run: RunQuery) -> Finding:
     before = run.time <= first
     curve = run.curve(five)
     measured = float(np.abs(run.curve(four) - curve)[before].max() / _range(curve))
-    return _finding(
+    return finding(
         [Excess(COINCIDENCE, measured)],
         f"Largest difference of the tips before the first contact at {first:.4f} s.",
         measured,
@@ -127,8 +114,8 @@ def _s2(run: RunQuery) -> Finding:
     run.last_until(INTERVAL)
     four, five = run.members(run.four_terms(), run.five_terms())
     spans = final_differences(four, five, run.time >= run.time[-1] - 1.0)
-    mean, error = _mean(spans)
-    return _finding(
+    mean, error = mean_of(spans)
+    return finding(
         [Excess(mean, DIVERGENCE, error)],
         f"Largest difference of the tips in the last second, in the mean of {spans.size} members, "
         f"with a standard error of {error:.3f}; from {spans.min():.2f} to {spans.max():.2f} in "
@@ -172,7 +159,7 @@ def _s3(run: RunQuery) -> Finding:
     conform, stratify = np.array(early) <= DIVERGENCE, np.array(late) > DIVERGENCE
     divergence = [float(time[diffs > DIVERGENCE].min(initial=np.inf)) for time, diffs in distances]
     median = sorted(divergence)[len(divergence) // 2]
-    return _finding(
+    return finding(
         [_majority(conform), _majority(stratify)],
         f"Members of {len(early)} whose slow peaks conform for {CONFORMITY:g} s, within "
         f"{100.0 * DIVERGENCE:g} % in all models; {100.0 * stratify.mean():.0f} % of {len(late)} "
@@ -198,7 +185,7 @@ def _s4(run: RunQuery) -> Finding:
     smallest = min(rises)
     least = int(np.argmin(rises))
     listed = ", ".join(f"{1e3 * peak:.1f}" for peak in peaks)
-    return _finding(
+    return finding(
         [Excess(smallest, 0.0, PEAK_ERROR)],
         f"First tip peaks {listed} mm. The smallest rise is from {models[least].name!r} to "
         f"{models[least + 1].name!r}; a small change of load or step moves a first peak by up to "
@@ -221,7 +208,7 @@ def _s5(run: RunQuery) -> Finding:
     if not models:
         raise MissingData("The case has no model with play.")
     ratio, name = min((run.peak_height(model) / bonded, model.name) for model in models)
-    return _finding(
+    return finding(
         [Excess(ratio, FUNDAMENTAL, FUNDAMENTAL * PEAK_ERROR)],
         f"First tip peak with play over the {1e3 * bonded:.1f} mm without; the smallest is in "
         f"{name!r}.",
@@ -254,7 +241,7 @@ def _s6(run: RunQuery) -> Finding:
     level = Excess(SAME_LEVEL, max(ratio, 1.0 / ratio), LEVEL_ERROR * SAME_LEVEL)
     greater = Excess(relative["head"], relative["tip"], LEVEL_ERROR * relative["tip"])
     shares = {place: f"{100.0 * part:.0f} %" for place, part in relative.items()}
-    return _finding(
+    return finding(
         [level, greater],
         f"Largest difference up to the first peak at {end:.2f} s: {1e3 * spans['tip']:.1f} mm at "
         f"the tip, {1e3 * spans['head']:.1f} mm at the head, which is {shares['tip']} and "
@@ -286,7 +273,7 @@ def _s7(run: RunQuery) -> Finding:
         float(_largest_differences(run, [model, without], "tip").max()) for model in models
     )
     head = float(differences["head"].max())
-    return _finding(
+    return finding(
         [
             Excess(DIVERGENCE, conform),
             Excess(later, conform),
@@ -315,7 +302,7 @@ def _s8(run: RunQuery) -> Finding:
     run.last_until(INTERVAL)
     summary = run.summary_of(model)
     duration = float(run.time[-1])
-    return _finding(
+    return finding(
         [Excess(INTERVAL, duration)],
         f"{model.name!r} moves for {duration:g} s in {summary.steps} steps with an energy residual "
         f"of {summary.energy_residual:.1e}: what ended the paper's run after 4375 steps "
@@ -342,7 +329,7 @@ def _s9(run: RunQuery) -> Finding:
     if not differences:
         raise MissingData("No two models of the case differ in the contact law alone.")
     measured, a, b = max(differences)
-    return _finding(
+    return finding(
         [Excess(CLEAR_INFLUENCE, measured, PEAK_ERROR)],
         f"Difference of the first tip peaks of {a!r} and {b!r}, whose exponents differ.",
         100.0 * measured,
@@ -364,7 +351,7 @@ def _s10(run: RunQuery) -> Finding:
     *of_series, of_elements = needed.values()
     steps = max(of_series)
     listed = ", ".join(f"{name!r} {number:.0f}" for name, number in needed.items())
-    return _finding(
+    return finding(
         [
             Excess(np.log2(SERIES_STEPS), np.log2(steps), DOUBLINGS_ERROR),
             Excess(np.log2(of_elements), np.log2(ELEMENT_STEPS), DOUBLINGS_ERROR),
@@ -394,7 +381,7 @@ def _s11(run: RunQuery) -> Finding:
         raise MissingData("The case has no series.")
     elements = run.beam_elements()
     difference = abs(run.peak_height(series) / run.peak_height(elements) - 1.0)
-    return _finding(
+    return finding(
         [Excess(DIVERGENCE, difference, PEAK_ERROR)],
         f"First tip peaks of {series.name!r} and {elements.name!r} on {count} segments, which take "
         f"{run.summary_of(series).modes} and {run.summary_of(elements).modes} equations.",
@@ -414,26 +401,6 @@ def _find(rule: Callable[[RunQuery], Finding], run: RunQuery) -> Finding:
         return rule(run)
     except MissingData as missing:
         return Finding("undecided", str(missing))
-
-
-def _finding(
-    parts: Sequence[Excess], why: str, measured: float, threshold: float, unit: str
-) -> Finding:
-    """Return the finding on a statement of several parts."""
-    judgement, distance = decide(*parts)
-    return Finding(judgement, why, measured, threshold, unit, distance)
-
-
-def _mean(samples: Array) -> tuple[float, float]:
-    """Return the mean of samples, and its standard error.
-
-    The error of few samples is larger, so that three errors have the probability of a normal
-    distribution (Student 1908).
-    """
-    error = samples.std(ddof=1) / np.sqrt(samples.size)
-    return float(samples.mean()), float(
-        error * stdtrit(samples.size - 1, ndtr(DECISIVE)) / DECISIVE
-    )
 
 
 def _majority(members: Mask) -> Excess:

@@ -15,7 +15,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from protractile.geometry.boom import Boom, Segment
-from protractile.geometry.fields import at
+from protractile.geometry.place import at
 from protractile.geometry.section import Direction
 from protractile.geometry.typography import number
 from protractile.runs.case import actions

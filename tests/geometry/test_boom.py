@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import Step
@@ -30,7 +29,8 @@ from protractile.geometry.boom import (
     Stop,
     Support,
 )
-from protractile.geometry.fields import Distance
+from protractile.geometry.box import BoxSection
+from protractile.geometry.place import Distance
 from protractile.geometry.typography import join_words, with_minus_signs
 
 # What changes of the outer segment, of the inner one and of the joint.

@@ -28,7 +28,7 @@ from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.travel import RowTable, Travel
-from protractile.geometry.fields import Distance
+from protractile.geometry.place import Distance
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.load_tables import LoadTable
 from protractile.runs.case.reading import select
