@@ -195,8 +195,7 @@ def solve_contact_forces(
             for i in range(contacts):
                 normal += laws.pressing[k, i] * abs(force[i])
             problem.bound[k] = laws.friction[0, k] * normal
-        count = 0
-        worst, scale = 0.0, 0.0
+        count, worst, scale = 0, 0.0, 0.0
         for j in range(force.size):
             scale = max(scale, abs(force[j]))
         for j in range(force.size):

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from textwrap import fill
 
 import numpy as np
+import xarray as xr
 
 from protractile.analysis.low_pass import mean_period
 from protractile.analysis.rows import EXTENDED, INITIAL, MOTION, REST, Row, Rows
@@ -73,16 +74,7 @@ def summary_table(results: Results) -> Table | None:
     pad_cells = [
         None if pad is None else _pad(pad, rows) for pad, rows in zip(pads, of_models, strict=True)
     ]
-    data, travel, periods = results.trajectories, [], []
-    # Static results alone have no motion of the tip.
-    if "tip" in data:
-        tips = [data["tip"].sel(model=name).values for name in names]
-        travel = [farthest(x - x[0]) if x[0] else None for x in tips]
-        time = np.asarray(data["time"].values, dtype=float)
-        # Direction in which the tip moves most.
-        main = data[tip_directions(data)[0]]
-        means = (mean_period(time, main.sel(model=name).values) for name in names)
-        periods = [period if np.isfinite(period) else None for period in means]
+    travel, periods = _travel_and_periods(results.trajectories, names)
 
     def largest(quantity: str, at: bool = False) -> list[str | None]:
         return [_largest(peaks(rows).where(quantity=quantity), rows, at) for rows in of_models]
@@ -228,6 +220,22 @@ def _value(rows: Rows, state: str, quantity: str) -> float | None:
 def _first_frequency(rows: Rows) -> float | None:
     """Return the first natural frequency of a model in Hz."""
     return next((row.value for row in rows.where(state=INITIAL, quantity="frequency")), None)
+
+
+def _travel_and_periods(
+    data: xr.Dataset, names: Sequence[str]
+) -> tuple[Sequence[float | None], Sequence[float | None]]:
+    """Return the travel of the tip in m and the period of its motion in s, for each model."""
+    # Static results alone have no motion of the tip.
+    if "tip" not in data:
+        return [], []
+    tips = [data["tip"].sel(model=name).values for name in names]
+    time = np.asarray(data["time"].values, dtype=float)
+    # Direction in which the tip moves most.
+    main = data[tip_directions(data)[0]]
+    means = (mean_period(time, main.sel(model=name).values) for name in names)
+    travel = [farthest(x - x[0]) if x[0] else None for x in tips]
+    return travel, [period if np.isfinite(period) else None for period in means]
 
 
 def _dynamic_tip(rows: Rows) -> str | None:
