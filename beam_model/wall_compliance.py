@@ -29,7 +29,8 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.compression import NO_COMPRESSION
 from protractile.geometry.contact_places import Pad, pads
-from protractile.geometry.section import EACH_SIDE, Direction, Side
+from protractile.geometry.material import Material
+from protractile.geometry.section import EACH_SIDE, Direction, Section, Side
 from protractile.geometry.segment import Segment
 
 # Length of wall beyond a pad that is modelled, as a fraction of the larger side of the section.
@@ -194,13 +195,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     # The axis around the section has nodes at folds and edges of pads.
     plates = section.plates
     folds = np.concatenate([[0.0], np.cumsum([plate.length for plate in plates])])
-    spans = []
-    for area in areas:
-        face = section.face(area.direction, area.side)
-        plate, across = plates[face.plate], 0 if area.direction == "z" else 1
-        along = np.sign(plate.end[across] - plate.start[across])
-        places = folds[face.plate] + along * (np.array(area.spans) - plate.start[across])
-        spans.append(np.sort(places, axis=1))
+    spans = [_span_around(section, folds, area) for area in areas]
     # Collars with the intervals around the section that they cover.
     strips = [
         (collar, folds[k] + 0.5 * plates[k].length + np.array(ends))
@@ -210,16 +205,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     ]
     cuts_around = [*(span.ravel() for span in spans), *(ends for _, ends in strips)]
     edges = np.concatenate([folds, *cuts_around])
-    # Collars over a whole wall end at the folds of the wall, except for round-off.
-    at_fold = np.abs(np.subtract.outer(edges, folds)).min(axis=1) < section.near
-    edges = np.unique(np.concatenate([folds, edges[~at_fold]]))
-    # Each wall has elements that mirror each other, so that a symmetric section remains symmetric.
-    divided = [
-        np.linspace(*wall, int(np.ceil(round((wall[1] - wall[0]) / length, 9))) + 1)
-        for wall in pairwise(folds)
-    ]
-    around = HermiteAxis(_with_cuts(edges, length, np.concatenate(divided)), closed=True)
-    plate_of_element = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
+    around = HermiteAxis(_nodes_around(edges, folds, length, section.near), closed=True)
 
     closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
     pad_ends = [x for area in areas for x in (area.start, area.end)]
@@ -236,16 +222,9 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
         covered = (near < midpoints_around) & (midpoints_around < far)
         doubled += collar.thickness * np.outer(within, covered)
 
-    modulus, ratio = segment.material.youngs_modulus, segment.material.poissons_ratio
+    plate_of_element = np.searchsorted(folds, around.nodes[:-1], side="right") - 1
     walls = np.array([plates[number].thickness for number in plate_of_element])
-    lefts, rights = list[Array](), list[Array]()
-    kinds, kind = np.unique(doubled, axis=0, return_inverse=True)
-    for number, more in enumerate(kinds):
-        rigidity = modulus * (walls + more) ** 3 / (12.0 * (1.0 - ratio**2))
-        x0, x1, x2, x02 = along_x.integrals((kind == number).astype(float))
-        s0, s1, s2, s02 = around.integrals(rigidity)
-        lefts += [x2, x0, ratio * x02, ratio * x02.T, 2.0 * (1.0 - ratio) * x1]
-        rights += [s0, s2, s02.T, s02, s1]
+    factors = _bending_factors(segment.material, along_x, around, walls + doubled)
     # Values on folds and diaphragms are zero; slopes are free.
     free = np.ones((along_x.nodes.size, 2, around.nodes.size - 1, 2), dtype=bool)
     free[:, :, np.isin(around.nodes[:-1], folds), 0] = False
@@ -262,7 +241,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     )
     # The matrix is symmetric positive definite, so that the factorisation needs no pivoting.
     factor = splu(
-        sum_of_products(lefts, rights, free.ravel()),
+        sum_of_products(*factors, free.ravel()),
         permc_spec="MMD_AT_PLUS_A",
         diag_pivot_thresh=0.0,
         options={"SymmetricMode": True},
@@ -270,6 +249,47 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     compliance = np.asarray(rows @ factor.solve(rows.T))
     compliance.flags.writeable = False
     return compliance
+
+
+def _span_around(section: Section, folds: Array, area: PressedArea) -> Array:
+    """Return the intervals (num_spans, 2) in m of an area on the axis around the section."""
+    face = section.face(area.direction, area.side)
+    plate, across = section.plates[face.plate], 0 if area.direction == "z" else 1
+    along = np.sign(plate.end[across] - plate.start[across])
+    places = folds[face.plate] + along * (np.array(area.spans) - plate.start[across])
+    return np.sort(places, axis=1)
+
+
+def _bending_factors(
+    material: Material, along_x: HermiteAxis, around: HermiteAxis, thickness: Array
+) -> tuple[list[Array], list[Array]]:
+    """Return the factors along x and around the section of the products in the bending energy.
+
+    ``thickness`` in m is that of the elements (num_along_x, num_around).
+    """
+    modulus, ratio = material.youngs_modulus, material.poissons_ratio
+    lefts, rights = list[Array](), list[Array]()
+    kinds, kind = np.unique(thickness, axis=0, return_inverse=True)
+    for number, walls in enumerate(kinds):
+        rigidity = modulus * walls**3 / (12.0 * (1.0 - ratio**2))
+        x0, x1, x2, x02 = along_x.integrals((kind == number).astype(float))
+        s0, s1, s2, s02 = around.integrals(rigidity)
+        lefts += [x2, x0, ratio * x02, ratio * x02.T, 2.0 * (1.0 - ratio) * x1]
+        rights += [s0, s2, s02.T, s02, s1]
+    return lefts, rights
+
+
+def _nodes_around(edges: Array, folds: Array, length: float, near: float) -> Array:
+    """Return the nodes (num_nodes,) in m around a section, with all folds and other edges."""
+    # Collars over a whole wall end at the folds of the wall, except for round-off.
+    at_fold = np.abs(np.subtract.outer(edges, folds)).min(axis=1) < near
+    edges = np.unique(np.concatenate([folds, edges[~at_fold]]))
+    # Each wall has elements that mirror each other, so that a symmetric section remains symmetric.
+    divided = [
+        np.linspace(*wall, int(np.ceil(round((wall[1] - wall[0]) / length, 9))) + 1)
+        for wall in pairwise(folds)
+    ]
+    return _with_cuts(edges, length, np.concatenate(divided))
 
 
 def _graded_nodes(cuts: Array, length: float, fine: tuple[float, float]) -> Array:

@@ -15,11 +15,10 @@ for any ε. In a linear system the distance stays proportional to ε.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -343,24 +342,13 @@ def measure_horizons(
     finer = [replace(one, integrator=one.integrator.finer())]
     whole, time = unchanged.data[observer].values, unchanged.time
 
-    def report(before: float, part: float) -> None:
-        progress(before + _STAGE * part)
-
     def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
-        """Return the horizons (num_groups, num_shares) in s of groups of members.
+        def run(members: Sequence[EnsembleMember], stage: int) -> Iterator[Array]:
+            before = done + stage * _STAGE
+            runs = run_members(members, executor, lambda part: progress(before + _STAGE * part))
+            return (one[observer].values for one in runs)
 
-        ``done`` is the completed fraction before these runs.
-        """
-        of_groups = np.full((len(groups), len(shares)), np.nan)
-        for number, part in enumerate(_PARTS):
-            left = [g for g in range(len(groups)) if np.isnan(of_groups[g]).any()]
-            requested = [member.shorten(part) for g in left for member in groups[g]]
-            runs = iter(run_members(requested, executor, partial(report, done + number * _STAGE)))
-            for g in left:
-                tips = [next(runs)[observer].values for _ in groups[g]]
-                near = [np.append(tip, whole[tip.size :]) for tip in tips]
-                of_groups[g] = [horizon(np.array([whole, *near]), time, share) for share in shares]
-        return of_groups
+        return _horizons_of(groups, shares, whole, time, run)
 
     # The run with the finer step is the longest. It starts first so that all cores end together.
     of_step, of_largest = measure([finer, largest], 0.0)
@@ -378,6 +366,31 @@ def measure_horizons(
         growth=growth,
         step_change=growth[0].change(float(np.nan_to_num(of_step[0], nan=np.inf))),
     )
+
+
+def _horizons_of(
+    groups: Sequence[Sequence[EnsembleMember]],
+    shares: Sequence[float],
+    whole: Array,
+    time: Array,
+    run: Callable[[Sequence[EnsembleMember], int], Iterator[Array]],
+) -> Array:
+    """Return the horizons (num_groups, num_shares) in s of groups of members.
+
+    Args:
+        whole: output (num_times,) of the unchanged run at the times ``time`` in s.
+        run: function that returns the output of members, for the number of a fraction of the
+            duration.
+    """
+    of_groups = np.full((len(groups), len(shares)), np.nan)
+    for number, part in enumerate(_PARTS):
+        left = [g for g in range(len(groups)) if np.isnan(of_groups[g]).any()]
+        outputs = run([member.shorten(part) for g in left for member in groups[g]], number)
+        for g in left:
+            tips = [next(outputs) for _ in groups[g]]
+            near = [np.append(tip, whole[tip.size :]) for tip in tips]
+            of_groups[g] = [horizon(np.array([whole, *near]), time, share) for share in shares]
+    return of_groups
 
 
 def ensemble_horizons(

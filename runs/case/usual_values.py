@@ -75,6 +75,7 @@ class KeyValue(NamedTuple):
 
 # Usual range of a key: of its numbers, of each column of its pairs, or by its table and key.
 UsualOfKey = Usual | tuple[Usual | None, ...] | Callable[[Any, str], Usual]
+Ranges = Mapping[type, Mapping[str, UsualOfKey]]
 
 
 def key_values(case: Case, boom: Boom) -> Iterator[KeyValue]:
@@ -111,64 +112,128 @@ def _columns(table: Any, key: str, value: Any) -> list[list[float]]:
     return [[min(abs(number), _MOST) for number in column] for column in columns]
 
 
-def usual_of_tables(case: Case, boom: Boom) -> Mapping[type, Mapping[str, UsualOfKey]]:
-    """Return the usual ranges of keys by the classes of their tables.
+# Ranges of several tables that do not depend on the boom.
+_CATEGORY = Usual("the detail category after EN 1993-1-9, in N/mm^2,", 36.0, 160.0, 10.0)
+_FRICTION = Usual("the coefficient of friction", 0.0, 1.0, 10.0)
+_INTERFERENCE = Usual("the interference of shims", 0.0, 0.005, 20.0)
+_GRAVITY = Usual("the acceleration of gravity", 0.0, 12.0, 50.0)
+_TIME = Usual("the time", 0.0, 1.0e5, 1.0e3)
+_FREQUENCY = Usual("the frequency", 1.0e-3, 1.0e3, 100.0)
+_EXPONENT = Usual("the exponent of the contact law", 1.0, 3.0, 10.0)
+_STIFFENER = Usual("the thickness of the stiffener", 3.0e-4, 0.2, 20.0)
+_STRESS = Usual("the limit of stresses", 1.0e6, 4.0e9, 100.0)
+_SPEED = Usual("the speed at t = 0", 0.0, 20.0, 20.0)
+_TURN = Usual("the rate of rotation at t = 0", 0.0, 20.0, 20.0)
+_TURNING = Usual("the angle of turning", 0.0, 720.0, 10.0)
+
+# Usual ranges of keys that do not depend on the boom.
+_FIXED: Ranges = {
+    TimeTable: {
+        "duration": Usual("the duration", 1.0e-3, 1.0e5, 1.0e3),
+        "output_step": Usual("the output step", 1.0e-7, 10.0, 1.0e3),
+        "step": Usual("the time step", 1.0e-9, 1.0, 1.0e3),
+    },
+    ModelTable: {"step": Usual("the time step", 1.0e-9, 1.0, 1.0e3)},
+    EnsembleTable: {"relative": Usual("the relative change", 0.0, 0.1, 20.0)},
+    Material: {
+        "poissons_ratio": Usual("Poisson's ratio", 0.0, 0.49, 10.0),
+        "yield_by_thickness": (
+            Usual("the thickness of a plate", 1.0e-4, 0.5, 100.0),
+            Usual("the yield strength", 1.0e7, 4.0e9, 10.0),
+        ),
+    },
+    Collar: {"thickness": _STIFFENER, "detail_category": _CATEGORY},
+    Diaphragm: {"thickness": _STIFFENER, "detail_category": _CATEGORY},
+    Pin: {
+        "diameter": Usual("the diameter of the pin", 0.003, 0.5, 20.0),
+        "strength": Usual("the strength of the pin", 2.0e8, 2.0e9, 10.0),
+    },
+    RestitutionTable: {
+        "coefficient": Usual("the coefficient of restitution", 0.05, 1.0, 50.0),
+        "speed": Usual("the impact speed", 1.0e-4, 10.0, 1.0e3),
+    },
+    HistoryTable: {
+        "ramp": _TIME._replace(what="the time of the ramp", least=1.0e-6),
+        "frequency": _FREQUENCY,
+        "half_sine": _TIME._replace(what="the time of the pulse", least=1.0e-6),
+        "table": (_TIME, None),
+    },
+    GroundAccelerationTable: {
+        "acceleration": Usual("the acceleration of the ground", 0.0, 100.0, 100.0)
+    },
+    GravityTable: {"acceleration": _GRAVITY},
+    TravelTable: {
+        "time": _TIME._replace(what="the time of the motion", least=1.0e-4),
+        "ramp": _TIME._replace(what="the time of the ramp"),
+        "start": _TIME._replace(what="the time of the start"),
+        "shaper": (_FREQUENCY, None),
+    },
+    VelocityTable: {"z": _SPEED, "y": _SPEED, "turn": _TURN, "lateral_turn": _TURN},
+    DampingTable: {
+        "modal": Usual("the damping ratio", 0.0, 0.1, 100.0),
+        "mass": Usual("the mass-proportional damping", 0.0, 50.0, 100.0),
+        "stiffness": Usual("the stiffness-proportional damping", 0.0, 0.1, 100.0),
+    },
+    LifeTable: {
+        "detail_category": _CATEGORY,
+        "partial_factor": Usual("the partial factor of fatigue", 1.0, 2.0, 5.0),
+    },
+    BucklingTable: {"curve": (Usual("the slenderness", 0.0, 10.0, 100.0), None)},
+    FactorsTable: {
+        key: Usual("the factor on loads", 0.0, 3.0, 10.0) for key in names_of(FactorsTable)
+    },
+    ResistanceTable: {
+        key: Usual("the resistance factor", 1.0, 3.0, 10.0) for key in names_of(ResistanceTable)
+    },
+}  # fmt: skip
+
+
+class _Sizes(NamedTuple):
+    """Sizes of a boom with which those of its parts are compared.
 
     Forces, masses, stiffnesses and dashpots are compared with those of the boom, so that laboratory
     booms of 1 m and cranes of 60 m are within them.
     """
-    bare = sum(segment.mass_per_length * segment.length for segment in boom.segments)
-    weight, length = STANDARD_GRAVITY * bare, boom.length
-    most_axial = 100.0 * STANDARD_GRAVITY * boom.mass
-    hoisted = STANDARD_GRAVITY * (bare if case.hoist is None else case.hoist.mass)
-    category = Usual("the detail category after EN 1993-1-9, in N/mm^2,", 36.0, 160.0, 10.0)
-    friction = Usual("the coefficient of friction", 0.0, 1.0, 10.0)
-    interference = Usual("the interference of shims", 0.0, 0.005, 20.0)
-    gravity = Usual("the acceleration of gravity", 0.0, 12.0, 50.0)
-    time = Usual("the time", 0.0, 1.0e5, 1.0e3)
-    frequency = Usual("the frequency", 1.0e-3, 1.0e3, 100.0)
-    exponent = Usual("the exponent of the contact law", 1.0, 3.0, 10.0)
-    contact_length = Usual("the length of contact", 1.0e-3, 0.2 * length, 20.0)
-    stiffener = Usual("the thickness of the stiffener", 3.0e-4, 0.2, 20.0)
-    stress = Usual("the limit of stresses", 1.0e6, 4.0e9, 100.0)
-    deflection = Usual("the limit of deflections", 1.0e-5 * length, length, 1.0e3)
-    speed = Usual("the speed at t = 0", 0.0, 20.0, 20.0)
-    turn = Usual("the rate of rotation at t = 0", 0.0, 20.0, 20.0)
-    moving = Usual("the speed of telescoping", 1.0e-4, 5.0, 200.0)
-    # The overlap refuses long ones, and a length of almost 0 is a constant extension.
-    travel = Usual("the length of telescoping", 1.0e-3 * length, length, inf)
-    hoisting = Usual("the length of hoisting", 2.0e-3 * length, 200.0, 1.0e3)
-    turning = Usual("the angle of turning", 0.0, 720.0, 10.0)
-    # Twice the square root of the largest usual stiffness and the mass of the boom, for dashpots.
-    critical = 2.0e4 * bare * sqrt(STANDARD_GRAVITY / length)
 
-    def dashpot(of: str) -> Usual:
+    bare: float  #: mass of the segments in kg
+    weight: float  #: their weight in N
+    length: float  #: length of the boom in m
+    most_axial: float  #: largest usual axial force in N
+    hoisted: float  #: weight of the load on the rope in N
+
+    @classmethod
+    def of_boom(cls, case: Case, boom: Boom) -> _Sizes:
+        bare = sum(segment.mass_per_length * segment.length for segment in boom.segments)
+        hoisted = STANDARD_GRAVITY * (bare if case.hoist is None else case.hoist.mass)
+        most_axial = 100.0 * STANDARD_GRAVITY * boom.mass
+        return cls(bare, STANDARD_GRAVITY * bare, boom.length, most_axial, hoisted)
+
+    def dashpot(self, of: str) -> Usual:
+        # Twice the square root of the largest usual stiffness and the mass of the boom.
+        critical = 2.0e4 * self.bare * sqrt(STANDARD_GRAVITY / self.length)
         return Usual(f"the dashpot of the {of}", 0.0, critical, 1.0e4)
 
-    def spring(of: str) -> Usual:
-        least, most = (factor * weight / length for factor in (1.0, 1.0e8))
+    def spring(self, of: str) -> Usual:
+        least, most = (factor * self.weight / self.length for factor in (1.0, 1.0e8))
         return Usual(f"the stiffness of the {of}", least, most, 1.0e4)
 
-    def contact(table: Any, key: str) -> Usual:
+    def contact(self, table: Any, key: str) -> Usual:
         """Return the range in which half the weight presses a contact in by 1e-9 m at least."""
         n = table.exponent_of(key) if isinstance(table, ContactTable) else table.exponent
-        return Usual("the stiffness of the contact", 0.0, 0.5 * weight / 1e-9 ** (n or 2.0), 1e3)
+        most = 0.5 * self.weight / 1e-9 ** (n or 2.0)
+        return Usual("the stiffness of the contact", 0.0, most, 1e3)
 
+
+def usual_of_tables(case: Case, boom: Boom) -> Ranges:
+    """Return the usual ranges of keys by the classes of their tables."""
+    sizes = _Sizes.of_boom(case, boom)
+    return {**_FIXED, **_of_parts(sizes), **_of_contacts(sizes), **_of_actions(sizes)}
+
+
+def _of_parts(sizes: _Sizes) -> Ranges:
+    """Return the usual ranges of the keys of segments, supports and cylinders."""
+    bare, weight, length, *_ = sizes
     return {
-        TimeTable: {
-            "duration": Usual("the duration", 1.0e-3, 1.0e5, 1.0e3),
-            "output_step": Usual("the output step", 1.0e-7, 10.0, 1.0e3),
-            "step": Usual("the time step", 1.0e-9, 1.0, 1.0e3),
-        },
-        ModelTable: {"step": Usual("the time step", 1.0e-9, 1.0, 1.0e3)},
-        EnsembleTable: {"relative": Usual("the relative change", 0.0, 0.1, 20.0)},
-        Material: {
-            "poissons_ratio": Usual("Poisson's ratio", 0.0, 0.49, 10.0),
-            "yield_by_thickness": (
-                Usual("the thickness of a plate", 1.0e-4, 0.5, 100.0),
-                Usual("the yield strength", 1.0e7, 4.0e9, 10.0),
-            ),
-        },
         SegmentTable: {
             "rotary_inertia": Usual("the rotary inertia", 0.0, bare * length / 25.0, 100.0),
             "lateral_rotary_inertia": Usual(
@@ -182,44 +247,52 @@ def usual_of_tables(case: Case, boom: Boom) -> Mapping[type, Mapping[str, UsualO
             "viscous_damping": Usual("the viscous damping", 0.0, 1.0e3 * bare / length, 1.0e4),
         },
         PointMass: {"mass": Usual("the mass at one place", 0.0, 50.0 * bare, 1.0e4)},
-        Collar: {"thickness": stiffener, "detail_category": category},
-        Diaphragm: {"thickness": stiffener, "detail_category": category},
         Support: {
-            "stiffness": spring("support"),
+            "stiffness": sizes.spring("support"),
             "rotation_stiffness": Usual(
                 "the rotational stiffness of the support", 0.01 * weight * length,
                 1.0e7 * weight * length, 1.0e4,
             ),
-            "dashpot": dashpot("support"),
+            "dashpot": sizes.dashpot("support"),
             "depth": Usual("the depth of the pin", 0.0, 0.3 * length, 20.0),
         },
-        Pin: {
-            "diameter": Usual("the diameter of the pin", 0.003, 0.5, 20.0),
-            "strength": Usual("the strength of the pin", 2.0e8, 2.0e9, 10.0),
+        Cylinder: {
+            "stiffness": Usual(
+                "the stiffness of the cylinder", 1e2 * weight / length,
+                1e7 * weight / length, 1.0e4,
+            ),
+            "capacity": Usual("the capacity of the cylinder", 0.5 * weight, 1e3 * weight, 1.0e3),
+            "depth": Usual("the depth of the lug", 0.0, 0.3 * length, 20.0),
+            "dashpot": sizes.dashpot("cylinder"),
+            "spread": Usual("the spread of the cylinders", 0.0, 0.3 * length, 20.0),
         },
+    }  # fmt: skip
+
+
+def _of_contacts(sizes: _Sizes) -> Ranges:
+    """Return the usual ranges of the keys of joints, pads and stops."""
+    _, weight, length, *_ = sizes
+    contact_length = Usual("the length of contact", 1.0e-3, 0.2 * length, 20.0)
+    return {
         ContactTable: {
-            "stiffness": contact,
-            "stiffness_below": contact,
-            "exponent": exponent,
+            "stiffness": sizes.contact,
+            "stiffness_below": sizes.contact,
+            "exponent": _EXPONENT,
             "force_table": (
                 Usual("the penetration", 0.0, 0.1 * length, 20.0),
                 Usual("the contact force", 0.0, 1.0e4 * weight, 1.0e4),
             ),
         },
         JointTable: {
-            "lateral_stiffness": contact,
-            "lateral_exponent": exponent,
-            "friction": friction,
-            "interference": interference,
-            "lateral_interference": interference,
+            "lateral_stiffness": sizes.contact,
+            "lateral_exponent": _EXPONENT,
+            "friction": _FRICTION,
+            "interference": _INTERFERENCE,
+            "lateral_interference": _INTERFERENCE,
             "normal_forces": Usual("the normal force of friction", 0.0, 100.0 * weight, 1.0e3),
             "contact_length": contact_length,
-            "dashpot": dashpot("joint"),
-            "detail_category": category._replace(least=12.0),
-        },
-        RestitutionTable: {
-            "coefficient": Usual("the coefficient of restitution", 0.05, 1.0, 50.0),
-            "speed": Usual("the impact speed", 1.0e-4, 10.0, 1.0e3),
+            "dashpot": sizes.dashpot("joint"),
+            "detail_category": _CATEGORY._replace(least=12.0),
         },
         PadSize: {
             "length": Usual("the length of the pad", 0.001, 0.2 * length, 20.0),
@@ -234,53 +307,51 @@ def usual_of_tables(case: Case, boom: Boom) -> Mapping[type, Mapping[str, UsualO
             "play": Usual("the play of the stop", 0.0, 0.1 * length, 20.0),
             "contact_length": contact_length,
         },
-        StopTable: {"stiffness": contact, "stiffness_below": contact, "exponent": exponent},
-        Cylinder: {
-            "stiffness": Usual(
-                "the stiffness of the cylinder", 1e2 * weight / length,
-                1e7 * weight / length, 1.0e4,
-            ),
-            "capacity": Usual("the capacity of the cylinder", 0.5 * weight, 1e3 * weight, 1.0e3),
-            "depth": Usual("the depth of the lug", 0.0, 0.3 * length, 20.0),
-            "dashpot": dashpot("cylinder"),
-            "spread": Usual("the spread of the cylinders", 0.0, 0.3 * length, 20.0),
+        StopTable: {
+            "stiffness": sizes.contact, "stiffness_below": sizes.contact, "exponent": _EXPONENT,
         },
-        HistoryTable: {
-            "ramp": time._replace(what="the time of the ramp", least=1.0e-6),
-            "frequency": frequency,
-            "half_sine": time._replace(what="the time of the pulse", least=1.0e-6),
-            "table": (time, None),
-        },
+    }  # fmt: skip
+
+
+def _of_actions(sizes: _Sizes) -> Ranges:
+    """Return the usual ranges of the keys of loads, motions and limits."""
+    bare, weight, length, most_axial, hoisted = sizes
+    # The overlap refuses long ones, and a length of almost 0 is a constant extension.
+    travel = Usual("the length of telescoping", 1.0e-3 * length, length, inf)
+    hoisting = Usual("the length of hoisting", 2.0e-3 * length, 200.0, 1.0e3)
+    deflection = Usual("the limit of deflections", 1.0e-5 * length, length, 1.0e3)
+    return {
         # Smaller loads are compared with the boom as a whole.
         LoadTable: {"magnitude": Usual("the load", 0.0, 1.0e6 * weight, 1.0e3)},
         WindTable: {"force": Usual("the force on the load", 0.0, 10.0 * hoisted, 1.0e3)},
-        GroundAccelerationTable: {
-            "acceleration": Usual("the acceleration of the ground", 0.0, 100.0, 100.0)
-        },
         AxialTable: {
             "force": Usual("the size of the force along the boom", 0.0, most_axial, 100.0),
             "mass": Usual("the mass on the rope", 0.0, 50.0 * bare, 1.0e4),
         },
         PayloadTable: {
             "mass": Usual("the mass of the payload", 0.0, 50.0 * bare, 1.0e4),
-            "gravity": gravity,
+            "gravity": _GRAVITY,
         },
         LoadCaseTable: {"payload": Usual("the payload", 0.0, 50.0 * bare, 1.0e4)},
-        GravityTable: {"acceleration": gravity},
-        TravelTable: {
-            "time": time._replace(what="the time of the motion", least=1.0e-4),
-            "ramp": time._replace(what="the time of the ramp"),
-            "start": time._replace(what="the time of the start"),
-            "shaper": (frequency, None),
+        LimitsTable: {
+            "tip": deflection,
+            "tip_at_rest": deflection,
+            "tip_lateral": deflection,
+            "stress": _STRESS,
+            "wall_stress": _STRESS,
+            "pad_pressure": Usual("the limit of the pressure of pads", 1.0e5, 1.0e9, 1.0e3),
+            "first_frequency": Usual("the limit of the first frequency", 0.01, 1.0e3, 100.0),
+            "decay_time": Usual("the limit of the decay time", 0.01, 1.0e4, 1.0e3),
+            "settling_time": Usual("the limit of the settling time", 0.01, 1.0e4, 1.0e3),
         },
         DriveTable: {
             "travel": travel,
-            "speed": moving,
-            "table": (time, travel._replace(least=0.0)),
+            "speed": Usual("the speed of telescoping", 1.0e-4, 5.0, 200.0),
+            "table": (_TIME, travel._replace(least=0.0)),
             "least_overlap": Usual("the least overlap", 0.0, 0.5 * length, 20.0),
-            "stiffness": spring("drive"),
-            "dashpot": dashpot("drive"),
-            "static_friction": friction,
+            "stiffness": sizes.spring("drive"),
+            "dashpot": sizes.dashpot("drive"),
+            "static_friction": _FRICTION,
         },
         HoistTable: {
             "mass": Usual("the mass of the load", 0.0, 50.0 * bare, 1.0e4),
@@ -290,44 +361,16 @@ def usual_of_tables(case: Case, boom: Boom) -> Mapping[type, Mapping[str, UsualO
             "length": Usual("the length of the falls", 0.3, 300.0, 20.0),
             "speed": Usual("the speed of hoisting", 0.003, 5.0, 1.0e3),
             "travel": hoisting,
-            "table": (time, hoisting._replace(least=0.0)),
+            "table": (_TIME, hoisting._replace(least=0.0)),
             "slack": Usual("the slack of the rope", 0.0, 5.0, 20.0),
             "pendulum": Usual("the length of the pendulum", 0.1, 200.0, 20.0),
             "phi_2_min": Usual("the least dynamic factor", 1.0, 2.0, 5.0),
             "beta_2": Usual("the increase of the dynamic factor", 0.0, 1.0, 20.0),
         },
         LuffTable: {
-            "travel": turning,
+            "travel": _TURNING,
             "speed": Usual("the speed of turning", 0.0, 30.0, 20.0),
-            "table": (time, turning),
+            "table": (_TIME, _TURNING),
         },
         SlewTable: {"radius": Usual("the radius of the foot", 0.0, length, 20.0)},
-        VelocityTable: {"z": speed, "y": speed, "turn": turn, "lateral_turn": turn},
-        DampingTable: {
-            "modal": Usual("the damping ratio", 0.0, 0.1, 100.0),
-            "mass": Usual("the mass-proportional damping", 0.0, 50.0, 100.0),
-            "stiffness": Usual("the stiffness-proportional damping", 0.0, 0.1, 100.0),
-        },
-        LifeTable: {
-            "detail_category": category,
-            "partial_factor": Usual("the partial factor of fatigue", 1.0, 2.0, 5.0),
-        },
-        BucklingTable: {"curve": (Usual("the slenderness", 0.0, 10.0, 100.0), None)},
-        LimitsTable: {
-            "tip": deflection,
-            "tip_at_rest": deflection,
-            "tip_lateral": deflection,
-            "stress": stress,
-            "wall_stress": stress,
-            "pad_pressure": Usual("the limit of the pressure of pads", 1.0e5, 1.0e9, 1.0e3),
-            "first_frequency": Usual("the limit of the first frequency", 0.01, 1.0e3, 100.0),
-            "decay_time": Usual("the limit of the decay time", 0.01, 1.0e4, 1.0e3),
-            "settling_time": Usual("the limit of the settling time", 0.01, 1.0e4, 1.0e3),
-        },
-        FactorsTable: {
-            key: Usual("the factor on loads", 0.0, 3.0, 10.0) for key in names_of(FactorsTable)
-        },
-        ResistanceTable: {
-            key: Usual("the resistance factor", 1.0, 3.0, 10.0) for key in names_of(ResistanceTable)
-        },
     }  # fmt: skip

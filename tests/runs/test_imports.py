@@ -233,6 +233,30 @@ def test_no_other_module_knows_the_paper() -> None:
     assert [(path, line) for path, line in lines if KNOWS.search(line)] == []
 
 
+MOST_LINES, MOST_LINES_OF_A_FUNCTION = 450, 80
+# The time loop: its parts would share two dozen work arrays, each an argument.
+LONG = ["march"]
+
+
+def test_modules_and_functions_are_short(trees: dict[str, ast.Module]) -> None:
+    paths = [path for room in ROOMS.keys() - {"studies"} for path in (ROOT / room).rglob("*.py")]
+    lines = {path: path.read_text("utf-8").count("\n") for path in paths}
+    assert [path for path, number in lines.items() if number > MOST_LINES] == []
+    functions = (
+        node
+        for name, tree in trees.items()
+        if room_of(name) != "studies"
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+    )
+    long = [
+        one.name
+        for one in functions
+        if (one.end_lineno or 0) - one.lineno >= MOST_LINES_OF_A_FUNCTION
+    ]
+    assert long == LONG
+
+
 TIP, CLOSE_UP, HEAD = "figure-tip", "figure-tip-close-up", "figure-head"
 SLOW = "figure-slow-peaks", "table-horizons", "table-slow-peaks"
 
