@@ -16,9 +16,9 @@ from functools import cached_property
 from numbers import Real
 
 import numpy as np
-from protractile.geometry.box import OUTWARDS, BoxSection
 
 from protractile.geometry.arrays import Array, Indices
+from protractile.geometry.box import OUTWARDS, BoxSection
 from protractile.geometry.fields import format_value, is_positive
 from protractile.geometry.section import (
     COMPONENT,

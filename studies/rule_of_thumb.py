@@ -22,11 +22,11 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.wall_compliance import contact_compliance
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
+from protractile.geometry.box import BoxSection
 from protractile.geometry.section import EACH_SIDE
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case

@@ -9,7 +9,6 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.boom_modes import critical_factor
 from protractile.beam_model.elements import Theory
@@ -20,6 +19,7 @@ from protractile.dynamics.excitation import Step
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Material, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from studies.reference_models.statics import static_response
 from studies.study import Progress, Verification, define_study

@@ -15,10 +15,10 @@ from functools import partial
 from typing import Literal, NamedTuple, TypeVar
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.runs.report.tables import Table
 from protractile.shell_model.contact.wall_rows import gauss
 from protractile.shell_model.reduction.mirror import ALONG_Z, BREATHING, TWISTING, SymmetryClass

@@ -15,10 +15,10 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Collar, Diaphragm, Material, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.runs.case.build import build_boom
 from protractile.runs.report.tables import Cell, Table
 from protractile.shell_model.segment.cross_section import Row, SectionNodes

@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 from scipy.optimize import brentq
 from scipy.special import iv, jv, kv, yv
 
@@ -18,6 +17,7 @@ from protractile.dynamics.excitation import Step
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from studies.reference_models.statics import static_response
 from studies.second_order import (

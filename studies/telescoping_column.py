@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.boom_modes import critical_factor
 from protractile.beam_model.component import SegmentModel
@@ -21,6 +20,7 @@ from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.motion_laws import SCurve
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Joint, Segment
+from protractile.geometry.box import BoxSection
 from protractile.geometry.joint import Drive
 from studies.second_order import (
     BOX,

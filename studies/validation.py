@@ -12,7 +12,6 @@ from itertools import pairwise
 from typing import NamedTuple, cast
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 from scipy.optimize import brentq, least_squares
 
 from protractile.beam_model.finite_element import finite_element_segments
@@ -24,6 +23,7 @@ from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.shell_model.segment.forms import DRILLING_OF_CURVED
 from studies.reference_models.benchmarks import X, Y, Z, grid
 from studies.reference_models.single_segment import natural_frequencies

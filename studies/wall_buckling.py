@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.contact_places import ContactInterval
 from protractile.geometry.section import Section
 from protractile.shell_model.buckling import BucklingModes, buckling_modes, with_springs

@@ -14,11 +14,11 @@ from pathlib import Path
 
 import pytest
 from hypothesis import settings
-from protractile.geometry.box import infer_inner_section, infer_outer_section
 
 import protractile.shell_model  # noqa: F401 # its import loads MPI before DOLFINx
 from protractile.dynamics.contact import PowerContact
 from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
+from protractile.geometry.box import infer_inner_section, infer_outer_section
 from protractile.runs.folder.cache import VARIABLE
 from protractile.runs.process import terminal
 from protractile.runs.process.ranks import launcher

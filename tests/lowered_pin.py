@@ -4,11 +4,11 @@
 from math import cos, hypot, radians, sin
 
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.excitation import Step
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Cylinder, Load, Material, PointMass, Segment, Support
+from protractile.geometry.box import BoxSection
 
 GRAVITY = 9.80665
 LENGTH, DEPTH = 10.0, 0.35

@@ -14,8 +14,8 @@ from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom
 from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.drives import StickSlipEstimate, stick_slip_estimates
-from protractile.runs.pipeline.largest_loads import static_states
 from protractile.runs.pipeline.pad_walls import wall_part
 from protractile.runs.pipeline.statics import boom_with_play
 

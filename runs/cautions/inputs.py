@@ -7,8 +7,8 @@ from collections.abc import Iterator
 from math import isclose
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 
+from protractile.geometry.box import BoxSection
 from protractile.geometry.fit import room
 from protractile.geometry.joint import SIDES, SlidePad
 from protractile.geometry.section import Direction

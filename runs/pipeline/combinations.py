@@ -2,7 +2,7 @@
 """Static results of all combinations of a case in their load cases.
 
 The boom consists of beam elements with play and axial forces, as in
-:mod:`.pipeline.largest_loads`. Each combination has a system of its own, since its axial forces
+:mod:`.pipeline.beam_states`. Each combination has a system of its own, since its axial forces
 reduce the stiffness.
 """
 
@@ -23,7 +23,7 @@ from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import CombinedCase, combined_cases
 from protractile.runs.case.schema import Case
-from protractile.runs.pipeline.largest_loads import (
+from protractile.runs.pipeline.beam_states import (
     moving_states,
     static_states,
 )

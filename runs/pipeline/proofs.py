@@ -19,8 +19,8 @@ from protractile.dynamics.failure import NumericsError
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
 from protractile.runs.case.schema import Case
+from protractile.runs.pipeline.beam_states import moving_states, static_states
 from protractile.runs.pipeline.combinations import CombinationState
-from protractile.runs.pipeline.largest_loads import moving_states, static_states
 from protractile.runs.pipeline.statics import boom_with_play
 
 # Note if no shell proves the local plate stress.

@@ -16,8 +16,8 @@ from itertools import product
 from typing import Any
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 
+from protractile.geometry.box import BoxSection
 from protractile.geometry.fields import names_of
 from protractile.geometry.typography import choices
 from protractile.runs.case import reading as case_file

@@ -18,11 +18,11 @@ import ufl
 from dolfinx import fem
 from mpi4py import MPI
 from petsc4py import PETSc
-from protractile.geometry.box import BoxSection
 from scipy.sparse import csr_matrix, diags, vstack
 
 from protractile.geometry.arrays import Array, Indices, Mask
 from protractile.geometry.boom import Material, Segment
+from protractile.geometry.box import BoxSection
 from protractile.shell_model import compat
 from protractile.shell_model.reduction.mirror import SymmetryClass, on_plane
 from protractile.shell_model.segment.cross_section import Row, SectionNodes

@@ -11,7 +11,6 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
-from protractile.geometry.box import BoxSection
 from scipy.optimize import brentq
 
 from protractile.beam_model.component import Component, SegmentModel, natural_modes
@@ -19,6 +18,7 @@ from protractile.beam_model.finite_element import Theory, finite_element_segment
 from protractile.beam_model.kantorovich import Base, kantorovich_segments
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Material, Segment, Support
+from protractile.geometry.box import BoxSection
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
 BOX = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.calibration import (
     effective_stiffness,
@@ -16,6 +15,7 @@ from protractile.beam_model.calibration import (
 )
 from protractile.beam_model.finite_element import finite_element_segment
 from protractile.geometry.boom import Material, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.probe_responses import PROBE_FREQUENCY, ProbedMotion, ProbeResponses
 from tests.beam_model.test_section_fields import MODES, system
 

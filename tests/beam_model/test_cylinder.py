@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.boom_modes import BoomModes
 from protractile.beam_model.finite_element import finite_element_segments
@@ -29,6 +28,7 @@ from protractile.geometry.boom import (
     Stop,
     Support,
 )
+from protractile.geometry.box import BoxSection
 from tests.beam_model.exact import beam
 from tests.lowered_pin import level, raised
 from tests.space import in_space

@@ -3,11 +3,11 @@
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.distortion import Press, _frame, distortion_compliance
 from protractile.beam_model.hermite import sum_of_products
 from protractile.geometry.boom import Collar, Diaphragm, Segment
+from protractile.geometry.box import BoxSection
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.profiles import hexagon
 from protractile.geometry.section import Section

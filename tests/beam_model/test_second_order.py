@@ -5,7 +5,6 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.boom_modes import ContactPlace, StationCompliance, critical_factor
 from protractile.beam_model.component import Motion, SegmentModel
@@ -27,6 +26,7 @@ from protractile.geometry.boom import (
     Segment,
     Support,
 )
+from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import octagon
 from tests.touching import touching

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.component import SegmentModel
 from protractile.beam_model.finite_element import (
@@ -22,6 +21,7 @@ from protractile.dynamics.motion import Motion
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Segment, Stop, Support
+from protractile.geometry.box import BoxSection
 from tests.beam_model.exact import beam, frequencies
 from tests.space import in_space
 from tests.touching import touching

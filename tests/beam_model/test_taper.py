@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 from scipy.integrate import quad
 
 from protractile.beam_model.boom_modes import critical_factor
@@ -19,6 +18,7 @@ from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
 from protractile.geometry.axial import with_compression
 from protractile.geometry.boom import Boom, Joint, Material, PointMass, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import octagon
 from protractile.runs.case.kinds.finite_element import BeamElements

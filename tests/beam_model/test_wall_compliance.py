@@ -5,11 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model import wall_compliance
 from protractile.beam_model.wall_compliance import PressedArea
 from protractile.geometry.boom import Collar, Diaphragm, Material, Segment
+from protractile.geometry.box import BoxSection
 
 SIDE, WALL, LENGTH = 0.3, 6.0e-3, 2.0
 STEEL = Material(2.1e11, 0.3, 7850.0)

@@ -20,7 +20,7 @@ from protractile.runs.cautions.rules import OF_INPUTS, cautions
 from protractile.runs.folder.cache import Cache
 from protractile.runs.live.beam import beam_results
 from protractile.runs.live.controls import Draft
-from protractile.runs.pipeline.largest_loads import static_states
+from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.statics import cylinder_force, statics

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.excitation import PiecewiseLinear
 from protractile.geometry.axial import (
@@ -24,6 +23,7 @@ from protractile.geometry.boom import (
     Segment,
     Support,
 )
+from protractile.geometry.box import BoxSection
 from protractile.geometry.joint import Carrier, Drive
 
 STEEL = Material(2.1e11, 0.3, 7850.0)

@@ -17,11 +17,11 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from protractile.geometry.box import BoxSection
 from scipy.spatial import cKDTree
 
 from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.boom import Boom, Collar, Diaphragm, PadSize
+from protractile.geometry.box import BoxSection
 from protractile.geometry.grading import graded_mesh
 from protractile.geometry.mesh import (
     SegmentMesh,

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.geometry.arrays import Array
+from protractile.geometry.box import BoxSection
 from protractile.geometry.polygon import PolygonSection, closed_polygon
 from protractile.geometry.profiles import hexagon, octagon, u_section
 from protractile.geometry.section import Section

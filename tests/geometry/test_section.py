@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from hypothesis import assume, example, given
 from hypothesis import strategies as st
-from protractile.geometry.box import BoxSection, infer_inner_section, infer_outer_section
 
+from protractile.geometry.box import BoxSection, infer_inner_section, infer_outer_section
 from protractile.geometry.polygon import PolygonSection, ShearFlow
 from protractile.geometry.section import Direction, Section, SectionError
 from protractile.geometry.walls import free_room

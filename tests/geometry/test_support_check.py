@@ -6,7 +6,6 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import Ramp, ReleasedLoad, Step
@@ -21,6 +20,7 @@ from protractile.geometry.boom import (
     Stop,
     Support,
 )
+from protractile.geometry.box import BoxSection
 from protractile.geometry.observation import Observation
 from protractile.geometry.support_check import check_contacts_at_rest
 from tests.space import in_space

@@ -5,7 +5,6 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.motion_laws import SCurve
 from protractile.geometry.boom import (
@@ -19,6 +18,7 @@ from protractile.geometry.boom import (
     SlidePad,
     Support,
 )
+from protractile.geometry.box import BoxSection
 from protractile.geometry.fit import room
 from protractile.geometry.joint import Drive
 

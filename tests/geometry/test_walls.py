@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection, infer_inner_section
 
 from protractile.dynamics.contact import PowerContact
 from protractile.geometry.boom import (
@@ -20,6 +19,7 @@ from protractile.geometry.boom import (
     Stop,
     Support,
 )
+from protractile.geometry.box import BoxSection, infer_inner_section
 from protractile.geometry.joint import PadSide
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.profiles import hexagon, octagon, u_section

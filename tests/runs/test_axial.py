@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.cases import run_case
+from protractile.geometry.box import BoxSection
 from protractile.geometry.typography import number
 from protractile.runs import CASES
 from protractile.runs.case import toml

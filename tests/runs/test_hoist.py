@@ -23,8 +23,8 @@ from protractile.runs.case.motions import with_initial_slack
 from protractile.runs.case.reading import CheckedCase, select
 from protractile.runs.case.schema import Case, EnsembleTable
 from protractile.runs.check import check_case
+from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.combinations import combination_rows, combination_states
-from protractile.runs.pipeline.largest_loads import static_states
 from protractile.runs.pipeline.models import build, initial_motion
 from protractile.runs.pipeline.pad_walls import largest_tip
 from protractile.runs.pipeline.statics import boom_with_play, state_at_rest

@@ -9,8 +9,8 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.check import check_case
+from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.hoisting_error import straight_path_error
-from protractile.runs.pipeline.largest_loads import static_states
 from protractile.runs.pipeline.statics import boom_with_play
 from tests.runs.case_texts import shipped
 from tests.runs.hoisting_elastica import HoistingBar

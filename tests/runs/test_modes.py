@@ -7,7 +7,6 @@ from typing import get_args
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.analysis.model import AnalysisModel
 from protractile.analysis.modes import Mode, match_modes, modes
@@ -19,6 +18,7 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.cases import run_case
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.geometry.boom import Boom, Material, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.runs.case.kinds import KINDS
 from tests.runs.case_texts import COARSE, read_case, refusal
 from tests.runs.test_actions import CANTILEVER

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.analysis.equilibria import equilibria
 from protractile.analysis.measure import measure_boom
@@ -22,6 +21,7 @@ from protractile.analysis.states import States
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.line import Line
 from protractile.geometry.boom import Boom, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.material import Material
 from protractile.geometry.segment import Segment
 from protractile.runs import CASES
@@ -31,7 +31,7 @@ from protractile.runs.case.reading import CheckedCase
 from protractile.runs.cautions.context import Context, State
 from protractile.runs.cautions.response import bulges
 from protractile.runs.check import check_case
-from protractile.runs.pipeline.largest_loads import static_states
+from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.statics import boom_with_play
 from tests.modal import modal_system

@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.analysis.plate_buckling import (
     PlateStress,
@@ -16,6 +15,7 @@ from protractile.analysis.plate_buckling import (
 )
 from protractile.analysis.rows import Row
 from protractile.cases import run_case
+from protractile.geometry.box import BoxSection
 from protractile.geometry.material import Material
 from protractile.geometry.segment import Segment
 from protractile.runs.pipeline.combinations import combination_rows, combination_states

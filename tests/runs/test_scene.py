@@ -10,13 +10,13 @@ import xarray as xr
 from matplotlib import rc_context
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
-from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.line import Line
 from protractile.dynamics.motion_laws import SCurve
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.boom import Boom, Material, Segment, Stop, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.joint import Drive
 from protractile.runs.case.build import build_boom
 from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion

@@ -10,7 +10,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from PIL import Image
-from protractile.geometry.box import BoxSection
 
 from protractile.analysis.curves import Curves, histories
 from protractile.analysis.model import section_forces
@@ -23,6 +22,7 @@ from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.line import Line
 from protractile.geometry.boom import Boom, Cylinder, Load, Material, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.compression import Compression
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom

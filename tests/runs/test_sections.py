@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.geometry.boom import Boom, Collar, Diaphragm, Segment
+from protractile.geometry.box import BoxSection
 from protractile.geometry.profiles import hexagon, octagon, u_section
 from protractile.geometry.section import Section
 from protractile.runs.case.build import build_boom

@@ -3,10 +3,9 @@
 
 from dataclasses import replace
 
-from protractile.geometry.box import BoxSection, infer_inner_section, infer_outer_section
-
 from protractile.dynamics.contact import PowerContact
 from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
+from protractile.geometry.box import BoxSection, infer_inner_section, infer_outer_section
 from protractile.geometry.section import Section
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)

@@ -9,9 +9,9 @@ import pytest
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
-from protractile.geometry.box import BoxSection
 
 from protractile.geometry.boom import PointMass, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import mesh_segment
 from protractile.geometry.plating import add_thickness
 from protractile.geometry.section import Section

@@ -8,7 +8,6 @@ from functools import cache
 import numpy as np
 import pytest
 from mpi4py import MPI
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
@@ -18,6 +17,7 @@ from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.boom import Boom, Cylinder, Load, Stop, Support
+from protractile.geometry.box import BoxSection
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions

@@ -11,7 +11,6 @@ from studies.reference_models.statics import static_response
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.lines import lines as lines_of_beams
@@ -22,6 +21,7 @@ from protractile.dynamics.line import Line
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Load, Support
+from protractile.geometry.box import BoxSection
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.stress.lines import band_boundaries, lines

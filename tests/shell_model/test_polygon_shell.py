@@ -5,7 +5,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
@@ -22,6 +21,7 @@ from protractile.geometry.boom import (
     Stop,
     Support,
 )
+from protractile.geometry.box import BoxSection
 from protractile.geometry.contact_places import ContactInterval, ContactLine
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.section import Section

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 from petsc4py import PETSc
-from protractile.geometry.box import BoxSection
 from scipy.sparse import csr_array
 from scipy.sparse.linalg import spsolve
 
@@ -18,6 +17,7 @@ from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Collar, Joint, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.shell_model.boom_shell import ShellOptions, segment_mesh
 from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from protractile.shell_model.segment.segment_shell import assemble_segment

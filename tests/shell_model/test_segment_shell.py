@@ -5,10 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.finite_element import Theory, finite_element_segment
 from protractile.geometry.boom import Direction, PointMass, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.contact_places import ContactInterval
 from protractile.shell_model.contact.wall_rows import CornerLines
 from protractile.shell_model.reduction.krylov import KrylovOptions

@@ -11,11 +11,11 @@ import xarray as xr
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
-from protractile.geometry.box import BoxSection
 
 from protractile.dynamics.excitation import Step
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Collar, Diaphragm, Load, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
 from protractile.geometry.plating import PlatedMesh, add_thickness
 from protractile.runs.report.scene import Scene

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 import xarray as xr
 from mpi4py import MPI
-from protractile.geometry.box import BoxSection
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Collar, Diaphragm, PadSize, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import diaphragm_breaks, mesh_segment
 from protractile.geometry.plating import PlatedMesh, add_thickness
 from protractile.geometry.profiles import octagon

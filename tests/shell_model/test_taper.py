@@ -6,7 +6,6 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 from mpi4py import MPI
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
@@ -14,6 +13,7 @@ from protractile.dynamics.excitation import Step
 from protractile.dynamics.integrator import AdaptiveStep
 from protractile.dynamics.motion import Motion
 from protractile.geometry.boom import Boom, BoomError, Diaphragm, Joint, PadSize, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import hexagon, u_section
 from protractile.geometry.section import COMPONENT, Section

@@ -10,11 +10,11 @@ import pytest
 pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
 
 from mpi4py import MPI
-from protractile.geometry.box import BoxSection
 
 from protractile.beam_model.finite_element import Theory, finite_element_segment
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Collar, PointMass, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import mesh_segment
 from protractile.geometry.plating import add_thickness
 from protractile.shell_model.reduction.mirror import (

@@ -5,7 +5,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from protractile.geometry.box import BoxSection
 
 from protractile.analysis.curves import HIGH, LOW
 from protractile.analysis.measure import measure_boom
@@ -30,6 +29,7 @@ from protractile.cases import run_case
 from protractile.dynamics.excitation import Step
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Load, Material, Segment, Support
+from protractile.geometry.box import BoxSection
 from protractile.geometry.profiles import hexagon
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase, convert_to_si
@@ -37,7 +37,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.response import deflections, utilisations
 from protractile.runs.check import check_case
-from protractile.runs.pipeline.largest_loads import static_states
+from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.pad_walls import largest_tip, wall_part
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.statics import boom_with_play, reaction_rows, statics
