@@ -5,12 +5,12 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
-from typing import NamedTuple
 
 import numpy as np
 
-from protractile.analysis.curves import Curves, diagrams
+from protractile.analysis.curves import diagrams
 from protractile.analysis.equilibria import vibrating_system
+from protractile.analysis.evaluation import Findings
 from protractile.analysis.measure import measure
 from protractile.analysis.model import AnalysisModel
 from protractile.analysis.modes import mode_curves, mode_rows
@@ -36,13 +36,6 @@ _ELEMENTS = 20
 
 # Resistances without factors.
 _UNREDUCED = Resistance()
-
-
-class Findings(NamedTuple):
-    """Extremes of all quantities, and curves along the segments."""
-
-    rows: Rows
-    curves: Curves
 
 
 def beam_of(boom: Boom, complete: Completion | None = None) -> AnalysisModel:
@@ -75,7 +68,7 @@ def statics(boom: Boom, duration: float = 10.0) -> Findings:
         NumericsError: there is no equilibrium at t = 0.
     """
     states = States.at_rest(beam_of(boom), duration)
-    return Findings(Rows(static_rows(states, BEAM)), Curves(diagrams(states, BEAM, REST)))
+    return Findings.of(static_rows(states, BEAM), diagrams(states, BEAM, REST))
 
 
 def modes(boom: Boom) -> Findings:
@@ -93,7 +86,7 @@ def modes(boom: Boom) -> Findings:
         raise NumericsError("the boom has no static equilibrium under the loads at t = 0")
     system, rest = found
     first = modes_about(AnalysisModel(model.boom, system, model.lines), np.asarray(rest))
-    return Findings(Rows(mode_rows(first, BEAM)), Curves(mode_curves(model.boom, first, BEAM)))
+    return Findings.of(mode_rows(first, BEAM), mode_curves(model.boom, first, BEAM))
 
 
 def prove(

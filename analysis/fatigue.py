@@ -90,23 +90,22 @@ def endurance(sizes: Array, category: float) -> Array:
     return np.asarray(np.where(sizes >= cut_off, cycles, np.inf))
 
 
-def life_rows(
-    stresses: Sequence[Measured],
-    model: str,
-    play: bool,
-    category: float | None,
-    partial_factor: float,
-    repeats: float,
-) -> Iterator[Row]:
+class Life(NamedTuple):
+    """Data of fatigue damage."""
+
+    category: float | None = None  #: detail category in MPa; None for cycles without damage
+    partial_factor: float = 1.0  #: factor of stress ranges
+    repeats: float = 1.0  #: number of runs in the service life
+
+
+def life_rows(stresses: Sequence[Measured], model: str, play: bool, life: Life) -> Iterator[Row]:
     """Yield cycles, stress ranges and damages of a segment where its stress varies most.
 
     Args:
         stresses: stresses of the outer fibres of a segment in motion.
         model: name of the model.
         play: False for the boom without play.
-        category: detail category in MPa; None if there is none, and no damage.
-        partial_factor: factor of stress ranges.
-        repeats: number of runs in the service life.
+        life: detail category, factor and repeats.
     """
     if not stresses:
         return
@@ -120,9 +119,10 @@ def life_rows(
         "stress_range": float(sizes.max(initial=0.0)),
         "equivalent_range": float((counts @ sizes**STEEP) ** (1.0 / STEEP)),
     }
-    if category is not None:
-        damage = float((counts / endurance(partial_factor * sizes, MEGA * category)).sum())
-        numbers |= {"run_damage": damage, "damage": repeats * damage}
+    if life.category is not None:
+        raised = life.partial_factor * sizes
+        damage = float((counts / endurance(raised, MEGA * life.category)).sum())
+        numbers |= {"run_damage": damage, "damage": life.repeats * damage}
     for name, value in numbers.items():
         limit = 1.0 if name == "damage" else None
         yield Row(model, MOTION, play, name, widest.part, "", value, x, y, z, limit=limit)

@@ -17,6 +17,7 @@ from matplotlib.path import Path
 
 from protractile.analysis.curves import Curves, diagrams
 from protractile.analysis.equilibria import extended_equilibria
+from protractile.analysis.evaluation import evaluate_motion, evaluate_rest
 from protractile.analysis.rows import REST, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.integrator import FixedStep
@@ -36,7 +37,7 @@ from protractile.runs.folder.cache import Cache, key
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
 from protractile.runs.pipeline.estimates import Cost, motion_cost
-from protractile.runs.pipeline.evaluation import evaluate_motion, evaluate_rest, loaded_model
+from protractile.runs.pipeline.evaluation import life_of
 from protractile.runs.pipeline.model_run import summarise_motion
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
 from protractile.runs.pipeline.results import Results, label
@@ -102,20 +103,21 @@ def beam_results(
     """
     case, built, stiffness = build_beam(checked, draft.case, draft.shells)
     boom, (model,) = checked.boom, case.models
-    loaded = loaded_model(boom, model, built)
+    loaded = model.analysis_model(boom, built)
     check_current()
     rests = States.at_rest(loaded, case.time.duration)
     check_current()
     plan = MotionPlan.of(built.system, case, model)
     _check_cost(motion_cost(checked, model, plan.motion, built.system.num_modes), case, draft.file)
     extended = States.of(loaded, extended_equilibria(loaded.system, case.time.duration))
-    static = evaluate_rest(model.name, rests, extended, case.buckling is not None)
+    at_rest = evaluate_rest(model.name, rests, extended, case.buckling is not None)
+    static, curves, first = Rows(at_rest[0]), Curves(at_rest[1]), at_rest[2]
     none = xr.Dataset(coords={"model": [model.name]})
-    results = _results(case, none, Rows(static.rows), Curves(static.curves))
+    results = _results(case, none, static, curves)
     table, farthest = summary_table(results), (rests + extended).farthest
     assert table is not None
     shown = Curves(diagrams(farthest, model.name, REST))
-    hertz = ", ".join(number(mode.frequency) for mode in static.modes[1:3])
+    hertz = ", ".join(number(mode.frequency) for mode in first[1:3])
     more = [("Second and third natural frequency, Hz", hertz), ("Stiffness of the beam", stiffness)]
     utilisation = utilisation_verdict(results, model.name)
     yield {
@@ -134,9 +136,9 @@ def beam_results(
     ):
         trajectory = replace(plan, integrator=integrator).trajectory(lambda _: check_current())
         check_current()
-        rows, _ = evaluate_motion(States.in_motion(loaded, trajectory), model.name, case.life)
+        rows, _ = evaluate_motion(States.in_motion(loaded, trajectory), model.name, life_of(case))
         data = label(boom, {model.name: trajectory})
-        results = _results(case, data, Rows([*static.rows, *rows]), Curves(static.curves))
+        results = _results(case, data, Rows([*static, *rows]), curves)
         tip = float(rests.observed("tip")[0])
         summary = summarise_motion(model, plan.motion.system, trajectory, built.num_dofs, tip)
         results.summary.models = {model.name: summary}

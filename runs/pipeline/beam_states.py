@@ -9,7 +9,6 @@ from __future__ import annotations
 from dataclasses import replace
 
 from protractile.analysis.beams import beam_of
-from protractile.analysis.model import AnalysisModel
 from protractile.analysis.states import States
 from protractile.geometry.boom import Boom
 from protractile.runs.case.build import build_boom
@@ -47,5 +46,5 @@ def moving_states(case: Case) -> States:
     joined = model.model_boom(build_boom(case))
     built = build_on(joined, case, model)
     trajectory = MotionPlan.of(built.system, case, model).trajectory()
-    loaded = AnalysisModel.of(joined.boom, built.system, model.lines(joined.boom, built))
+    loaded = model.analysis_model(joined.boom, built)
     return States.in_motion(loaded, trajectory)

@@ -9,28 +9,24 @@ from dataclasses import replace
 from typing import NamedTuple
 
 from protractile.analysis.bonded import bonded_system
-from protractile.analysis.curves import Curve, Curves, diagrams, envelope, histories
+from protractile.analysis.curves import Curve, Curves, diagrams, histories
 from protractile.analysis.equilibria import (
     equilibria,
-    extended_equilibria,
     instants,
     vibrating_state,
 )
-from protractile.analysis.fatigue import HAS_RAINFLOW, life_rows
-from protractile.analysis.measure import measure_boom, measure_segment, measure_walls
+from protractile.analysis.evaluation import evaluate, evaluate_motion
+from protractile.analysis.fatigue import Life
+from protractile.analysis.measure import measure_walls
 from protractile.analysis.model import AnalysisModel
 from protractile.analysis.modes import (
     Mode,
     ModeComparison,
     match_modes,
-    mode_curves,
     mode_rows,
     modes,
 )
-from protractile.analysis.plate_buckling import measure_plates
 from protractile.analysis.rows import (
-    EXTENDED,
-    FARTHEST,
     MOTION,
     REST,
     Row,
@@ -42,9 +38,8 @@ from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom
 from protractile.geometry.telescoping import travel
-from protractile.runs.case.kinds.model import BuiltModel
 from protractile.runs.case.motions import with_initial_slack
-from protractile.runs.case.schema import Case, LifeTable, Model
+from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.design_results import DesignResults, ModelDesignResults
 from protractile.runs.pipeline.model_quality import quality_notes, reference_of
@@ -66,70 +61,17 @@ class Evaluation(NamedTuple):
     design: ModelDesignResults  #: other design results
 
 
-def loaded_model(boom: Boom, model: Model, built: BuiltModel) -> AnalysisModel:
-    """Return a built model of a boom under all constant loads."""
-    boom_of_model = boom.bonded if model.bonded else boom
-    return AnalysisModel.of(boom_of_model, built.system, model.lines(boom, built), model.smooth)
-
-
-def evaluate_rest(name: str, rests: States, extended: States, panels: bool) -> Evaluation:
-    """Return modes and results of static states.
-
-    Args:
-        name: name of the model.
-        rests: states under the loads at t = 0 and extreme loads; empty without an equilibrium.
-        extended: states at the largest and smallest extension.
-        panels: True for buckling factors of plates by panel formulas.
-    """
-    if not rests.time.size:
-        return Evaluation([], [], [], ModelDesignResults())
-    rows, curves = [*static_rows(rests, name)], [*diagrams(rests, name, REST)]
-    if extended.time.size:
-        rows += static_rows(extended, name, EXTENDED)
-        curves += diagrams(extended, name, EXTENDED)
-    farthest = (rests + extended).farthest
-    rows += extremes(measure_boom(farthest), name, FARTHEST)
-    rows += extremes(measure_plates(farthest) if panels else (), name, FARTHEST)
-    system, rest = vibrating_state(
-        rests.model.system, dict(zip(rests.time.tolist(), rests.positions, strict=True))
-    )
-    first = modes(replace(rests.model, system=system), rest)
-    rows += mode_rows(first, name)
-    curves += mode_curves(rests.boom, first, name)
-    return Evaluation(rows, curves, first, ModelDesignResults())
-
-
-def evaluate_motion(
-    states: States, name: str, life: LifeTable, play: bool = True
-) -> tuple[list[Row], list[Curve]]:
-    """Return extremes, fatigue damage and envelopes of a motion."""
-    rows, curves = [*extremes(measure_boom(states), name, MOTION, play)], list[Curve]()
-    for number, (segment, line) in enumerate(
-        zip(states.boom.segments, states.model.lines, strict=True)
-    ):
-        forces = states.section_forces(number)
-        measured = [*measure_segment(states, number, forces)]
-        rows += extremes(measured, name, MOTION, play)
-        curves += envelope(segment.name, line.x, forces, name, play)
-        if HAS_RAINFLOW:
-            stresses = [one for one in measured if one.quantity == "stress"]
-            fatigue = life.detail_category, life.partial_factor, life.repeats
-            rows += life_rows(stresses, name, play, *fatigue)
-    if states.recorded is not None and "rope_force_peak" in states.recorded:
-        weight = states.recorded["rope_force_peak"].attrs["weight"]
-        rows.append(Row(name, REST, play, "rope_force", "rope", "", weight))
-    return rows, curves
+def life_of(case: Case) -> Life:
+    """Return the data of fatigue damage of a case."""
+    return Life(case.life.detail_category, case.life.partial_factor, case.life.repeats)
 
 
 def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
     """Return the results of a model after its run."""
     model, trajectory, shell = ran.model, ran.motion.trajectory, ran.shell
-    loaded, duration = loaded_model(boom, model, ran.built), case.time.duration
-    rests = States.of(loaded, equilibria(loaded.system, instants(loaded.system, duration)))
-    extended = States.of(loaded, extended_equilibria(loaded.system, duration))
-    at_rest = evaluate_rest(model.name, rests, extended, case.buckling is not None)
-    rows, curves = evaluate_motion(States.in_motion(loaded, trajectory), model.name, case.life)
-    rows, curves = [*at_rest.rows, *rows], [*at_rest.curves, *curves]
+    loaded, panels = model.analysis_model(boom, ran.built), case.buckling is not None
+    settings = case.time.duration, panels, life_of(case)
+    rows, curves, first = evaluate(loaded, model.name, trajectory, *settings)
     if shell is not None:
         rows += extremes(measure_walls(loaded.boom, shell.stresses), model.name, MOTION)
         curves += histories(shell.stresses, model.name)
@@ -139,7 +81,7 @@ def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
         hoisting=hoisting(case, boom, trajectory),
         drives=crane_drives(case, boom, trajectory.data),
     )
-    return Evaluation(rows, curves, at_rest.modes, design)
+    return Evaluation(rows, curves, first, design)
 
 
 def evaluate_both(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
@@ -161,7 +103,7 @@ def _without_play(boom: Boom, case: Case, ran: ModelRun) -> Iterator[tuple[list[
 
     A motion that cannot be computed is left out.
     """
-    model, loaded = ran.model, loaded_model(boom, ran.model, ran.built)
+    model, loaded = ran.model, ran.model.analysis_model(boom, ran.built)
     times = instants(loaded.system, case.time.duration)
     rests = States.of(loaded, equilibria(loaded.system, times))
     bonded = _bonded_model(boom, case, model, rests)
@@ -180,7 +122,9 @@ def _without_play(boom: Boom, case: Case, ran: ModelRun) -> Iterator[tuple[list[
     if not boom.telescopes:
         with suppress(*NUMERICAL_ERRORS):
             motion = MotionPlan.of(bonded.system, case, model).trajectory()
-            yield evaluate_motion(States.in_motion(bonded, motion), model.name, case.life, False)
+            yield evaluate_motion(
+                States.in_motion(bonded, motion), model.name, life_of(case), False
+            )
 
 
 def _bonded_model(boom: Boom, case: Case, model: Model, rests: States) -> AnalysisModel:

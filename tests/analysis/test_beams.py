@@ -130,3 +130,18 @@ def test_proofs_compare_states_of_each_combination(arm: pt.Boom) -> None:
     assert tip.value == pytest.approx(4.0 * abs(value(pt.statics(arm).rows, "tip")), rel=1e-6)
     only = pt.prove(arm, {"own": []}, requested=["deflection"], permitted_tip=0.5)
     assert [row.quantity for row in only] == ["deflection"]
+
+
+def test_a_motion_is_evaluated_as_a_run_of_a_case(telescope: pt.Boom) -> None:
+    """Reference: other code path, the tip of the trajectory and the deflection at rest."""
+    beam = pt.BeamElements(telescope, theory="timoshenko")
+    motion = beam.simulate(0.3)
+    rows, curves = beam.evaluate(motion)
+    (moved,) = rows.where(quantity="tip", state="motion")
+    tips = motion.data["tip"].values
+    assert abs(moved.value) == np.abs(tips).max()
+    assert moved.value == tips[np.isclose(motion.time, moved.time)][0]
+    (rest,) = rows.where(quantity="tip", state=REST)
+    assert rows.dynamic_factor(moved) == abs(moved.value) / abs(rest.value)
+    names = {curve.state for curve in curves}
+    assert {REST, "minimum", "maximum", "mode 1"} <= names

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("rainflow", reason="the cycles are counted by it")
 
-from protractile.analysis.fatigue import count_stress_ranges, endurance, life_rows
+from protractile.analysis.fatigue import Life, count_stress_ranges, endurance, life_rows
 from protractile.analysis.measure import Measured
 from protractile.analysis.rows import Row
 from protractile.cases import run_case
@@ -23,7 +23,7 @@ def life(
     """Return the rows of a stress history in Pa at x = 2 m, z = 0.1 m of a segment."""
     at = np.array([2.0]), np.array([0.0]), np.array([0.1])
     measured = Measured("stress", "arm", "", stress[:, None], None, at)
-    found = life_rows([measured], "beam", True, category, factor, repeats)
+    found = life_rows([measured], "beam", True, Life(category, factor, repeats))
     return {row.quantity: row for row in found}
 
 

@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
     from mpi4py import MPI
 
+    from protractile.analysis.evaluation import Findings
+    from protractile.analysis.model import AnalysisModel
     from protractile.beam_model.calibration import Calibration
     from protractile.dynamics.trajectory import Trajectory
     from protractile.runs.folder.cache import Cache
@@ -283,6 +285,10 @@ class ModelTable(CaseTable):
         Raises:
             BoomError: the model is not valid for the boom.
         """
+        return self._built()[1].system
+
+    def _built(self) -> tuple[Boom, BuiltModel]:
+        """Return the boom with the contact laws of the model, and the built model."""
         if self._boom is None:
             raise BoomError(self.name, "missing; give the boom that it is a model of")
         check_parts(self._boom)
@@ -295,7 +301,7 @@ class ModelTable(CaseTable):
             from protractile.runs.folder.cache import Cache
 
             context = BuildContext(MPI.COMM_SELF, cache=Cache.of_user())
-        return self.build(model_boom, context).system
+        return model_boom.boom, self.build(model_boom, context)
 
     def simulate(
         self,
@@ -333,6 +339,32 @@ class ModelTable(CaseTable):
             self.system(), duration, output_step, at_rest, damping_ratio, rayleigh
         )
         return (AdaptiveStep(tolerance) if self.step is None else FixedStep(self.step))(motion)
+
+    def evaluate(self, motion: Trajectory) -> Findings:
+        """Return rows and curves of the model at rest and in a motion.
+
+        >>> beam = pt.BeamElements(boom)
+        >>> rows, curves = beam.evaluate(beam.simulate(0.1))
+        >>> f"{1e3 * rows.where(quantity='tip', state='motion').largest.value:.0f} mm"
+        '-59 mm'
+
+        Args:
+            motion: motion of :meth:`simulate`.
+        """
+        from protractile.analysis.evaluation import Findings, evaluate
+        from protractile.analysis.fatigue import Life
+
+        settings = float(motion.time[-1]), True, Life()
+        model = self.analysis_model(*self._built())
+        rows, curves, _ = evaluate(model, self.name, motion, *settings)
+        return Findings.of(rows, curves)
+
+    def analysis_model(self, boom: Boom, built: BuiltModel) -> AnalysisModel:
+        """Return the built model of a boom under all constant loads."""
+        from protractile.analysis.model import AnalysisModel
+
+        boom_of_model = boom.bonded if self.bonded else boom
+        return AnalysisModel.of(boom_of_model, built.system, self.lines(boom, built), self.smooth)
 
     @abstractmethod
     def critical_factor(self, model_boom: ModelBoom) -> float | None:
