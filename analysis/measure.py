@@ -104,11 +104,16 @@ def measure_boom(states: States) -> Iterator[Measured]:
 
 
 def _label(boom: Boom, station: Station) -> tuple[str, str]:
-    """Return the part of a station, and its place, which does not depend on the extension."""
+    """Return the part of a station, and its place, which does not depend on the extension.
+
+    A segment in several others counts the stations of all its joints.
+    """
     name = boom.segments[station.segment].name
     if station.joint is None:
         return name, f"stop {station.number + 1}"
-    return name, f"station {station.place + 1}{', lateral' if station.direction == 'y' else ''}"
+    before = (one for one in boom.joints[: station.number] if one.inner == station.segment)
+    number = 1 + station.place + sum(len(joint.stations) for joint in before)
+    return name, f"station {number}{', lateral' if station.direction == 'y' else ''}"
 
 
 def _recorded_contacts(boom: Boom, system: GapSystem, data: xr.Dataset) -> Iterator[Measured]:

@@ -108,6 +108,18 @@ def test_pads_carry_the_forces_of_their_stations(telescope: pt.Boom) -> None:
         assert pressed.value == pytest.approx(pads[0].value / (0.1 * 0.08), rel=1e-9)
 
 
+def test_a_segment_counts_the_stations_of_all_its_joints(telescope: pt.Boom) -> None:
+    """Reference: by construction, one joint with two stations or two joints with one each."""
+    (joint,) = telescope.joints
+    split = replace(telescope, joints=[replace(joint, stations=(x,)) for x in joint.stations])
+    rows, whole = (pt.statics(boom).rows for boom in (split, telescope))
+    for quantity in ("contact_force", "pad_force"):
+        of_split, of_whole = (one.where(quantity=quantity, state=REST) for one in (rows, whole))
+        assert [row.key for row in of_split] == [row.key for row in of_whole]
+        values = [row.value for row in of_whole]
+        assert [row.value for row in of_split] == pytest.approx(values, rel=1e-6)
+
+
 def test_proofs_compare_states_of_each_combination(arm: pt.Boom) -> None:
     """Reference: by hand, half the yield strength, and the larger of two forces governs."""
     forces = {name: pt.Load("arm", "z", 3.0 * FORCE, x=x, history=pt.Step())
