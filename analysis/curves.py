@@ -92,10 +92,16 @@ class Curves(Labelled[Curve]):
 
     @classmethod
     def of(cls, dataset: xr.Dataset) -> Self:
-        """Return the curves of a dataset as that of :attr:`dataset`."""
-        if "count" not in dataset:
+        """Return the curves of a dataset as that of :attr:`dataset`.
+
+        Raises:
+            ValueError, KeyError: the dataset is damaged.
+        """
+        if not dataset.variables:
             return cls()
         ends = np.cumsum(dataset["count"].values)
+        if ends[-1] != dataset.sizes["point"]:
+            raise ValueError("the points are not those of the curves")
         x = np.split(dataset["x"].values, ends[:-1])
         points = {
             name: np.split(dataset[name].values, ends[:-1]) for name in _UNITS if name in dataset

@@ -70,6 +70,10 @@ class Row(NamedTuple):
         return self.quantity, self.part, self.place
 
 
+# Columns of files.
+_COLUMNS = [*Row._fields, "unit", "utilisation"]
+
+
 class Rows(Labelled[Row]):
     """Rows of a run, of a check or of proofs.
 
@@ -120,7 +124,7 @@ class Rows(Labelled[Row]):
         """Write a table of comma-separated values, with units and utilisations."""
         with path.open("w", encoding="utf-8", newline="") as file:
             table = csv.writer(file, lineterminator="\n")
-            table.writerow([*Row._fields, "unit", "utilisation"])
+            table.writerow(_COLUMNS)
             table.writerows([*row, row.of.unit, row.utilisation] for row in self)
 
     @classmethod
@@ -128,20 +132,25 @@ class Rows(Labelled[Row]):
         """Read a table of :meth:`save`.
 
         Raises:
-            OSError, ValueError, KeyError, TypeError: the file cannot be read, or is damaged.
+            OSError, ValueError, KeyError: the file cannot be read, or is damaged.
         """
         with path.open(encoding="utf-8", newline="") as file:
-            return cls(_row(entry) for entry in csv.DictReader(file))
+            try:
+                lines = [*csv.reader(file)]
+            except csv.Error as error:
+                raise ValueError(error) from None
+        if lines[:1] != [_COLUMNS] or any(len(line) != len(_COLUMNS) for line in lines):
+            raise ValueError(f"a line has other columns than {', '.join(_COLUMNS)}")
+        return cls(map(_row, lines[1:]))
 
 
-def _row(entry: dict[str, str]) -> Row:
-    names = "x", "y", "z", "time", "limit"
-    numbers = (float(entry[name]) if entry[name] else None for name in names)
-    model, state, play = entry["model"], entry["state"], entry["play"] == "True"
-    value = float(entry["value"])
-    return Row(
-        model, state, play, entry["quantity"], entry["part"], entry["place"], value, *numbers
-    )
+def _row(line: list[str]) -> Row:
+    model, state, play, quantity, part, place, value, *others = line[: len(Row._fields)]
+    numbers = (float(other) if other else None for other in others)
+    played = {"True": True, "False": False}[play]
+    if quantity not in MEASURED and quantity not in PROVED:
+        raise KeyError(quantity)
+    return Row(model, state, played, quantity, part, place, float(value), *numbers)
 
 
 def extremes(

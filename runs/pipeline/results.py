@@ -117,7 +117,7 @@ class Results:
             trajectories = trajectories.assign_coords(station=("station", np.zeros(0)))
         summary = _read(folder / SUMMARY, Summary.load)
         rows = _read(folder / ROWS, Rows.load)
-        curves = _read(folder / CURVES, read_netcdf)
+        curves, mark_of_curves = _read(folder / CURVES, _marked_curves)
         ensembles = _read(folder / ENSEMBLES, read_netcdf) if summary.ensemble else None
         if not (folder / CASE).is_file():
             raise BadInput(str(folder), CASE, "missing; give the folder of a run that has finished")
@@ -127,14 +127,14 @@ class Results:
             what = "was written by another version with other keys; run the case again"
             raise BadInput(str(folder), CASE, what)
         marks = {TRAJECTORIES: trajectories.attrs.get("case_hash"), SUMMARY: summary.case_hash}
-        marks[CURVES] = curves.attrs.get("case_hash")
+        marks[CURVES] = mark_of_curves
         if ensembles is not None:
             marks[ENSEMBLES] = ensembles.attrs.get("case_hash")
         for name, mark in marks.items():
             if mark != expected:
                 what = f"is not of the case in {CASE}; run the case again"
                 raise BadInput(str(folder), name, what)
-        return cls(case, trajectories, summary, ensembles, rows, Curves.of(curves))
+        return cls(case, trajectories, summary, ensembles, rows, curves)
 
     def save(self, folder: Path | str) -> None:
         """Write a folder for :meth:`load` and ``report``; it replaces the folder of an earlier run.
@@ -385,6 +385,11 @@ def _read(path: Path, how: Callable[[Path], Any]) -> Any:
     except (OSError, ValueError, TypeError, KeyError) as error:
         what = f"cannot be understood ({error}); run the case again"
     raise BadInput(str(path.parent), path.name, what)
+
+
+def _marked_curves(path: Path) -> tuple[Curves, str | None]:
+    dataset = read_netcdf(path)
+    return Curves.of(dataset), dataset.attrs.get("case_hash")
 
 
 def _whole_fields(path: Path) -> xr.Dataset:

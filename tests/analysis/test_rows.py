@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Rows and curves of results: selections, extremes, files."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +43,27 @@ def test_a_file_keeps_every_row_to_the_bit(
     path = tmp_path_factory.mktemp("rows") / "results.csv"
     Rows(rows).save(path)
     assert Rows.load(path) == tuple(rows)
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda text: "",
+        lambda text: text[: len(text) // 2],
+        lambda text: text[:-5],
+        lambda text: text + "beam\n",
+        lambda text: text.replace("tip", "other"),
+        lambda text: text.replace("True", "perhaps"),
+        lambda text: text.replace("-1.0", "one"),
+        lambda text: text + 200_000 * "x",
+    ],
+)
+def test_a_damaged_file_is_an_error(damage: Callable[[str], str], tmp_path: Path) -> None:
+    path = tmp_path / "results.csv"
+    Rows(Row(name, REST, True, "tip", "tip", "", -1.0) for name in "abc").save(path)
+    path.write_text(damage(path.read_text("utf-8")), "utf-8")
+    with pytest.raises((ValueError, KeyError)):
+        Rows.load(path)
 
 
 def test_the_table_has_units_and_utilisations() -> None:
@@ -148,6 +170,9 @@ def test_curves_of_any_length_are_one_dataset(tmp_path: Path) -> None:
     (moment,) = read.where(model="beam", state=REST)
     assert moment.values["moment"].tolist() == [1.0, 1.0, 1.0]
     assert Curves.of(Curves().dataset) == ()
+    for damaged in (curves.dataset.drop_vars("count"), curves.dataset.isel(point=slice(3))):
+        with pytest.raises((ValueError, KeyError)):
+            Curves.of(damaged)
 
 
 def test_a_history_has_the_largest_stress_of_each_interval() -> None:
