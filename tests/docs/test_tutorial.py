@@ -176,8 +176,8 @@ def test_coarse_shell_is_close_to_the_page(run: Runner, lift: str) -> None:
         tip = numbers("maximum tip deflection (mm)", 1)[column]
         assert 1e3 * largest == pytest.approx(tip, rel=5e-3)
         patches = {
-            (place.segment, round(place.x, 3)): max(place.von_mises_patch)
-            for place in results.summary.models["shell"].stress.history.places
+            (curve.segment, round(curve.place, 3)): curve.values["von_mises_patch"].max()
+            for curve in results.curves.where(model="shell", state="history")
         }
         head, tail = patches["base", 6.5], patches["fly", 5.3]
         page = numbers("plate stress at the head of the base (MPa)")[column]
@@ -201,12 +201,13 @@ def test_table_of_meshes_holds_at_the_default_tolerance() -> None:
     """Reference: the table of large models, to its digits; the tip peaks at 0.51 s."""
     pytest.importorskip("dolfinx", reason="shells need FEniCSx")
     case = pt.change(pt.load_case(pt.CASES / "lift.toml"), **{"time.duration": 1.0})
-    shell = pt.run_case(case, models=["shell"]).summary.models["shell"]
+    results = pt.run_case(case, models=["shell"])
+    shell = results.summary.models["shell"]
     page = (DOCS / "how-to" / "large-models.md").read_text("utf-8")
     row = re.search(rf"^\| {case.models[2].contact_tolerance} \|(.*)\|$", page, re.MULTILINE)
     dofs, error, tip, plates = (float(cell) for cell in row[1].split("|"))
     assert shell.degrees_of_freedom == dofs
     assert 100.0 * shell.mesh_error == pytest.approx(error, abs=0.005)
     assert -1e3 * shell.first_peak["tip"].height == pytest.approx(tip, abs=0.05)
-    patch = max(max(place.von_mises_patch) for place in shell.stress.history.places)
+    patch = results.rows.where(quantity="wall_stress").largest.value
     assert patch / 3.55e6 == pytest.approx(plates, abs=0.1)
