@@ -28,7 +28,9 @@ from protractile.beam_model.statics import (
 )
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.boom import Boom
+from protractile.geometry.fields import BoomError, format_value, is_positive
 from protractile.geometry.load import Load
+from protractile.geometry.typography import choices
 
 # Elements of the longest segment. The error of stresses under a uniform load is below 0.1 %.
 _ELEMENTS = 20
@@ -116,14 +118,33 @@ def prove(
         duration: duration in s of the histories of the loads.
 
     Raises:
+        BoomError: a kind of proof is unknown, a limit or a factor is not above 0, or a load is not
+            one of the boom.
         NumericsError: a combination has no equilibrium at t = 0.
     """
+    _check_request(requested, resistance, permitted_tip)
     proved = list[Row]()
     for name, loads in combinations.items():
         loaded = replace(boom, loads=(*boom.loads, *loads))
-        states = States.at_rest(beam_of(loaded), duration)
+        try:
+            states = States.at_rest(beam_of(loaded), duration)
+        except NumericsError as error:
+            raise NumericsError(f"{name}: {error}") from error
         rows = Rows(extremes(measure(states), BEAM, COMBINATION + name))
         factor = estimate_critical_factor(loaded) if loaded.compressed else None
         given = requested, resistance, curve, permitted_tip, factor
         proved += proofs(states, rows, *given)
     return governing(proved)
+
+
+def _check_request(
+    requested: Collection[str], resistance: Resistance, permitted_tip: float | None
+) -> None:
+    for kind in requested:
+        if kind not in BY_BEAMS:
+            what = f"{kind!r} is no kind of proof by beams; give {choices(BY_BEAMS)}"
+            raise BoomError("requested", what)
+    numbers = {f"resistance.{name}": factor for name, factor in resistance._asdict().items()}
+    for name, value in (numbers | {"permitted_tip": permitted_tip}).items():
+        if value is not None and not is_positive(value):
+            raise BoomError(name, f"must be a number above 0, got {format_value(value)}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Stresses of outer fibres and of shell walls, and utilisations.
+"""Nominal stresses of outer fibres.
 
 σ = N/A + M_y z/J + M_z y/J_z (Navier 1826). Section forces of a shell are integrals of its wall
 stresses, so that beams and shells give the same nominal stress.
@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from operator import attrgetter
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,9 +17,6 @@ from protractile.dynamics.line import Line, LineQuantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Segment
 from protractile.geometry.section import Section
-
-if TYPE_CHECKING:
-    pass
 
 
 @dataclass(frozen=True, slots=True)

@@ -32,8 +32,12 @@ def check_boom(boom: Boom) -> None:
     Raises:
         BoomError: they are not; see :class:`.geometry.boom.Boom`.
     """
+    names = [segment.name for segment in boom.segments]
     for number, segment in enumerate(boom.segments):
         check_segment(segment, f"segments[{number}]")
+        if segment.name in names[:number]:
+            what = f"{segment.name!r} is the name of another segment already; give each its own"
+            raise BoomError(f"segments[{number}].name", what)
     for number, joint in enumerate(boom.joints):
         _check_joint(boom, f"joints[{number}]", joint)
     _check_order(boom)

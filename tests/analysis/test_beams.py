@@ -2,12 +2,14 @@
 """Statics and modes of a boom from Python, without a case file."""
 
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
 
 import protractile as pt
 from protractile.analysis.rows import INITIAL, REST, Rows
+from protractile.geometry.axial import with_compression
 
 STEEL = pt.Material(2.1e11, 0.3, 7850.0, yield_strength=355e6)
 BOX = pt.BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
@@ -157,3 +159,25 @@ def test_a_motion_is_evaluated_as_a_run_of_a_case(telescope: pt.Boom) -> None:
     assert rows.dynamic_factor(moved) == abs(moved.value) / abs(rest.value)
     names = {curve.state for curve in curves}
     assert {REST, "minimum", "maximum", "mode 1"} <= names
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"requested": ["yeild"]}, "'yeild' is no kind of proof by beams; give 'yield', 'plate'"),
+        ({"requested": ["patch"]}, "'patch' is no kind of proof by beams"),
+        ({"permitted_tip": 0.0}, "permitted_tip: must be a number above 0"),
+        ({"resistance": pt.Resistance(pad=-1.0)}, "resistance.pad: must be a number above 0"),
+    ],
+)
+def test_a_wrong_request_is_an_error(arm: pt.Boom, wrong: dict[str, Any], message: str) -> None:
+    with pytest.raises(pt.BoomError, match=message):
+        pt.prove(arm, {"own": []}, **wrong)
+
+
+def test_the_combination_without_an_equilibrium_is_named(arm: pt.Boom) -> None:
+    """Reference: analytic, about 50 times the buckling force of a cantilever (Euler 1744)."""
+    thrust = pt.Thrust("arm", x=LENGTH, force=1e8)
+    buckled = replace(arm, segments=with_compression(arm.segments, [], [thrust]))
+    with pytest.raises(pt.NumericsError, match="far: the boom has no static equilibrium"):
+        pt.prove(buckled, {"far": []})

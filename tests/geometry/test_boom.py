@@ -172,6 +172,9 @@ FAULTS: dict[str, list[Changes]] = {
     "between 0 and 10 m": [
         {"joint": {"locked_at": 11.0}},
     ],
+    "segments[1].name: 'outer' is the name of another segment already; give each its own": [
+        {"inner": {"name": "outer"}},
+    ],
     "segments[1].section: does not mirror itself in y, and would bend sideways under its weight": [
         {"inner": {"section": BoxSection(0.45, 0.25, 0.006, 0.006, left_web=0.005)}},
     ],
