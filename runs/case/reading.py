@@ -19,6 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from protractile.analysis.rows import BEAM
 from protractile.dynamics.motion import MOST_OUTPUTS
 from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.fields import describe, is_number
@@ -339,6 +340,8 @@ def _check_boom(checked: CheckedCase) -> None:
     check_names("model", [model.name for model in case.models])
     for number, model in enumerate(case.models, start=1):
         where = f"model[{number}]"
+        if model.name == BEAM:
+            raise BoomError(f"{where}.name", f"{BEAM!r} is a model in all results; give another")
         _check_step(f"{where}.step", model.step, case.time)
         try:
             model.check(where, checked.model_boom(model))

@@ -168,6 +168,8 @@ NUMBERS = [
     }),
     ('name = "kantorovich-5"', 'name = "kantorovich-4"',
      "model[2].name: 'kantorovich-4' is the name of model[1] already; give each its own"),
+    ('name = "kantorovich-5"', 'name = "beam estimate"',
+     "model[2].name: 'beam estimate' is a model in all results; give another"),
     ('name = "inner"', 'name = "outer"',
      "segment[2].name: 'outer' is the name of segment[1] already; give each its own"),
     *replacing('inner = "inner"', {
