@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from protractile.analysis.pads import largest_forces, loaded_pads, side_force
+from protractile.analysis.pads import largest_forces, loaded_pads, pad_forces, side_force
 from protractile.analysis.states import States
 from protractile.analysis.stresses import Fibres
 from protractile.dynamics.gap_system import GapSystem
@@ -21,7 +21,7 @@ from protractile.dynamics.line import LineQuantity
 from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom, Segment
-from protractile.geometry.contact_places import contact_centres
+from protractile.geometry.contact_places import contact_centres, pads
 from protractile.geometry.cylinder import forces
 from protractile.geometry.joint import PADS_OF_SIDE, Joint, PadSize
 from protractile.geometry.section import EACH_SIDE, Direction
@@ -150,6 +150,7 @@ def _static_contacts(states: States) -> Iterator[Measured]:
         systems = [system.at_time(at) for at in time.tolist()]
         at_times = zip(systems, states.positions, strict=True)
         gaps = np.array([there.rows @ position for there, position in at_times])
+    contacts = pads(boom)
     for station in boom.stations:
         # The stations of a model without play have no contacts.
         here = np.flatnonzero(system.station_of_row == station.index)
@@ -165,7 +166,14 @@ def _static_contacts(states: States) -> Iterator[Measured]:
         if station.direction == "y" and station.joint is not None:
             closed, play = _closed_play(system, gaps, here), station.joint.lateral_play
             yield _single("closed_play", part, closed, time, station.x, place, play or None)
-        for pad, name, force in loaded_pads(station, sides):
+        pairs = [pair for pair in contacts if pair.station.index == station.index]
+        loaded = loaded_pads(station, sides)
+        if station.joint is not None and station.joint.pads and len(pairs) == here.size:
+            forces_of_pairs = [
+                _on_side(systems, pair.side, gaps, here[k : k + 1]) for k, pair in enumerate(pairs)
+            ]
+            loaded = pad_forces(station, pairs, forces_of_pairs)
+        for pad, name, force in loaded:
             yield from _pad(part, f"{place}, {name}", station.x, force, pad, time)
 
 

@@ -3,14 +3,16 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 
 from protractile.dynamics.contact import ContactLaw
 from protractile.geometry.arrays import Array
+from protractile.geometry.contact_places import Pad
 from protractile.geometry.joint import PADS_OF_SIDE, SIDES, PadSide, PadSize
-from protractile.geometry.section import EACH_SIDE
+from protractile.geometry.section import EACH_SIDE, Offset, Side
 from protractile.geometry.station import Station
 
 # Name of each side, by direction.
@@ -106,6 +108,33 @@ def loaded_pads(station: Station, sides: Sequence[Array]) -> Iterator[tuple[PadS
         ):
             if pad is not None:
                 yield pad, _name(_SIDE_NAMES[station.direction, side], number), of_pad
+
+
+def pad_forces(
+    station: Station, contacts: Sequence[Pad], forces: Sequence[Array]
+) -> Iterator[tuple[PadSize, str, Array]]:
+    """Yield the pads of a station whose contacts have rows of their own, as :func:`loaded_pads`.
+
+    Plates that bend share the force of a side otherwise than the stiffness of its pads.
+
+    Args:
+        station: station of a joint with ``pads``.
+        contacts: contact pairs of the station.
+        forces: force (num_states,) in N of each of them.
+    """
+    assert station.joint is not None
+    pairs: dict[tuple[Side, int], Array] = {}
+    counts: Counter[tuple[Side, Offset]] = Counter()
+    for contact, force in zip(contacts, forces, strict=True):
+        point = contact.side, contact.inner
+        pair = contact.side, counts[point]
+        counts[point] += 1
+        # In space the pads of a pair have a row each.
+        pairs[pair] = pairs.get(pair, 0.0) + force
+    for (side, number), force in pairs.items():
+        pad, *_ = station.joint.pads_of(station.direction, side)[number]
+        if pad is not None:
+            yield pad, _name(_SIDE_NAMES[station.direction, side], number), force / PADS_OF_SIDE
 
 
 def side_force(law: ContactLaw, side: int, gaps: Array) -> Array:

@@ -181,3 +181,36 @@ def test_the_combination_without_an_equilibrium_is_named(arm: pt.Boom) -> None:
     buckled = replace(arm, segments=with_compression(arm.segments, [], [thrust]))
     with pytest.raises(pt.NumericsError, match="far: the boom has no static equilibrium"):
         pt.prove(buckled, {"far": []})
+
+
+def test_plates_that_bend_leave_the_force_to_pads_at_corners() -> None:
+    """Reference: by hand, E A/t of the pads at the corner, which carry the whole force.
+
+    The pads away from the corners would have to bend the plates by more than those at the corners
+    are pressed in. Shares as the pads are stiff would be 1 to 2.
+    """
+    clamp = pt.Support(0.0, "clamped")
+    base = pt.Segment.of_section("arm", 0.0, 8.0, STEEL, BOX, supports=(clamp,))
+    inner = pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
+    fly = pt.Segment.of_section("fly", 6.0, 14.0, STEEL, inner)
+    pads = tuple(
+        pt.SlidePad(
+            side=side, length=length, width=0.03, thickness=0.02, modulus=2e9, bears="wall",
+            offset=offset,
+        )
+        for side, length, offset in (
+            ("above", 0.1, 0.0), ("below", 0.1, 0.0), ("below", 0.2, 0.04),
+        )
+    )  # fmt: skip
+    joint = pt.Joint("arm", "fly", stations=(6.0, 8.0), play=0.010, pads=pads)
+    load = pt.Load("fly", "z", -1000.0, x=14.0, history=pt.Step())
+    rows = pt.statics(pt.Boom([base, fly], [joint], loads=[load])).rows.where(state=REST)
+    whole, pressed, corner, beside = (
+        rows.where(quantity=quantity, place=f"station 2{name}")[0].value
+        for quantity, name in (
+            ("contact_force", ""), ("penetration", ""),
+            ("pad_force", ", below"), ("pad_force", ", below 2"),
+        )
+    )  # fmt: skip
+    assert corner == pytest.approx(2e9 * 0.1 * 0.03 / 0.02 * pressed, rel=1e-6)
+    assert [2.0 * corner, beside] == pytest.approx([abs(whole), 0.0], rel=1e-6)
