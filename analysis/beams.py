@@ -6,8 +6,6 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from protractile.analysis.curves import diagrams
 from protractile.analysis.equilibria import vibrating_system
 from protractile.analysis.evaluation import Findings
@@ -87,7 +85,7 @@ def modes(boom: Boom) -> Findings:
     if found is None:
         raise NumericsError("the boom has no static equilibrium under the loads at t = 0")
     system, rest = found
-    first = modes_about(AnalysisModel(model.boom, system, model.lines), np.asarray(rest))
+    first = modes_about(AnalysisModel(model.boom, system, model.lines), rest)
     return Findings.of(mode_rows(first, BEAM), mode_curves(model.boom, first, BEAM))
 
 
@@ -114,7 +112,7 @@ def prove(
         requested: kinds of proofs.
         resistance: factors on resistances.
         curve: reduction factors of plates; those of EN 1993-1-5 unless given.
-        permitted_tip: permitted tip deflection in m.
+        permitted_tip: permitted tip deflection in m; without it the deflection is not proved.
         duration: duration in s of the histories of the loads.
 
     Raises:
@@ -132,8 +130,7 @@ def prove(
             raise NumericsError(f"{name}: {error}") from error
         rows = Rows(extremes(measure(states), BEAM, COMBINATION + name))
         factor = estimate_critical_factor(loaded) if loaded.compressed else None
-        given = requested, resistance, curve, permitted_tip, factor
-        proved += proofs(states, rows, *given)
+        proved += proofs(states, rows, requested, resistance, curve, permitted_tip, factor)
     return governing(proved)
 
 

@@ -70,8 +70,9 @@ def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
     """Return the results of a model after its run."""
     model, trajectory, shell = ran.model, ran.motion.trajectory, ran.shell
     loaded, panels = model.analysis_model(boom, ran.built), case.buckling is not None
-    settings = case.time.duration, panels, life_of(case)
-    rows, curves, first = evaluate(loaded, model.name, trajectory, *settings)
+    rows, curves, first = evaluate(
+        loaded, model.name, trajectory, case.time.duration, panels, life_of(case)
+    )
     if shell is not None:
         rows += extremes(measure_walls(loaded.boom, shell.stresses), model.name, MOTION)
         curves += histories(shell.stresses, model.name)

@@ -354,9 +354,8 @@ class ModelTable(CaseTable):
         from protractile.analysis.evaluation import Findings, evaluate
         from protractile.analysis.fatigue import Life
 
-        settings = float(motion.time[-1]), True, Life()
-        model = self.analysis_model(*self._built())
-        rows, curves, _ = evaluate(model, self.name, motion, *settings)
+        model, duration = self.analysis_model(*self._built()), float(motion.time[-1])
+        rows, curves, _ = evaluate(model, self.name, motion, duration, panels=True, life=Life())
         return Findings.of(rows, curves)
 
     def analysis_model(self, boom: Boom, built: BuiltModel) -> AnalysisModel:
