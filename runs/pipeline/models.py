@@ -175,9 +175,9 @@ class MotionPlan:
         from protractile.dynamics.kernels.compiled import compilation_lock
         from protractile.dynamics.kernels.march import march
 
-        with compilation_lock():
+        folder = march.stats.cache_path
+        with compilation_lock(folder):
             if not march.signatures:
-                folder = march.stats.cache_path
                 if not any(Path(folder).glob("march.march-*.nbc")):
                     NOTICES.warning(
                         "compiling the time loop (half a minute), for later runs too, into %s",

@@ -17,6 +17,34 @@ from numba import config
 import protractile.dynamics.kernels.modal_flow
 print(config.CACHE_DIR)
 """
+PLACE = """
+from protractile.dynamics.kernels.march import march
+print(march.stats.cache_path)
+"""
+
+
+def test_installations_with_equal_sources_share_their_loops(tmp_path: Path) -> None:
+    """Reference: by construction; the last installation differs in a formula that loops inline."""
+    folders = []
+    for number in range(3):
+        place = tmp_path / str(number) / "protractile"
+        shutil.copytree(ROOT / "dynamics", place / "dynamics")
+        (place / "__init__.py").touch()
+        if number == 2:
+            with (place / "dynamics" / "contact.py").open("a", encoding="utf-8") as source:
+                source.write("# another formula\n")
+        environment = {"NUMBA_CACHE_DIR": str(tmp_path), "PYTHONPATH": str(place.parent)}
+        answer = subprocess.run(
+            [sys.executable, "-c", PLACE],
+            cwd=tmp_path,
+            env=os.environ | environment,
+            capture_output=True,
+            check=True,
+            text=True,
+        )
+        folders.append(Path(answer.stdout.strip()))
+    assert folders[0] == folders[1] != folders[2]
+    assert {folder.parent for folder in folders} == {tmp_path}
 
 
 def test_a_read_only_home_and_installation(tmp_path: Path) -> None:
