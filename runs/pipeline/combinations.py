@@ -2,8 +2,7 @@
 """Static results of all combinations of a case in their load cases.
 
 The boom consists of beam elements with play and axial forces, as in
-:mod:`.pipeline.beam_states`. Each combination has a system of its own, since its axial forces
-reduce the stiffness.
+:mod:`.pipeline.beam_states`. Combinations with the same extension share their elements.
 """
 
 from __future__ import annotations

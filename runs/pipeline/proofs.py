@@ -14,7 +14,7 @@ from protractile.analysis.proofs import Resistance, governing, most_slender_plat
 from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import Row, Rows
 from protractile.analysis.states import States
-from protractile.beam_model.statics import estimate_critical_factor
+from protractile.beam_model.static_model import estimate_critical_factor
 from protractile.dynamics.failure import NumericsError
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
