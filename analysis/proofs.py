@@ -45,6 +45,7 @@ class Resistance(NamedTuple):
     pad: float = 1.0  #: factor on allowable pressures of pads
     cylinder: float = 1.0  #: factor on capacities of cylinders
     pin: float = 1.0  #: factor on shear resistances of pins
+    tipping: float = 1.0  #: factor on the stabilising moment
 
 
 def proofs(

@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Load charts as tables, pictures and a page."""
+
+from __future__ import annotations
+
+from math import floor, log10
+from pathlib import Path
+from typing import Any
+
+from protractile.analysis.quantities import PROVED
+from protractile.analysis.rows import COMBINATION
+from protractile.geometry.typography import NONE, fixed, number, percent
+from protractile.runs.case.user_files import check_not_working_folder
+from protractile.runs.chart.cells import LARGEST, NO_EQUILIBRIUM, OUT_OF_REACH, Cell, chart_of
+from protractile.runs.chart.run import Chart
+from protractile.runs.folder.files import atomic_folder
+from protractile.runs.process.bad_input import BadInput
+from protractile.runs.report.tables import Column, Table
+
+CSV, PAGE, WORKBOOK = "chart.csv", "chart.html", "chart.xlsx"
+
+# Letters of what governs a capacity: a proof, the largest payload that is tried, or the boom, which
+# cannot stand at the radius with a larger one.
+LETTERS = {
+    "yield": "Y", "patch": "Y", "plate": "P", "buckling": "P", "column": "C", "pad": "D",
+    "cylinder": "L", "pin": "N", "deflection": "W", "tipping": "T",
+    LARGEST: "M", OUT_OF_REACH: "R", NO_EQUILIBRIUM: "E",
+}  # fmt: skip
+
+# Digits of a capacity in the chart.
+_DIGITS = 3
+
+
+def kind_of(cell: Cell) -> str:
+    """Return the kind of the governing proof of a cell, or the other reason of its capacity."""
+    return cell.reason or cell.proofs[0].quantity
+
+
+def shown(cell: Cell) -> str:
+    """Return the capacity in kg, rounded down, with the letter of what governs."""
+    if not cell.capacity:
+        return NONE
+    unit = 10.0 ** max(0, floor(log10(cell.capacity)) - _DIGITS + 1)
+    return f"{unit * floor(cell.capacity / unit):.0f} {LETTERS[kind_of(cell)]}"
+
+
+def chart_table(chart: Chart) -> Table:
+    """Return the table of capacities over radius and length."""
+    radii = chart_of(chart.case).radii
+    columns = [Column("radius", radii, ".4g", "m")]
+    for cells in chart.cells:
+        columns.append(Column(f"{number(cells[0].length)} m", [shown(cell) for cell in cells]))
+    kinds = {kind_of(cell) for cells in chart.cells for cell in cells if cell.capacity}
+    letters = {LETTERS[kind]: _name(kind) for kind in sorted(kinds)}
+    notes = [
+        "Capacities in kg, rounded down, with rope and hook as in the load case. Governing: "
+        + ", ".join(f"{letter} {name}" for letter, name in letters.items())
+        + ".",
+        *_reasons(chart),
+    ]
+    return Table("Load chart by boom length", columns, notes, "chart")
+
+
+def _name(kind: str) -> str:
+    return PROVED[kind].title if kind in PROVED else kind
+
+
+def _reasons(chart: Chart) -> list[str]:
+    """Return sentences on the cells without capacity, by reason."""
+    places: dict[str, list[str]] = {}
+    for cell in (cell for cells in chart.cells for cell in cells if not cell.capacity):
+        place = f"{number(cell.length)} m at {number(cell.radius)} m"
+        places.setdefault(cell.reason, []).append(place)
+    places.pop("out of reach", None)
+    return [f"{NONE} {reason}: {', '.join(where)}." for reason, where in places.items()]
+
+
+def proof_table(cell: Cell) -> Table:
+    """Return the table of the governing proofs of a cell."""
+    rows = [
+        (
+            row.of.title,
+            ", ".join(filter(None, (row.part, row.place))),
+            row.state.removeprefix(COMBINATION),
+            percent(row.utilisation or 0.0, 4),
+        )
+        for row in cell.proofs
+    ]
+    about = (
+        f"luffing angle {fixed(cell.angle or 0.0, 1)}°, tip {number(cell.height)} m high, "
+        f"{number(1.0e3 * -(cell.tip or 0.0))} mm below the straight boom; "
+        f"the radius grows by {number(1.0e3 * (cell.droop or 0.0))} mm"
+    )
+    if cell.cylinder_force is not None:
+        about += f", and the cylinder carries {number(1.0e-3 * cell.cylinder_force)} kN"
+    title = f"{number(cell.length)} m at {number(cell.radius)} m: {number(cell.capacity, 5)} kg"
+    headings = "proof", "place", "combination", "utilisation"
+    return Table.of_rows("cell", title, headings, rows, [f"Under the rated load: {about}."])
+
+
+def prepare(folder: Path, file: str) -> None:
+    """Check that a folder can be that of a chart.
+
+    Raises:
+        BadInput: the folder contains other files, or is the current directory.
+    """
+    key = f"--out {folder}"
+    if folder.exists() and not (folder / CSV).exists() and [*folder.glob("*")]:
+        what = "contains other files; give a new folder or one of an earlier chart"
+        raise BadInput(file, key, what)
+    check_not_working_folder(folder, file, key)
+
+
+def write(chart: Chart, folder: Path, excel: bool) -> None:
+    """Write ``chart.csv``, pictures and ``chart.html``, and if asked for ``chart.xlsx``.
+
+    Raises:
+        BadInput: openpyxl is not installed.
+    """
+    from protractile.runs.chart import figures
+    from protractile.runs.report.pages import page
+
+    with atomic_folder(folder) as part:
+        chart.frame.to_csv(part / CSV, index=False, float_format="%.9g", lineterminator="\r\n")
+        pictures = figures.draw(chart, part)
+        if excel:
+            try:
+                chart.frame.to_excel(part / WORKBOOK, sheet_name="chart", index=False)
+            except ImportError:
+                what = "openpyxl is missing, which writes workbooks; install it with pip"
+                raise BadInput("chart", "--excel", what) from None
+        table = chart_table(chart)
+        content: dict[str, Any] = {
+            "title": chart.case.title,
+            "table": table,
+            "cells": [list(row) for row in zip(*chart.cells, strict=True)],
+            "shown": shown,
+            "color": lambda cell: figures.pale(kind_of(cell)),
+            "proofs": proof_table,
+            "figures": pictures,
+        }
+        text = page(Path(__file__).parent / "chart.html", [one.path for one in pictures], **content)
+        (part / PAGE).write_text(text, encoding="utf-8")
