@@ -55,7 +55,8 @@ class Cell:
 
     length: float  #: length in m from the foot pin to the tip
     radius: float  #: horizontal distance in m of the loaded tip from the slewing axis
-    capacity: float | None = None  #: capacity in kg; None if there is none
+    #: capacity in kg, or the rated payload of the chart; None if there is none
+    capacity: float | None = None
     reason: str = ""  #: why there is no larger capacity; empty if the governing proof limits it
     angle: float | None = None  #: luffing angle in degrees
     height: float | None = None  #: height of the tip in m
@@ -94,12 +95,15 @@ class Search:
 
     def cell(self, first: float | None = None) -> Cell:
         """Return the cell; the search begins with the payload ``first`` in kg, if it is given."""
+        chart = chart_of(self.case)
         try:
+            if chart.payload is not None:
+                return self._with_payload(chart.payload, "")
             empty = self._proofs(0.0)[0]
             if (empty.utilisation or 0.0) > 1.0:
                 what = f"{empty.of.title} {percent(empty.utilisation or 0.0, 3)} without payload"
                 raise NoCapacityError(what)
-            self._root(first or _FIRST * chart_of(self.case).largest_payload)
+            self._root(first or _FIRST * chart.largest_payload)
             return self._largest()
         except NoCapacityError as error:
             return Cell(self.configuration.length, self.radius, reason=str(error))
@@ -108,7 +112,11 @@ class Search:
         """Return the cell of the largest payload that was tried and for which all proofs hold."""
         capacity = max(one for one, part in self._utilisations.items() if part <= 1.0 + _ACCURACY)
         larger = [one for one in self._utilisations if one > capacity]
-        reason = self._failures.get(min(larger), "") if larger else LARGEST
+        return self._with_payload(
+            capacity, self._failures.get(min(larger), "") if larger else LARGEST
+        )
+
+    def _with_payload(self, capacity: float, reason: str) -> Cell:
         proofs: dict[str, Row] = {}
         for row in self._proofs(capacity):
             proofs.setdefault(row.quantity, row)

@@ -13,7 +13,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from protractile.geometry.typography import number
-from protractile.runs.chart.cells import chart_of
+from protractile.runs.chart.cells import Cell, chart_of
 from protractile.runs.chart.run import Chart
 from protractile.runs.report import theme
 
@@ -44,8 +44,8 @@ def draw(chart: Chart, folder: Path) -> list[Picture]:
     pictures = []
     with rc_context(theme.RC):
         for name, title, plot in (
-            ("capacities", "Capacity over radius, one curve for each length", _capacities),
-            ("range", "Range of the tip, with capacities in t at some radii", _range),
+            ("capacities", "The chart over the radius, one curve for each length", _over_radius),
+            ("range", "Range of the tip; numbers as in the chart", _range),
         ):
             figure = Figure(figsize=(theme.WIDTH, 4.2))
             plot(chart, figure.add_subplot())
@@ -54,18 +54,27 @@ def draw(chart: Chart, folder: Path) -> list[Picture]:
     return pictures
 
 
-def _capacities(chart: Chart, axes: Any) -> None:
+def _value(chart: Chart, cell: Cell) -> float:
+    """Return the capacity in t, or with a rated payload the governing utilisation in percent."""
+    if chart_of(chart.case).payload is not None:
+        return 100.0 * (cell.proofs[0].utilisation or 0.0)
+    return 1.0e-3 * (cell.capacity or 0.0)
+
+
+def _over_radius(chart: Chart, axes: Any) -> None:
     for index, cells in enumerate(chart.cells):
         carrying = [cell for cell in cells if cell.capacity]
         axes.plot(
             [cell.radius for cell in carrying],
-            [1.0e-3 * (cell.capacity or 0.0) for cell in carrying],
+            [_value(chart, cell) for cell in carrying],
             color=theme.PALETTE[index % len(theme.PALETTE)],
             marker="o",
             markersize=3,
             label=f"{number(cells[0].length)} m",
         )
-    axes.set(xlabel="radius (m)", ylabel="capacity (t)", ylim=(0.0, None))
+    of_payload = chart_of(chart.case).payload is not None
+    heading = "governing utilisation (%)" if of_payload else "capacity (t)"
+    axes.set(xlabel="radius (m)", ylabel=heading, ylim=(0.0, None))
     axes.legend(title="length")
 
 
@@ -82,8 +91,9 @@ def _range(chart: Chart, axes: Any) -> None:
         places = [cell.radius for cell in carrying], [cell.height for cell in carrying]
         axes.plot(*places, color=color, marker=".", label=f"{number(length)} m")
         for cell in carrying[:: max(1, len(carrying) // 4)]:
-            text = number(1.0e-3 * (cell.capacity or 0.0))
-            axes.annotate(text, (cell.radius, cell.height), fontsize=8, color=color)
+            axes.annotate(
+                number(_value(chart, cell)), (cell.radius, cell.height), fontsize=8, color=color
+            )
     longest = max(cells[0].length for cells in chart.cells)
     for angle in (least, most):
         tip = longest * cos(radians(angle)), longest * sin(radians(angle))

@@ -38,6 +38,9 @@ class ChartTable(CaseTable):
     """the names of the combinations whose proofs must hold; all with the load case unless given"""
     angles: Annotated[tuple[Angle, Angle], In("deg")] = (0.0, 80.0)
     """the smallest and the largest luffing angle in degrees"""
+    payload: Annotated[Positive, In("kg")] | None = None
+    """the rated payload in kg, such as that of a cage; with it the chart has the governing
+    utilisation in place of the capacity"""
     largest_payload: Annotated[Positive, In("kg")] = 1.0e5
     """the largest payload in kg that is tried, such as the capacity of the hook"""
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import floor, log10
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ from protractile.runs.chart.cells import LARGEST, NO_EQUILIBRIUM, OUT_OF_REACH, 
 from protractile.runs.chart.run import Chart
 from protractile.runs.folder.files import atomic_folder
 from protractile.runs.process.bad_input import BadInput
+from protractile.runs.report.proof_tables import holds
 from protractile.runs.report.tables import Column, Table
 
 CSV, PAGE, WORKBOOK = "chart.csv", "chart.html", "chart.xlsx"
@@ -37,28 +39,39 @@ def kind_of(cell: Cell) -> str:
 
 
 def shown(cell: Cell) -> str:
-    """Return the capacity in kg, rounded down, with the letter of what governs."""
+    """Return the capacity in t, rounded down, with the letter of what governs."""
     if not cell.capacity:
         return NONE
-    unit = 10.0 ** max(0, floor(log10(cell.capacity)) - _DIGITS + 1)
-    return f"{unit * floor(cell.capacity / unit):.0f} {LETTERS[kind_of(cell)]}"
+    unit = 10.0 ** (floor(log10(cell.capacity)) - _DIGITS + 1)
+    return f"{number(1.0e-3 * unit * floor(cell.capacity / unit))} {LETTERS[kind_of(cell)]}"
+
+
+def utilisation(cell: Cell) -> str:
+    """Return the governing utilisation in percent, with the letter of its proof."""
+    if not cell.proofs:
+        return NONE
+    return f"{number(100.0 * (cell.proofs[0].utilisation or 0.0))} {LETTERS[kind_of(cell)]}"
 
 
 def chart_table(chart: Chart) -> Table:
     """Return the table of capacities over radius and length."""
-    radii = chart_of(chart.case).radii
-    columns = [Column("radius", radii, ".4g", "m")]
+    keys = chart_of(chart.case)
+    columns, cell_text = [Column("radius", keys.radii, ".4g", "m")], text_of(chart)
     for cells in chart.cells:
-        columns.append(Column(f"{number(cells[0].length)} m", [shown(cell) for cell in cells]))
+        columns.append(Column(f"{number(cells[0].length)} m", [cell_text(cell) for cell in cells]))
     kinds = {kind_of(cell) for cells in chart.cells for cell in cells if cell.capacity}
     letters = {LETTERS[kind]: _name(kind) for kind in sorted(kinds)}
-    notes = [
-        "Capacities in kg, rounded down, with rope and hook as in the load case. Governing: "
-        + ", ".join(f"{letter} {name}" for letter, name in letters.items())
-        + ".",
-        *_reasons(chart),
-    ]
-    return Table("Load chart by boom length", columns, notes, "chart")
+    what = "Capacities in t, rounded down"
+    if keys.payload is not None:
+        what = f"Governing utilisations in % with {number(keys.payload)} kg"
+    governing = ", ".join(f"{letter} {name}" for letter, name in letters.items())
+    notes = [f"{what}, over radius and boom length. Governing: {governing}.", *_reasons(chart)]
+    return Table("Load chart", columns, notes, "chart")
+
+
+def text_of(chart: Chart) -> Callable[[Cell], str]:
+    """Return the function that gives the text of a cell."""
+    return shown if chart_of(chart.case).payload is None else utilisation
 
 
 def _name(kind: str) -> str:
@@ -71,7 +84,8 @@ def _reasons(chart: Chart) -> list[str]:
     for cell in (cell for cells in chart.cells for cell in cells if not cell.capacity):
         place = f"{number(cell.length)} m at {number(cell.radius)} m"
         places.setdefault(cell.reason, []).append(place)
-    places.pop("out of reach", None)
+    if OUT_OF_REACH in places:
+        places[OUT_OF_REACH] = ["where no other reason is given"]
     return [f"{NONE} {reason}: {', '.join(where)}." for reason, where in places.items()]
 
 
@@ -87,12 +101,12 @@ def proof_table(cell: Cell) -> Table:
         for row in cell.proofs
     ]
     about = (
-        f"luffing angle {fixed(cell.angle or 0.0, 1)}°, tip {number(cell.height)} m high, "
-        f"{number(1.0e3 * -(cell.tip or 0.0))} mm below the straight boom; "
-        f"the radius grows by {number(1.0e3 * (cell.droop or 0.0))} mm"
+        f"luffing angle {fixed(cell.angle or 0.0, 1)}°; the tip is {number(cell.height)} m high, "
+        f"{number(-(cell.tip or 0.0))} m below the straight boom, which adds "
+        f"{number(cell.droop)} m to the radius"
     )
     if cell.cylinder_force is not None:
-        about += f", and the cylinder carries {number(1.0e-3 * cell.cylinder_force)} kN"
+        about += f"; the cylinder carries {number(1.0e-3 * cell.cylinder_force)} kN"
     title = f"{number(cell.length)} m at {number(cell.radius)} m: {number(cell.capacity, 5)} kg"
     headings = "proof", "place", "combination", "utilisation"
     return Table.of_rows("cell", title, headings, rows, [f"Under the rated load: {about}."])
@@ -134,8 +148,9 @@ def write(chart: Chart, folder: Path, excel: bool) -> None:
             "title": chart.case.title,
             "table": table,
             "cells": [list(row) for row in zip(*chart.cells, strict=True)],
-            "shown": shown,
+            "shown": text_of(chart),
             "color": lambda cell: figures.pale(kind_of(cell)),
+            "failed": lambda cell: bool(cell.proofs) and not holds(cell.proofs[0]),
             "proofs": proof_table,
             "figures": pictures,
         }

@@ -192,7 +192,7 @@ def flexible() -> dict[str, Any]:
         del segment["mass_per_length"], segment["second_moment_of_area"]
         segment["section"] = {
             "height": height,
-            "width": 0.75 * height,
+            "width": 0.7 * height,
             "flange": 0.006,
             "web": 0.006,
         }
@@ -234,6 +234,17 @@ def test_cells_without_a_governing_proof() -> None:
     assert heavy.capacity is None
     assert heavy.reason.startswith("cylinder force ")
     assert heavy.reason.endswith("% without payload")
+
+
+def test_envelope_of_a_rated_payload() -> None:
+    """Reference: analytic, moments about the foot pin, as for the capacity."""
+    found = cells(rigid(payload=5000.0))
+    for cell in found:
+        turn = acos(cell.radius / cell.length)
+        lug = LUG * cos(turn) - FRONT, LUG * sin(turn) + BELOW
+        arm = (LUG * cos(turn) * lug[1] - LUG * sin(turn) * lug[0]) / hypot(*lug)
+        moment = DEAD * moment_of_boom(cell.length) * cos(turn) + PAYLOAD * 5000.0 * cell.radius
+        assert cell.proofs[0].utilisation == pytest.approx(moment * G / arm / CAPACITY, rel=1.0e-6)
 
 
 def test_configurations() -> None:
