@@ -57,6 +57,21 @@ class Chart(NamedTuple):
         return pd.DataFrame(rows)
 
 
+def chart(case: Case) -> Chart:
+    """Return the load chart of a case, computed in this process.
+
+    >>> import protractile as pt
+    >>> case = pt.load_case(pt.CASES / "chart-lift.toml")
+    >>> case = pt.change(case, **{"chart.lengths": [15.7], "chart.radii": [15.0]})
+    >>> pt.chart(case).frame["governing proof"][0]
+    'plate buckling'
+
+    Raises:
+        BadInput: the case has no valid table ``chart``.
+    """
+    return solve_all(case, plan(case, "case"), None, Cache.of_user())
+
+
 def plan(case: Case, file: str) -> list[Configuration]:
     """Return the configurations of the chart of a case.
 
