@@ -163,14 +163,14 @@ class Search:
         Raises:
             NoCapacityError: the tip cannot stand at the radius, or there is no equilibrium.
         """
-        case = combined_case(self.case, self._point(payload)[0])
+        case = combined_case(self.case, self.point(payload)[0])
         try:
             states = combination_states(case)
             return governing(row for state in states for row in proofs_of(state, case))
         except NUMERICAL_ERRORS:
             raise NoCapacityError(NO_EQUILIBRIUM) from None
 
-    def _point(self, payload: float) -> tuple[LoadCaseTable, States]:
+    def point(self, payload: float) -> tuple[LoadCaseTable, States]:
         """Return the load case with a payload in kg and its rated state, with the tip in place.
 
         The fixed-point iteration over the tip deflection has secant steps.

@@ -15,11 +15,12 @@ import protractile as pt
 from protractile.geometry.arrays import Array
 from protractile.geometry.chassis import Chassis, CraneForce
 from protractile.runs.chart import output, run
-from protractile.runs.chart.cells import LARGEST, OUT_OF_REACH, Cell, solve
+from protractile.runs.chart.cells import LARGEST, OUT_OF_REACH, Cell, Search, solve
 from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.process.bad_input import BadInput
+from studies.reference_models.elastica import Rod, Telescope
 
 # Gravity in m/s², so small that the boom stays straight.
 G = 1.0e-4
@@ -220,6 +221,29 @@ def test_the_tip_hangs_at_the_radius() -> None:
             acos(cell.radius / hypot(cell.length, cell.tip)), abs=1.0e-6
         )
         assert cell.droop == pytest.approx(-cell.tip * sin(turn), abs=1.0e-5)
+
+
+@pytest.mark.parametrize("radius", [6.0, 10.0])
+def test_the_drooped_radius_is_near_that_of_elasticas(radius: float) -> None:
+    """Reference: analytic, two elasticas with play; small deflections miss (w/L)² of the radius."""
+    tables = rigid(radii=[radius], lengths=[14.0])
+    del tables["cylinder"]
+    tables["gravity"]["acceleration"] = 9.81
+    tables["joint"][0] |= {"bonded": False, "play": 0.01, "stiffness": 1.0e10}
+    for segment in tables["segment"]:
+        segment["second_moment_of_area"] = 2.0e-5
+    tables["segment"][0]["supports"] = [{"x": 0.0, "kind": "clamped"}]
+    case = pt.load_case(tables)
+    (configuration,) = run.plan(case, "case")
+    table, states = Search(case, configuration, radius).point(1000.0)
+    assert table.angle is not None
+    stiffness, weight = 2.1e11 * 2.0e-5, MASS * 9.81
+    rods = (Rod(length, stiffness, weight) for length in LENGTHS)
+    exact = Telescope(*rods, 2.0, 0.01, 1000.0 * 9.81, radians(table.angle)).rest()
+    ratio = abs(exact.tip) / 14.0
+    assert 0.05 < ratio < 0.2
+    assert 0.3 * ratio**2 < radius / exact.radius - 1.0 < 0.9 * ratio**2
+    assert states.observed("tip").min() == pytest.approx(exact.tip, rel=2.0 * ratio**2)
 
 
 def test_cells_without_a_governing_proof() -> None:
