@@ -53,7 +53,7 @@ class Configuration(NamedTuple):
 class Cell:
     """Rated capacity of a boom at a radius."""
 
-    length: float  #: length in m from the foot pin to the tip
+    configuration: Configuration  #: the configuration
     radius: float  #: horizontal distance in m of the loaded tip from the slewing axis
     #: capacity in kg, or the rated payload of the chart; None if there is none
     capacity: float | None = None
@@ -65,6 +65,11 @@ class Cell:
     cylinder_force: float | None = None  #: force of the first cylinder in N under the rated load
     #: governing proof of each kind, the governing one first
     proofs: tuple[Row, ...] = ()
+
+    @property
+    def length(self) -> float:
+        """The length in m from the foot pin to the tip."""
+        return self.configuration.length
 
     @property
     def governing(self) -> Row | None:
@@ -106,7 +111,7 @@ class Search:
             self._root(first or _FIRST * chart.largest_payload)
             return self._largest()
         except NoCapacityError as error:
-            return Cell(self.configuration.length, self.radius, reason=str(error))
+            return Cell(self.configuration, self.radius, reason=str(error))
 
     def _largest(self) -> Cell:
         """Return the cell of the largest payload that was tried and for which all proofs hold."""
@@ -127,7 +132,7 @@ class Search:
         straight, _ = hook_place(self.case, states.boom, table.angle, 0.0)
         force = float(states.observed(name)[0]) if states.boom.cylinders else None
         return Cell(
-            self.configuration.length, self.radius, capacity, reason, table.angle, height, tip,
+            self.configuration, self.radius, capacity, reason, table.angle, height, tip,
             radius - straight, force, tuple(proofs.values()),
         )  # fmt: skip
 
@@ -195,15 +200,8 @@ class Search:
 
     def _rated(self, payload: float, tip: float) -> tuple[LoadCaseTable, States]:
         """Return the load case whose tip would be at the radius with this deflection in m."""
-        chart = chart_of(self.case)
-        (named,) = (one for one in self.case.load_cases if one.name == chart.load_case)
-        table = named.model_copy(
-            update={
-                "payload": payload,
-                "extension": {**named.extension, **self.configuration.extension},
-                "angle": self._angle(tip),
-            }
-        )
+        extension = self.configuration.extension
+        table = load_case_of(self.case, payload, extension, self._angle(tip))
         rated = combine(self.case, table)
         try:
             with np.errstate(all="ignore"):
@@ -241,6 +239,16 @@ def chart_of(case: Case) -> ChartTable:
     chart: ChartTable | None = getattr(case, "chart")  # noqa: B009 # a key of a client
     assert chart is not None
     return chart
+
+
+def load_case_of(
+    case: Case, payload: float, extension: Mapping[str, float], angle: float
+) -> LoadCaseTable:
+    """Return the load case of the chart with a payload in kg, extensions in m and an angle."""
+    name = chart_of(case).load_case
+    (table,) = (one for one in case.load_cases if one.name == name)
+    extended = {**table.extension, **extension}
+    return table.model_copy(update={"payload": payload, "extension": extended, "angle": angle})
 
 
 def combined_case(case: Case, table: LoadCaseTable) -> Case:

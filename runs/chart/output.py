@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from math import floor, log10
 from pathlib import Path
 from typing import Any
 
 from protractile.analysis.quantities import PROVED
-from protractile.analysis.rows import COMBINATION
+from protractile.analysis.rows import COMBINATION, Row
 from protractile.geometry.typography import NONE, fixed, number, percent
 from protractile.runs.case.user_files import check_not_working_folder
 from protractile.runs.chart.cells import LARGEST, NO_EQUILIBRIUM, OUT_OF_REACH, Cell, chart_of
@@ -123,6 +123,21 @@ def prepare(folder: Path, file: str) -> None:
         what = "contains other files; give a new folder or one of an earlier chart"
         raise BadInput(file, key, what)
     check_not_working_folder(folder, file, key)
+
+
+def shell_table(checks: Sequence[tuple[Cell, Row]], shell: str) -> Table:
+    """Return the table of governing proofs by beams, and by a shell with the same payload."""
+    rows = [
+        (
+            row.of.title,
+            f"{number(cell.length)} m at {number(cell.radius)} m",
+            number(cell.capacity, 4),
+            *(percent(one.utilisation or 0.0) for one in (cell.proofs[0], row)),
+        )
+        for cell, row in checks
+    ]
+    headings = "proof", "length, radius", "payload\nkg", "beams", shell
+    return Table.of_rows("shell", f"Governing proofs by {shell}", headings, rows)
 
 
 def write(chart: Chart, folder: Path, excel: bool) -> None:

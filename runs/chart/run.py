@@ -3,17 +3,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from concurrent.futures import Executor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from typing import TYPE_CHECKING, NamedTuple
 
+from protractile.analysis.proofs import governing
+from protractile.analysis.rows import Row
 from protractile.geometry.typography import choices
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
-from protractile.runs.chart.cells import Cell, Configuration, chart_of, configurations, solve
+from protractile.runs.chart.cells import (
+    Cell,
+    Configuration,
+    chart_of,
+    combined_case,
+    configurations,
+    load_case_of,
+    solve,
+)
 from protractile.runs.folder.cache import Cache, key
+from protractile.runs.pipeline.combined_shells import shell_states
+from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.ending import when_interrupted
 from protractile.runs.process.terminal import Progress, ignore_progress
@@ -70,6 +84,28 @@ def chart(case: Case) -> Chart:
         BadInput: the case has no valid table ``chart``.
     """
     return solve_all(case, plan(case, "case"), None, Cache.of_user())
+
+
+def utilisations_by_shell(
+    chart: Chart, shell: Shell, context: BuildContext
+) -> Iterator[tuple[Cell, Row]]:
+    """Yield the largest cell of each governing proof, and this proof by a shell. Collective.
+
+    The shell carries the capacity that beams give.
+    """
+    largest: dict[str, Cell] = {}
+    for cell in (cell for cells in chart.cells for cell in cells if cell.governing):
+        kind = cell.proofs[0].quantity
+        largest[kind] = max(cell, largest.get(kind, cell), key=lambda one: one.capacity or 0.0)
+    for kind, cell in largest.items():
+        assert cell.angle is not None
+        assert cell.capacity is not None
+        table = load_case_of(chart.case, cell.capacity, cell.configuration.extension, cell.angle)
+        case = combined_case(chart.case, table)
+        states = shell_states(case, shell, context)
+        rows = [row for state in states for row in proofs_of(state, case) if row.quantity == kind]
+        if rows:
+            yield cell, governing(rows)[0]
 
 
 def plan(case: Case, file: str) -> list[Configuration]:

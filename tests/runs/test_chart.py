@@ -14,12 +14,14 @@ import pytest
 import protractile as pt
 from protractile.geometry.arrays import Array
 from protractile.geometry.chassis import Chassis, CraneForce
+from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.chart import output, run
 from protractile.runs.chart.cells import LARGEST, OUT_OF_REACH, Cell, Search, solve
 from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.process.bad_input import BadInput
+from protractile.runs.process.ranks import single_rank
 from studies.reference_models.elastica import Rod, Telescope
 
 # Gravity in m/s², so small that the boom stays straight.
@@ -382,3 +384,18 @@ def test_table_page_and_files(tmp_path: Path) -> None:
     assert {row[1][-1] for row in table.rows} <= {"L", "M"}
     again = run.solve_all(case, planned, None, Cache(tmp_path / "cache"))
     assert again.cells == chart.cells
+
+
+@pytest.mark.slow
+def test_a_shell_agrees_at_the_capacity_of_beams() -> None:
+    """Reference: other code, a shell of the flexible boom at three radii."""
+    tables = flexible()
+    tables["model"].append({"name": "shell", "kind": "shell", "mesh_size": 0.2})
+    tables["combination"][0]["proofs"] = ["cylinder"]
+    tables["cylinder"][0]["capacity"] = 2.0e5
+    case = pt.load_case(tables)
+    context = BuildContext(single_rank(1))
+    for cell in run.chart(case).cells[0]:
+        one = run.Chart(case, [[cell]])
+        ((_, row),) = run.utilisations_by_shell(one, case.models[1], context)
+        assert row.utilisation == pytest.approx(1.0, abs=5.0e-3)

@@ -152,7 +152,7 @@ def test_keys_and_commands_of_clients_exist_by_registration() -> None:
         words.append({*answer("--help", program=text)[0].split()})
         keys.append({*json.loads(answer("schema", program=text)[0])["properties"]})
     assert words[0] - words[1] >= {"live", "export"}
-    assert keys[0] - keys[1] == {"statements", "demand"}
+    assert keys[0] - keys[1] == {"chart", "statements", "demand"}
 
 
 def test_check_imports_neither_solvers_nor_figures() -> None:
