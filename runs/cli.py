@@ -290,9 +290,15 @@ def frequencies(
 
 @app.command()
 def check(
-    case: options.CaseFile, picture: options.Picture = None, large: options.Large = False
+    case: options.CaseFile,
+    picture: options.Picture = None,
+    large: options.Large = False,
+    whole: Annotated[
+        bool,
+        typer.Option("--all", help="Also print segments, joints, masses, loads and modes."),
+    ] = False,
 ) -> int:
-    """Check a case file, and print its loads, static state, stresses and first frequency."""
+    """Check a case file, and print cautions, static results, stresses and first frequency."""
     from protractile.runs.case.reading import load_checked
     from protractile.runs.check import check_case
     from protractile.runs.pipeline import estimates
@@ -306,7 +312,9 @@ def check(
         )
     with terminal.display() as report_progress:
         result = check_case(checked, report_progress)
-    result.show(Terminal())
+    result.show(Terminal(), whole)
+    if not whole:
+        print("Segments, joints, masses, loads, reactions and modes: protractile check --all")
     return 0
 
 

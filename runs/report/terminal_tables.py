@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from rich.console import Console
 
 from protractile.analysis.rows import INITIAL, MOTION, REST, Rows
-from protractile.geometry.typography import TO_PERCENT, number, percent
+from protractile.geometry.typography import number, percent
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
@@ -132,10 +132,7 @@ def result_table(results: Results) -> Table:
     padded = any("pad_pressure" in one for one in used)
     carried = [rows.where(quantity="pad_force" if padded else "contact_force") for rows in moved]
     governing = [Rows(one.values()).governing for one in used]
-    shares = [
-        f"{TO_PERCENT * one.utilisation:.3g} {one.of.short}" if one and one.utilisation else None
-        for one in governing
-    ]
+    shares = [row.utilisation if row else None for row in governing]
     columns = [
         Column("model", names),
         Column("static tip\nt = 0", static, ".1f", "mm"),
@@ -149,14 +146,15 @@ def result_table(results: Results) -> Table:
             ".3g",
             "kN",
         ),
-        Column("utilisation", shares, "", "%"),
+        Column("utilised", shares, ".3g", "%"),
+        Column("by", [row.of.short if row and row.utilisation else None for row in governing]),
     ]
     columns = [one for one in columns if any(cell is not None for cell in one.cells)]
     models = [model for model in results.completed_models if model.name in names]
     notes = [
         "φ: maximum in motion over the static value under the maximum load."
         + " One pad: largest force of one pad of a pair." * padded
-        + " Utilisation: of the governing strength." * any(shares),
+        + " Utilised: part of the governing strength." * any(shares),
         *filter(None, [rigid_wall_note(models, results.boom)]),
     ]
     return Table(f"Results: {results.case.title}", columns, notes)
