@@ -171,8 +171,8 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     lines.append(f"A run may take {run_cost(case, preview)}.")
     # Sorting keeps the order of lines of the same kind.
     lines = sorted(map(case.system.convert, lines), key=lambda line: not line.startswith(_FIRST))
-    shown = ([table for table in tables if table.rows] for tables in (deciding, inputs))
-    return Check(case.title, *shown, lines)
+    deciding, inputs = ([table for table in tables if table.rows] for tables in (deciding, inputs))
+    return Check(case.title, deciding, inputs, lines)
 
 
 def _beam_rows(beam: States) -> Rows:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from protractile.analysis.rows import COMBINATION, INITIAL, REST, Row, Rows
 from protractile.beam_model.statics import static_theory
@@ -15,7 +15,7 @@ from protractile.runs.case.combinations import combined_cases
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.report.load_table import release_note
-from protractile.runs.report.tables import Amount, Column, Table
+from protractile.runs.report.tables import Amount, Cell, Column, Table
 
 # Fraction of the largest result of a unit that is displayed as 0.
 _NEGLIGIBLE = 1.0e-4
@@ -177,7 +177,7 @@ def _envelope(shown: Rows, system: System) -> Table:
     of_key: dict[tuple[str, str, str], list[Row]] = {}
     for row in shown:
         of_key.setdefault(row.key, []).append(row)
-    lines = []
+    lines = list[Sequence[Cell]]()
     for several in of_key.values():
         least, most = (end(several, key=lambda row: row.value) for end in (min, max))
         governing = max((least, most), key=lambda row: abs(row.value))
