@@ -13,7 +13,7 @@ from html import escape
 from itertools import chain, zip_longest
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -40,8 +40,8 @@ if TYPE_CHECKING:
 # Characters per line in the report, on a telephone, and in a file.
 ROOMY, NARROW = 115, 40
 WIDE = 180
-# Number of characters above which the text of a cell may break.
-LONG = 24
+# Numbers of characters above which cells break, of which the first that fits is taken.
+_LONGEST = 40, 30, 20, 12, 0
 # Spaces at which no line breaks, for example between a number and its unit.
 _KEPT_SPACE = re.compile(
     r"(?<=\d) (?=[^\W\d]{1,3}\b|[%×])|(?<=×) (?=\d)|(?<=\b\w) (?=[=≤≥])|(?<=[=≤≥]) (?=[−\d])"
@@ -235,26 +235,24 @@ class Table:
         """True if a telephone shows the cells of a row below one another, with their headings."""
         return self._letters > NARROW
 
-    @property
-    def _widths(self) -> list[int]:
-        """The number of characters of each column if headings and long texts break at spaces."""
-        lines = (
-            [*column.heading.split(), *(line for line in "\n".join(column.text).split("\n"))]
-            for column in self.columns
-        )
-        return [
-            max(
-                len(word)
-                for line in ("", *of)
-                for word in (line.split() or [""] if len(line) > LONG else [line])
-            )
-            for of in lines
-        ]
+    def _widths(self, longest: float = math.inf) -> list[int]:
+        """Return the number of characters of each column whose headings break at spaces.
+
+        Lines of cells with more than ``longest`` characters break, too, but no numbers with units.
+        """
+        widths = []
+        for column in self.columns:
+            parts = ["", *column.heading.split()]
+            for line in "\n".join(column.text).split("\n"):
+                kept = _KEPT_SPACE.sub("\N{NO-BREAK SPACE}", line)
+                parts += kept.split(" ") if len(line) > longest else [line]
+            widths.append(max(map(len, parts)))
+        return widths
 
     @property
     def _letters(self) -> int:
         """The number of characters in a line, if headings break at spaces."""
-        return sum(self._widths, start=2 * len(self.columns))
+        return sum(self._widths(), start=2 * len(self.columns))
 
     def show(self, console: Console) -> None:
         """Print the table."""
@@ -262,15 +260,13 @@ class Table:
             # Printed separately, since rich would break the title at the width of the table.
             console.print(Text(self.title, style="italic"))
         grid = Grid(box=SIMPLE_HEAD, pad_edge=False)
-        # Headings break before cells do, unless even the cells are too wide.
-        fits = sum(self._widths) + len(self.columns) < console.width
-        for i, (heading, width) in enumerate(zip(self.headings, self._widths, strict=True)):
-            grid.add_column(
-                heading,
-                justify="right" if i else "left",
-                no_wrap=i == 0,
-                min_width=width if fits else None,
-            )
+        # Headings break first, then the longest cells.
+        room = console.width - len(self.columns) - 1
+        choices = (self._widths(longest) for longest in _LONGEST)
+        widths = next((of for of in choices if sum(of) <= room), [0] * len(self.columns))
+        for i, (heading, width) in enumerate(zip(self.headings, widths, strict=True)):
+            justify: Literal["left", "right"] = "right" if i else "left"
+            grid.add_column(heading, justify=justify, no_wrap=not width and i == 0, min_width=width)
         for row in self.rows:
             grid.add_row(*map(Text, row))
         unlimited = console.options.update(max_width=WIDE)
