@@ -139,6 +139,8 @@ def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> N
     ]
     names = {name: [verdict.id for case, verdict in found if case == name] for name, _ in found}
     notes = [f"{join_words(ids)} in {name}." for name, ids in names.items() if len(names) > 1]
+    demanded = [verdict.id for _, verdict in found if verdict.demanded]
+    notes += [f"Demanded: {join_words(demanded)}."] if demanded else []
     if found:
         Table("Statements of the paper", columns, [" ".join(notes)] if notes else []).show(console)
 

@@ -68,7 +68,7 @@ def in_a_process(
 
 def test_check_prints_inferred_boxes(protractile: Protractile) -> None:
     """Reference: non-regression, the boxes that :mod:`.geometry.box` infers."""
-    answer = protractile("check case.toml")
+    answer = protractile("check case.toml --all")
     assert (answer.status, answer.err) == (0, "")
     for part in (
         "488.9 × 325.9",

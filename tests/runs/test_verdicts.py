@@ -454,6 +454,7 @@ def test_a_verdict_shows_number_and_threshold() -> None:
     assert re.split(r"  +", row.strip()) == [
         "S4", "deflection grows with the model", "✓ reproduced", "1.25 %", "0.5 %",
     ]  # fmt: skip
+    assert "Demanded: S4." in printed(print_verdicts, {"paper": [verdict]})
     assert printed(print_verdicts, {"boom": []}) == ""
 
 
