@@ -148,7 +148,7 @@ def report(
     brief: Annotated[
         bool,
         typer.Option(
-            "--brief", help="Render nothing; print verdicts, models of the first run, and paths."
+            "--brief", help="Render nothing; print the models of the first run, and paths."
         ),
     ] = False,
 ) -> int:
