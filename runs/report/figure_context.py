@@ -3,25 +3,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
 from itertools import cycle
 from pathlib import Path
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import xarray as xr
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Sheet
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import join_words
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve
+from protractile.runs.report.labels import tip_directions
+
+if TYPE_CHECKING:
+    pass
 
 # Parts of the report to which figures belong.
 Part = Literal["case", "motion", "rest", "horizons", "numerics"]
@@ -202,13 +204,6 @@ class FigureContext:
         return Figure(path, title, caption, part, chart)
 
 
-def tip_directions(trajectories: xr.Dataset) -> list[str]:
-    """Return the names of the tip's displacements, largest amplitude first."""
-    places = [name for name in ("tip", "tip_lateral") if name in trajectories]
-    spans = {name: float(np.ptp(trajectories[name].values, axis=-1).max()) for name in places}
-    return sorted(places, key=lambda name: -spans[name])
-
-
 def new_sheet(panels: int, height: float, share_y: bool = False) -> tuple[Sheet, list[Axes]]:
     """Return a sheet with panels above one another, which share the time axis.
 
@@ -229,12 +224,6 @@ def widen_limits(axes: Axes) -> None:
         axes.set_ylim(middle - 0.5 * least, middle + 0.5 * least)
 
 
-def farthest(values: Sequence[float] | Array) -> float:
-    """Return the finite value of largest magnitude, with its sign; NaN without finite values."""
-    finite = np.asarray(values)[np.isfinite(values)]
-    return float(finite[np.abs(finite).argmax()]) if finite.size else float("nan")
-
-
 def highest(values: Sequence[float] | Array) -> float:
     """Return the largest finite value; NaN without finite values."""
     finite = np.asarray(values)[np.isfinite(values)]
@@ -244,9 +233,3 @@ def highest(values: Sequence[float] | Array) -> float:
 def initial_position_note(case: Case) -> str:
     """Return a note that x is the position at t = 0; empty without telescoping."""
     return " Positions x are at t = 0 and move with their segments." if case.driven_segments else ""
-
-
-def extension_note(case: Case, times: Iterable[float | None]) -> str:
-    """Return a note on the extensions at the times of static states; empty without telescoping."""
-    several = [f"{time:g}" for time in sorted({time for time in times if time is not None})]
-    return f" Extension as at {join_words(several)} s." if case.driven_segments and several else ""

@@ -17,12 +17,12 @@ from protractile.runs.report.charts import Chart
 from protractile.runs.report.figure_context import (
     Figure,
     FigureContext,
-    farthest,
     highest,
     initial_position_note,
     new_sheet,
     widen_limits,
 )
+from protractile.runs.report.labels import farthest
 
 # Number of intervals into which a run is divided; the maximum of each is drawn.
 FORCE_BINS = 100

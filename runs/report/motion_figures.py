@@ -17,10 +17,10 @@ from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.figure_context import (
     Figure,
     FigureContext,
-    farthest,
     highest,
     new_sheet,
 )
+from protractile.runs.report.labels import farthest
 
 # Lower and upper percentile of the band of an ensemble.
 BAND = (5.0, 95.0)

@@ -10,9 +10,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from PIL import Image
-
 TEMPLATES = Path(__file__).parent / "templates"
 # Largest width in pixels of pictures in a page, twice the width of the page; compression of
 # pictures to a third of their size without visible loss.
@@ -28,6 +25,8 @@ def page(template: str | Path, pictures: Sequence[Path] = (), **content: Any) ->
     The template is a name of this package, or the path of one that extends it; ``content`` has its
     variables. The pictures are the files of all pictures in the page.
     """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
     path = TEMPLATES / template
     environment = Environment(
         loader=FileSystemLoader([path.parent, TEMPLATES]),
@@ -43,6 +42,8 @@ def page(template: str | Path, pictures: Sequence[Path] = (), **content: Any) ->
 
 
 def _data_uri(path: Path) -> str:
+    from PIL import Image
+
     if path.suffix.lower() == ".gif":
         return f"data:image/gif;base64,{_text(path.read_bytes())}"
     smaller = BytesIO()
