@@ -72,7 +72,7 @@ def proofs(
         buckling: buckling of the segments of a shell.
     """
     proved = [
-        *_of_plates(states, resistance, curve),
+        *(_of_plates(states, resistance, curve) if {"yield", "plate"} & {*requested} else ()),
         *_of_shells(states, rows, resistance, curve, buckling),
         *_of_forces(states, rows, resistance),
         *_of_column(states, resistance, critical_factor),

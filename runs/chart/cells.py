@@ -10,12 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from math import acos, atan2, degrees, hypot
 from typing import NamedTuple
 
 import numpy as np
 
 from protractile.analysis.proofs import governing
+from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import COMBINATION, Row, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
@@ -33,8 +35,9 @@ from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.pipeline.tipping import foot_of, hook_place
 
-# Deviation of the radius in m at which the luffing angle is found, and most steps to find it.
-_RADIUS, _STEPS = 1.0e-6, 30
+# Deviation of the radius in m at which the luffing angle is found, most steps to find it, and most
+# proofs that are followed to a capacity.
+_RADIUS, _STEPS, _MOST_PROOFS = 1.0e-5, 30, 8
 # Reasons without a proof that limit a capacity.
 LARGEST, OUT_OF_REACH, NO_EQUILIBRIUM = "largest payload", "out of reach", "no equilibrium"
 
@@ -82,6 +85,14 @@ class Cell:
         return "" if self.governing is None else self.governing.state.removeprefix(COMBINATION)
 
 
+# Combination with its load case, and kind of a proof.
+_Key = tuple[str, str]
+
+
+def _key(row: Row) -> _Key:
+    return row.state.removeprefix(COMBINATION), row.quantity
+
+
 class NoCapacityError(Exception):
     """A boom that cannot carry a payload at a radius; its text is the reason."""
 
@@ -95,35 +106,30 @@ class Search:
     radius: float  #: horizontal distance in m of the loaded tip from the slewing axis
     #: load case and rated state by payload in kg
     points: dict[float, tuple[LoadCaseTable, States]] = field(default_factory=dict)
-    _utilisations: dict[float, float] = field(default_factory=dict)
-    _failures: dict[float, str] = field(default_factory=dict)
 
-    def cell(self, first: float | None = None) -> Cell:
-        """Return the cell; the search begins with the payload ``first`` in kg, if it is given."""
+    def cell(self, near: Cell | None = None) -> Cell:
+        """Return the cell; the search begins at the capacity of a cell ``near``, if it is given."""
         chart = chart_of(self.case)
         try:
             if chart.payload is not None:
-                return self._with_payload(chart.payload, "")
-            empty = self._proofs(0.0)[0]
-            if (empty.utilisation or 0.0) > 1.0:
-                what = f"{empty.of.title} {percent(empty.utilisation or 0.0, 3)} without payload"
-                raise NoCapacityError(what)
-            self._root(first or _FIRST * chart.largest_payload)
-            return self._largest()
+                return self._with_payload(chart.payload, "", self._proofs(chart.payload))
+            first = _FIRST * chart.largest_payload
+            followed = _key(self._proofs(0.0)[0]) if near is None else _key(near.proofs[0])
+            if near is not None and near.capacity:
+                first = near.capacity
+            for _ in range(_MOST_PROOFS):
+                payload, reason = self._root(min(first, chart.largest_payload), followed)
+                found = self._proofs(payload)
+                if (found[0].utilisation or 0.0) <= 1.0 + 10.0 * _ACCURACY:
+                    return self._with_payload(payload, reason, found)
+                first, followed = max(payload, 1.0), _key(found[0])
+            raise NoCapacityError(NO_EQUILIBRIUM)
         except NoCapacityError as error:
             return Cell(self.configuration, self.radius, reason=str(error))
 
-    def _largest(self) -> Cell:
-        """Return the cell of the largest payload that was tried and for which all proofs hold."""
-        capacity = max(one for one, part in self._utilisations.items() if part <= 1.0 + _ACCURACY)
-        larger = [one for one in self._utilisations if one > capacity]
-        return self._with_payload(
-            capacity, self._failures.get(min(larger), "") if larger else LARGEST
-        )
-
-    def _with_payload(self, capacity: float, reason: str) -> Cell:
+    def _with_payload(self, capacity: float, reason: str, found: Rows) -> Cell:
         proofs: dict[str, Row] = {}
-        for row in self._proofs(capacity):
+        for row in found:
             proofs.setdefault(row.quantity, row)
         table, states = self.points[capacity]
         assert table.angle is not None
@@ -136,39 +142,59 @@ class Search:
             radius - straight, force, tuple(proofs.values()),
         )  # fmt: skip
 
-    def _root(self, first: float) -> None:
-        """Search the payload in kg at which the governing utilisation is 1."""
+    def _root(self, first: float, followed: _Key) -> tuple[float, str]:
+        """Return the largest payload in kg for which one proof holds, and what else limits it.
+
+        Raises:
+            NoCapacityError: the proof does not hold without payload.
+        """
         from scipy.optimize import brentq
 
         largest = chart_of(self.case).largest_payload
-        low, high = 0.0, min(first, largest)
-        while self._excess(high) < 0.0:
-            if high == largest:
-                return
-            # Utilisations are nearly linear in the payload.
-            rise = (self._excess(high) - self._excess(0.0)) / high
-            ahead = -1.05 * self._excess(0.0) / rise if rise > 0.0 else np.inf
-            low, high = high, min(max(ahead, 1.1 * high), 8.0 * high, largest)
-        accuracy = {"xtol": _ACCURACY * high, "rtol": _ACCURACY}
-        brentq(self._excess, low, high, **accuracy)
+        tried, failures = set[float](), dict[float, str]()
 
-    def _excess(self, payload: float) -> float:
-        """Return the governing utilisation less 1; 1 if the boom cannot stand at the radius."""
-        if payload not in self._utilisations:
+        @cache
+        def excess(payload: float) -> float:
+            tried.add(payload)
             try:
-                self._utilisations[payload] = self._proofs(payload)[0].utilisation or 0.0
+                proofs = self._proofs(payload, followed)
+                return max((row.utilisation or 0.0 for row in proofs), default=0.0) - 1.0
             except NoCapacityError as error:
-                self._utilisations[payload] = 2.0
-                self._failures[payload] = str(error)
-        return self._utilisations[payload] - 1.0
+                failures[payload] = str(error)
+                return 1.0
 
-    def _proofs(self, payload: float) -> Rows:
+        if excess(0.0) > 0.0:
+            what = f"{PROVED[followed[1]].title} {percent(1.0 + excess(0.0))} without payload"
+            raise NoCapacityError(failures.get(0.0, what))
+        low, high = 0.0, first
+        while excess(high) < 0.0:
+            if high == largest:
+                return largest, LARGEST
+            # Utilisations are nearly linear in the payload.
+            rise = (excess(high) - excess(0.0)) / high
+            ahead = -1.01 * excess(0.0) / rise if rise > 0.0 else np.inf
+            low, high = high, min(max(ahead, 1.01 * high), 8.0 * high, largest)
+        accuracy = {"xtol": _ACCURACY * high, "rtol": _ACCURACY}
+        brentq(excess, low, high, **accuracy)
+        capacity = max(payload for payload in tried if excess(payload) <= _ACCURACY)
+        beyond = [payload for payload in tried if payload > capacity]
+        return capacity, failures.get(min(beyond, default=0.0), "")
+
+    def _proofs(self, payload: float, followed: _Key | None = None) -> Rows:
         """Return the governing proofs with a payload in kg, the governing one first.
+
+        With ``followed``, only one kind of proof in one combination is computed.
 
         Raises:
             NoCapacityError: the tip cannot stand at the radius, or there is no equilibrium.
         """
         case = combined_case(self.case, self.point(payload)[0])
+        if followed is not None:
+            (combination,) = (
+                one for one in case.combinations if followed[0].startswith(f"{one.name}, ")
+            )
+            combination = combination.model_copy(update={"proofs": (followed[1],)})
+            case = case.model_copy(update={"combinations": (combination,)})
         try:
             states = combination_states(case)
             return governing(row for state in states for row in proofs_of(state, case))
@@ -185,7 +211,7 @@ class Search:
         """
         if payload in self.points:
             return self.points[payload]
-        guesses = [_tip(states) for _, states in self.points.values()][-1:] or [0.0]
+        guesses = [self._expected(payload)]
         found: list[float] = []
         for _ in range(_STEPS):
             table, states = self._rated(payload, guesses[-1])
@@ -197,6 +223,14 @@ class Search:
                 return table, states
             guesses.append(_secant(guesses, found))
         raise NoCapacityError(NO_EQUILIBRIUM)
+
+    def _expected(self, payload: float) -> float:
+        """Return the tip deflection in m that the last two payloads let expect."""
+        last = [(one, _tip(states)) for one, (_, states) in self.points.items()][-2:]
+        if len(last) < 2:
+            return last[0][1] if last else 0.0
+        (one, first), (other, second) = last
+        return second + (second - first) * (payload - other) / (other - one)
 
     def _rated(self, payload: float, tip: float) -> tuple[LoadCaseTable, States]:
         """Return the load case whose tip would be at the radius with this deflection in m."""
@@ -227,10 +261,10 @@ class Search:
 def solve(case: Case, configuration: Configuration) -> list[Cell]:
     """Return the cells of a configuration at all radii of the chart."""
     cells: list[Cell] = []
-    capacity = None
+    near = None
     for radius in chart_of(case).radii:
-        cells.append(Search(case, configuration, radius).cell(capacity))
-        capacity = cells[-1].capacity or capacity
+        cells.append(Search(case, configuration, radius).cell(near))
+        near = cells[-1] if cells[-1].proofs else near
     return cells
 
 
