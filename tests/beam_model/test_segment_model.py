@@ -12,8 +12,6 @@ from protractile.beam_model.kantorovich import kantorovich_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.integrator import FixedStep
-from protractile.dynamics.motion import Motion
 from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
 from protractile.geometry.observation import Observation
 from studies.reference_models.statics import static_response
@@ -202,27 +200,6 @@ def test_bonded_halves_have_the_frequencies_of_the_whole(
     found = gap_system(leaves[0].bonded, leaves[1]).frequencies
     for frequency in gap_system(paper_boom.bonded, beam_elements(paper_boom, 1.0)).frequencies:
         assert np.abs(found - frequency).min() <= 1e-8 * frequency
-
-
-def test_bonded_halves_move_as_the_whole(
-    paper_boom: Boom, leaves: tuple[Boom, list[SegmentModel]]
-) -> None:
-    """Reference: analytic, until round-off has grown in the first contacts."""
-    law = PowerContact(1e9, 1.0).with_clearance(7e-3)
-    step = 2.0e-5
-    whole = FixedStep(step)(
-        Motion(gap_system(touching(paper_boom, law), beam_elements(paper_boom, 1.0)), 0.2)
-    )
-    halves = FixedStep(step)(Motion(gap_system(touching(leaves[0], law), leaves[1]), 0.2))
-    assert 0.1 < whole.first_contact < 0.15
-    assert halves.first_contact == pytest.approx(whole.first_contact, rel=1e-9)
-    assert halves.data.attrs["contact_changes"] == whole.data.attrs["contact_changes"] > 1
-    for name in ("tip", "head", "tail"):
-        expected = whole.data[name].values
-        error = np.abs(halves.data[name].values - expected).max()
-        assert error < 1e-8 * np.abs(expected).max(), name
-    other = halves.data["tail-2"].values
-    assert np.abs(other - halves.data["tail"].values).max() < 1e-12
 
 
 def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:

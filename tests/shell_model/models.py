@@ -3,7 +3,7 @@
 
 from collections.abc import Sequence
 from concurrent.futures import Executor
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Direction
 from protractile.geometry.contact_places import ContactLine
+from protractile.runs.folder.cache import Cache, load_or_compute
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
@@ -40,12 +41,16 @@ def reduced(
     moments: int = 1,
     **options: Any,
 ) -> ReducedShell:
-    """Return a boom as shells with edges of a size in m, with the same laws in all joints."""
-    return reduce_boom(
+    """Return a boom as shells with edges of a size in m, with the same laws in all joints.
+
+    All workers share them.
+    """
+    inputs = (
         touching(boom, law, lateral),
         ShellOptions(size, line, krylov=KrylovOptions(moments=moments), **options),
-        MPI.COMM_WORLD,
     )
+    compute = partial(reduce_boom, *inputs, MPI.COMM_WORLD)
+    return load_or_compute(Cache.of_user(), inputs, MPI.COMM_WORLD, compute)
 
 
 def pressed_rest(system: GapSystem, at: Sequence[bool] | slice = slice(None)) -> Array:

@@ -8,8 +8,6 @@ import pytest
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.integrator import AdaptiveStep
-from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import (
     Boom,
@@ -159,33 +157,6 @@ def test_a_hexagonal_boom_with_collars_follows_its_beam(monkeypatch: pytest.Monk
     plain = sections.boom_of(HEXAGON, INNER_HEXAGON)
     shell = sections.shell_peak(sections.add_collars(plain, 0.010))
     assert shell == pytest.approx(sections.beam_peak(plain), rel=0.015)
-
-
-@pytest.mark.slow
-def test_a_mirrored_boom_moves_the_other_way() -> None:
-    """Reference: symmetry. The mirrored boom under mirrored forces has mirrored contact forces."""
-    upright = sections.add_collars(sections.boom_of(U, INNER_U), 0.006)
-    mirrored = replace(
-        upright,
-        segments=tuple(
-            replace(one, section=_upside_down(section), load=-one.load)
-            for one, section in zip(upright.segments, (U, INNER_U), strict=True)
-        ),
-    )
-    systems = [reduced(boom, 0.25, law=LINEAR).system for boom in (upright, mirrored)]
-    first, second = ([law.terms[0].side for law in system.laws] for system in systems)
-    assert first == [1.0, -1.0, 1.0, -1.0]
-    assert first == second
-    both = [_compliance(system)[:4, :4] for system in systems]
-    swapped = [1, 0, 3, 2]
-    assert both[1][np.ix_(swapped, swapped)] == pytest.approx(both[0], rel=1e-8)
-    assert np.abs(both[1] - both[0]).max() > 1e-6 * np.abs(both[0]).max()
-    motions = [
-        AdaptiveStep()(Motion(system, 0.3, output_step=0.01)).data["tip"] for system in systems
-    ]
-    early = motions[0]["time"].values < 0.115
-    tips = [motion.values for motion in motions]
-    assert -tips[1][early] == pytest.approx(tips[0][early], rel=1e-6, abs=1e-9)
 
 
 def _upside_down(section: PolygonSection) -> PolygonSection:
