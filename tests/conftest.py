@@ -22,7 +22,7 @@ from protractile.geometry.box import infer_inner_section, infer_outer_section
 from protractile.runs.folder.cache import VARIABLE
 from protractile.runs.process import terminal
 from protractile.runs.process.ranks import launcher
-from tests.space import in_space
+from tests.touching import in_space
 from tests.unprinted import blank
 
 # The same examples every time, however slow the machine.

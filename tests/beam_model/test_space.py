@@ -22,8 +22,7 @@ from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Stop, Support
 from tests.beam_model.exact import beam, frequencies
-from tests.space import in_space
-from tests.touching import touching
+from tests.touching import in_space, touching
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
 LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0).with_clearance(5.0e-3)

@@ -32,7 +32,7 @@ from protractile.dynamics.predictability import (
     vary_motion,
 )
 from protractile.dynamics.trajectory import Trajectory
-from tests.dynamics.two_stops import CHAOTIC, LINEAR
+from tests.dynamics.reference import CHAOTIC, LINEAR
 
 THROWN = np.array([0.5, -1.0])
 
@@ -107,7 +107,7 @@ from mpi4py.futures import MPICommExecutor
 from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from protractile.dynamics.motion import Motion
 from protractile.dynamics.predictability import integrate_ensemble
-from tests.dynamics.two_stops import CHAOTIC
+from tests.dynamics.reference import CHAOTIC
 
 with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:
     if ranks is not None:

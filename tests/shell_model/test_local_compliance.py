@@ -23,8 +23,14 @@ from protractile.shell_model.contact.local_compliance import (
     shell_compliance,
 )
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
-from tests.shell_model.booms import LAW, boom_in_space, box_segment, flat_boom, three_segments
-from tests.shell_model.models import reduced
+from tests.shell_model.booms import (
+    LAW,
+    boom_in_space,
+    box_segment,
+    flat_boom,
+    reduced,
+    three_segments,
+)
 from tests.touching import touching
 
 SIZES = (0.8, 0.4, 0.2)

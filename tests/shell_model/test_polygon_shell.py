@@ -28,14 +28,16 @@ from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
 from protractile.shell_model.segment.cross_section import Row
 from studies import sections
-from tests.shell_model.booms import STEEL, flat_boom, two_segments
-from tests.shell_model.conftest import BOX, UNEQUAL, box_shell
-from tests.shell_model.models import (
+from tests.shell_model.booms import (
+    STEEL,
     assert_rests_as_beams,
+    flat_boom,
     frequencies_off,
     reduce_segment,
     reduced,
+    two_segments,
 )
+from tests.shell_model.conftest import BOX, UNEQUAL, box_shell
 
 LINEAR = sections.LAW
 (HEXAGON, INNER_HEXAGON), (OCTAGON, INNER_OCTAGON), (U, INNER_U) = sections.SHAPES.values()
