@@ -78,7 +78,11 @@ class Line:
         """
         places, rows = self.x, self.rows[name]
         if self.paired:
-            places, rows = 0.5 * (places[::2] + places[1::2]), 0.5 * (rows[::2] + rows[1::2])
+            # A jump is at the ends of elements: of those on this side the nearest, if it is x.
+            near, far = (slice(side < 0, None, 2), slice(side > 0, None, 2))
+            k = int(np.abs(places[near] - x).argmin())
+            at_x = abs(places[near][k] - x) < abs(places[far][k] - x)
+            return np.asarray(at_x * rows[near][k])
         there = np.flatnonzero(side * (places - x) > 0.0)
         if there.size == 0:
             return np.zeros(rows.shape[1])

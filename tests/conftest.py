@@ -22,7 +22,7 @@ from protractile.geometry.box import infer_inner_section, infer_outer_section
 from protractile.runs.folder.cache import VARIABLE
 from protractile.runs.process import terminal
 from protractile.runs.process.ranks import launcher
-from tests.space import in_space
+from tests.touching import in_space
 from tests.unprinted import blank
 
 # The same examples every time, however slow the machine.
@@ -32,9 +32,12 @@ settings.load_profile("protractile")
 
 @pytest.fixture(autouse=True, scope="session")
 def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Keep tests from using or filling the user's cache."""
+    """Keep shells in one cache of all workers, and tests from using or filling the user's."""
+    folder = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        folder = folder.parent
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(VARIABLE, str(tmp_path_factory.mktemp("cache")))
+        patch.setenv(VARIABLE, str(folder / "cache"))
         yield
 
 

@@ -30,8 +30,7 @@ from protractile.geometry.boom import (
 )
 from protractile.geometry.box import BoxSection
 from tests.beam_model.exact import beam
-from tests.lowered_pin import level, raised
-from tests.space import in_space
+from tests.touching import in_space, level, raised
 
 SMALL = BoxSection(height=0.4, width=0.3, flange=0.01, web=0.01)
 UNIFORM, TIP = -2.0e3, -1.5e4

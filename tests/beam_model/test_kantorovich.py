@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Kantorovich series: spaces of the paper, conditioning, and convergence to the beam."""
+"""Kantorovich series and rigid segments: spaces of the paper, conditioning, convergence."""
 
 from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from protractile.beam_model.boom_modes import BoomModes
 from protractile.beam_model.component import Component, natural_modes
 from protractile.beam_model.finite_element import finite_element_segment
-from protractile.beam_model.kantorovich import Base, kantorovich_bending
+from protractile.beam_model.kantorovich import Base, kantorovich_bending, rigid_segment
+from protractile.beam_model.segment_model import gap_system
+from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import FixedStep
+from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Support
+from protractile.geometry.boom import Boom, PointMass, Support
 from tests.beam_model.exact import (
     CLAMPED_FREE,
     FREE_FREE,
@@ -20,6 +27,7 @@ from tests.beam_model.exact import (
     beam,
     frequencies,
 )
+from tests.touching import touching
 
 
 def outside_of_span(model: Component, function: Array, x: Array) -> float:
@@ -153,21 +161,6 @@ def test_pinned_outer_series_converges_to_the_beam(paper_boom: Boom) -> None:
         assert 0.0 < too_stiff < compliance_error
 
 
-def test_place_of_the_origin_does_not_matter(paper_boom: Boom) -> None:
-    """Reference: analytic. x of (29) begins at the first support: a shift has no effect."""
-    for segment in paper_boom.segments:
-        moved = replace(
-            segment,
-            start=segment.start + 7.3,
-            end=segment.end + 7.3,
-            supports=tuple(Support(support.x + 7.3) for support in segment.supports),
-        )
-        here, there = (
-            kantorovich_bending(s, 5, "as printed", rotary_inertia=True) for s in (segment, moved)
-        )
-        np.testing.assert_allclose(frequencies(there), frequencies(here), rtol=1e-10)
-
-
 def test_load_is_the_work_of_a_uniform_force() -> None:
     """Reference: analytic, the work on x² (x − 2), and on 1 and x − x2 of the paper's spaces."""
     inner = kantorovich_bending(beam(load=11.0), 2, "as printed", rotary_inertia=False)
@@ -179,3 +172,81 @@ def test_load_is_the_work_of_a_uniform_force() -> None:
     # ∫₀⁵ x² (x − 2) dx = 5⁴/4 − 2·5³/3, and the function is 75 at x = 5.
     work = 11.0 * (5.0**4 / 4.0 - 2.0 * 5.0**3 / 3.0) / 75.0
     assert outer.load / outer.at(8.0) == pytest.approx(work, rel=1e-12)
+
+
+LAW = PowerContact(stiffness=2.0e6, exponent=1.0).with_clearance(7.0e-3)
+
+
+def rigid(boom: Boom, laws: list[PowerContact]) -> GapSystem:
+    return gap_system(touching(boom, laws), [rigid_segment(segment) for segment in boom.segments])
+
+
+@pytest.fixture
+def inside(paper_boom: Boom) -> Boom:
+    """Return an inner segment in a clamped outer one, with its midpoint between the stations."""
+    outer, inner = paper_boom.segments
+    return Boom(
+        (
+            replace(outer, supports=(Support(0.0, "clamped"),)),
+            replace(inner, start=2.0, end=10.0, load=-540.0),
+        ),
+        (replace(paper_boom.joints[0], stations=(4.0, 8.0)),),
+    )
+
+
+def test_a_segment_falls_on_its_contacts_and_bounces(inside: Boom) -> None:
+    """Reference: analytic, free fall through the clearance, then half a period on two springs."""
+    system = rigid(inside, [LAW])
+    assert system.num_modes == 2
+    inner = inside.segments[1]
+    mass, force = inner.mass_per_length * inner.length, -inner.load * inner.length
+    gravity, omega = force / mass, np.sqrt(2.0 * LAW.law.stiffness / mass)
+    fall = np.sqrt(2.0 * LAW.above / gravity)
+    speed, sag = gravity * fall, force / (2.0 * LAW.law.stiffness)
+    contact = 2.0 / omega * (np.pi - np.arctan(speed * omega / gravity))
+    lowest = -LAW.above - sag - np.hypot(sag, speed / omega)
+    period = 2.0 * fall + contact
+
+    found = FixedStep(2.0e-6)(Motion(system, 4.0 * period, period / 40.0))
+    tip = found.data["tip"].values
+    assert tip[20::40] == pytest.approx([lowest] * 4, rel=1e-6)
+    assert tip[::40] == pytest.approx(np.zeros(5), abs=1e-6 * LAW.above)
+    assert found.data["tail"].values == pytest.approx(tip, abs=1e-12)
+    assert found.data.attrs["energy_residual"] < 1e-7
+
+
+def test_the_boom_rests_as_a_lever(paper_boom: Boom) -> None:
+    """Reference: analytic, moments of the inner segment's weight about both stations."""
+    outer, inner = paper_boom.segments
+    held = replace(outer, supports=(Support(0.0), Support(2.0)))
+    system = rigid(replace(paper_boom, segments=(held, inner)), [LAW])
+    rest = equilibrium(system, system.load)
+    forces = [law.force(row @ rest) for law, row in zip(system.laws, system.rows, strict=True)]
+    weight, arm = inner.load * inner.length, 0.5 * (inner.start + inner.end)
+    assert forces == pytest.approx([weight * (10.0 - arm), weight * (arm - 9.0)], rel=1e-9)
+    assert system.observers["head"].row @ rest == 0.0
+
+
+def test_a_body_swings_on_springs(paper_boom: Boom) -> None:
+    """Reference: analytic, bounce and pitch of a symmetric bar with a mass in its middle."""
+    stiffness = 3.0e5
+    springs = tuple(Support(x, stiffness=stiffness) for x in (1.0, 9.0))
+    bar = replace(paper_boom.segments[0], supports=springs, masses=(PointMass(5.0, 400.0),))
+    mass = bar.mass_per_length * bar.length + 400.0
+    inertia = bar.mass_per_length * bar.length**3 / 12.0 + bar.rotary_inertia * bar.length
+    expected = np.sqrt([2.0 * stiffness / mass, 2.0 * stiffness * 4.0**2 / inertia])
+    modes = BoomModes(Boom((bar,), ()), [rigid_segment(bar)])
+    assert np.sqrt(np.sort(modes.omega2)) == pytest.approx(np.sort(expected), rel=1e-12)
+
+
+def test_supports_leave_unheld_rigid_motions_free(paper_boom: Boom, spatial_boom: Boom) -> None:
+    outer, inner = spatial_boom.segments
+    sizes = {
+        name: component.load.size for name, component in rigid_segment(inner).components.items()
+    }
+    assert sizes == {"z": 2, "y": 2, "twist": 1}
+    clamped = rigid_segment(replace(outer, supports=(Support(0.0, "clamped"),)))
+    assert [component.load.size for component in clamped.components.values()] == [0, 0, 0]
+    hinged = rigid_segment(replace(paper_boom.segments[0], supports=(Support(2.0),)))
+    row = hinged.components["z"].at(7.0) / hinged.components["z"].at(3.0)
+    assert row == pytest.approx([5.0], rel=1e-12)

@@ -20,11 +20,9 @@ from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Joint, Segment, Stop, Support
-from protractile.geometry.box import BoxSection
+from protractile.geometry.boom import Boom, Joint, Stop, Support
 from tests.beam_model.exact import beam, frequencies
-from tests.space import in_space
-from tests.touching import touching
+from tests.touching import in_space, touching
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0).with_clearance(7.0e-3)
 LATERAL_LAW = PowerContact(stiffness=3.0e8, exponent=1.0).with_clearance(5.0e-3)
@@ -90,37 +88,6 @@ def test_a_torque_twists_in_proportion_to_its_arm() -> None:
     rest = np.linalg.solve(model.stiffness, 900.0 * model.at(5.5))
     for x, arm in ((4.0, 1.0), (5.5, 2.5), (7.1, 2.5), (8.0, 2.5)):
         assert model.at(x) @ rest == pytest.approx(900.0 * arm / stiffness, rel=1e-12)
-
-
-@pytest.mark.parametrize("kind", ["series", "euler-bernoulli", "timoshenko"])
-def test_lateral_bending_equals_bending_of_the_turned_box(kind: str) -> None:
-    """Reference: the flat model of a segment with a turned box."""
-    box = BoxSection(height=0.60, width=0.40, flange=0.04, web=0.01)
-    side = BoxSection(height=0.40, width=0.60, flange=0.01, web=0.04)
-    held = (Support(3.0, "clamped"), Support(6.0))
-    upright = in_space(beam(supports=held, viscous_damping=5.0))
-    lying = replace(
-        beam(supports=held, viscous_damping=5.0),
-        section=side,
-        second_moment_of_area=side.second_moment_of_area,
-        rotary_inertia=7850.0 * side.second_moment_of_area,
-    )
-    assert upright.section == box
-
-    def model(segment: Segment) -> SegmentModel:
-        if kind == "series":
-            return kantorovich_segment(segment, 8, "complete", True)
-        theory: Theory = "timoshenko" if kind == "timoshenko" else "euler-bernoulli"
-        return finite_element_segment(segment, 0.5, (), theory, True)
-
-    lateral, flat = model(upright).components["y"], model(lying).components["z"]
-    for name in ("stiffness", "mass", "damping"):
-        expected = getattr(flat, name)
-        scale = np.abs(expected).max()
-        np.testing.assert_allclose(getattr(lateral, name), expected, atol=1e-12 * scale)
-    np.testing.assert_allclose(lateral.at(7.3), flat.at(7.3))
-    # The box is not square, or this would say nothing.
-    assert frequencies(model(upright).components["z"])[0] > 1.2 * frequencies(lateral)[0]
 
 
 def test_places_and_names(spatial_boom: Boom) -> None:

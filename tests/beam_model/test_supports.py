@@ -13,11 +13,10 @@ from protractile.beam_model.finite_element import finite_element_segment
 from protractile.beam_model.kantorovich import Base, kantorovich_bending
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import PowerContact
-from protractile.dynamics.excitation import Step
 from protractile.dynamics.integrator import AdaptiveStep
 from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, BoomError, Load, PointMass, Segment, Stop, Support
+from protractile.geometry.boom import Boom, BoomError, PointMass, Segment, Stop, Support
 from tests.beam_model.exact import (
     CLAMPED_FREE,
     FREE_FREE,
@@ -220,22 +219,6 @@ def test_the_printed_functions_know_pinned_supports_alone(base: Base, support: S
     )
     with pytest.raises(BoomError, match=f"^{re.escape(message)}$"):
         kantorovich_bending(beam(supports=(support,)), 5, base, rotary_inertia=False)
-
-
-def test_a_load_with_a_history(paper_boom: Boom, paper_law: PowerContact) -> None:
-    """Reference: analytic. A uniform load is that of the segment, a point load a row."""
-    loads = (
-        Load(1, "z", 55.07, None, Step()),
-        Load(0, "z", -2.0e3, 10.0, Step()),
-    )
-    system = gap_system(
-        touching(replace(paper_boom, loads=loads), paper_law), beam_elements(paper_boom, 0.5)
-    )
-    uniform, point = system.excitations
-    own = np.where(system.observers["tip"].row != 0.0, system.load, 0.0)
-    np.testing.assert_allclose(uniform.load, own, atol=1e-12 * np.abs(own).max())
-    np.testing.assert_allclose(point.load, -2.0e3 * system.observers["head"].row)
-    assert uniform.history == Step()
 
 
 def test_a_stop_holds_tip_up(paper_boom: Boom, paper_law: PowerContact) -> None:

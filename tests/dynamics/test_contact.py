@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Contact laws: powers, two sides, Hunt-Crossley damping, tables."""
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -71,27 +70,6 @@ def test_shares_add_up_to_the_whole(law: PowerContact) -> None:
     np.testing.assert_allclose(total, law.force(y), rtol=1e-14)
 
 
-@pytest.mark.parametrize(
-    ("arguments", "message"),
-    [
-        ({"stiffness": -1.0}, "stiffness must be a number of N/m^n, not negative, got -1.0"),
-        ({"stiffness_below": -1.0},
-         "stiffness_below must be a number of N/m^n, not negative, got -1.0"),
-        ({"stiffness": float("inf")}, "stiffness must be a number of N/m^n, not negative, got inf"),
-        ({"stiffness": 0.0}, "stiffness must be positive on one side at least, got 0.0 on both"),
-        ({"stiffness": 0.0, "stiffness_below": 0.0},
-         "stiffness must be positive on one side at least, got 0.0 on both"),
-        ({"exponent": 0.5}, "exponent must be at least 1, got 0.5"),
-        ({"exponent": float("nan")}, "exponent must be at least 1, got nan"),
-        ({"damping": -1.0}, "damping must be finite and not negative, got -1.0 s/m"),
-        ({"damping": float("nan")}, "damping must be finite and not negative, got nan s/m"),
-    ],
-)  # fmt: skip
-def test_bad_values_are_refused(arguments: dict[str, float], message: str) -> None:
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        PowerContact(**{"stiffness": 1.0e13, "exponent": 2.0, **arguments})
-
-
 @pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0, 10.0])
 @pytest.mark.parametrize("force", [1.0e-40, 1.0e-18, 1.0e-3, 1.0e5, 1.0e200])
 def test_the_slope_is_known_at_any_force(exponent: float, force: float) -> None:
@@ -130,21 +108,6 @@ def test_parts_are_those_of_its_law() -> None:
     )
     moved = UNEQUAL.with_clearance(1.0e-3)
     assert (moved.above, moved.below) == pytest.approx((5.0e-3, 11.0e-3))
-
-
-@pytest.mark.parametrize(
-    ("clearance", "message"),
-    [
-        (
-            -1.0e-3,
-            "a law must be linear behind a negative clearance, got k 1e+06, 2e+09 below, n 2",
-        ),
-        (np.nan, "clearance must be a finite number of m, got nan and nan"),
-    ],
-)
-def test_bad_gaps_are_refused(clearance: float, message: str) -> None:
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        SOFT_ABOVE.with_clearance(clearance)
 
 
 def test_preloaded_mass_leaves_one_contact_side() -> None:
@@ -220,20 +183,6 @@ def test_contact_never_pulls() -> None:
     assert float(run.data["contact_loss"][-1]) > 0.5 * 0.5 * 1.0e4 * 0.1**2
 
 
-@pytest.mark.parametrize(
-    ("restitution", "speed", "message"),
-    [
-        (0.0, 1.0, "restitution must be above 0 and at most 1, got 0.0"),
-        (1.1, 1.0, "restitution must be above 0 and at most 1, got 1.1"),
-        (0.5, 0.0, "speed must be finite and positive, got 0.0 m/s"),
-        (0.5, float("inf"), "speed must be finite and positive, got inf m/s"),
-    ],
-)
-def test_bad_restitutions_are_refused(restitution: float, speed: float, message: str) -> None:
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        restitution_damping(restitution, speed)
-
-
 # Softer after the first millimetre, then stiff: a pad that gives way and bottoms out.
 DEPTHS, FORCES = (1.0e-3, 3.0e-3, 4.0e-3), (2.0e3, 3.0e3, 9.0e3)
 TABLE = TableContact(DEPTHS, FORCES).with_clearance(7.0e-3)
@@ -285,21 +234,3 @@ def test_a_mass_on_a_table_swings_on_its_lines() -> None:
     left = 0.5 * 4.0**2 - trapezoid((0.0, *FORCES[:2]), (0.0, *DEPTHS[:2]))
     assert deepest == pytest.approx(np.sqrt(3.0e3**2 + 2.0 * 6.0e6 * left), rel=1e-5)
     assert 3.0e3 < deepest < 9.0e3
-
-
-@pytest.mark.parametrize(
-    ("depths", "forces", "message"),
-    [
-        ((), (), "a table needs one force for each depth, and one at least"),
-        ((1e-3,), (1.0, 2.0), "a table needs one force for each depth, and one at least"),
-        ((1e-3, 1e-3), (1.0, 2.0), "depths must be finite and rise from above 0"),
-        ((0.0,), (1.0,), "depths must be finite and rise from above 0"),
-        ((1e-3,), (-1.0,), "forces must be positive, and must not fall at the end"),
-        ((1e-3, 2e-3), (2.0, 1.0), "forces must be positive, and must not fall at the end"),
-    ],
-)
-def test_bad_tables_are_refused(
-    depths: tuple[float, ...], forces: tuple[float, ...], message: str
-) -> None:
-    with pytest.raises(ValueError, match=f"^{message}$"):
-        TableContact(depths, forces)

@@ -187,12 +187,6 @@ def test_hoisting_while_a_segment_extends() -> None:
     assert len(hung.travels) == len(system.travels) + 1
 
 
-@pytest.mark.parametrize("name", ["mass", "stiffness", "gravity"])
-def test_numbers_of_no_load(name: str) -> None:
-    with pytest.raises(ValueError, match=rf"^{name} must be finite and positive, got 0.0$"):
-        HangingLoad(**({"mass": 1.0, "stiffness": 1.0, "gravity": 1.0} | {name: 0.0}))
-
-
 LAWS: list[MotionLaw] = [
     SCurve(30.0, 2.0, 0.3),
     Stroke(30.0, 12.0, 0.8, 0.2),
@@ -218,18 +212,6 @@ def test_rates_of_a_table() -> None:
     law = PiecewiseLinear((0.0, 1.0, 3.0), (0.0, 2.0, 1.0))
     assert law.rate(np.array([0.5, 2.0, 4.0]), 1).tolist() == [2.0, -0.5, 0.0]
     assert not law.rate(np.array([0.5, 2.0, 4.0]), 2).any()
-
-
-@pytest.mark.parametrize(
-    ("numbers", "message"),
-    [
-        ((0.0,), "frequency must be finite and positive, got 0.0 Hz"),
-        ((1.0, 1.0), "damping must be at least 0 and below 1, got 1.0"),
-    ],
-)
-def test_numbers_of_no_shaper(numbers: tuple[float, ...], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        Shaped(SCurve(1.0, 1.0), *numbers)
 
 
 def position(frame: FrameMotion, time: Array, x: float, extension: MotionLaw) -> Array:

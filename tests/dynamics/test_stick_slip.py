@@ -215,17 +215,3 @@ def test_reversing_drive() -> None:
     assert found.series["drive_lag"][1900] == pytest.approx(FRICTION / STIFFNESS, rel=1e-6)
     assert found.results.behind == pytest.approx(-FRICTION / STIFFNESS, rel=1e-6)
     assert found.results.mean == pytest.approx(FRICTION, rel=0.03)
-
-
-@pytest.mark.parametrize(
-    ("changes", "message"),
-    [
-        ({"mass": 0.0}, "mass must be finite and above 0, got 0.0"),
-        ({"stiffness": np.inf}, "stiffness must be finite and above 0, got inf"),
-        ({"dashpot": -1.0}, "dashpot must be finite and at least 0, got -1.0"),
-        ({"sticking": 0.5}, "sticking must be finite and at least 1, got 0.5"),
-    ],
-)
-def test_bad_elastic_drives_are_refused(changes: dict[str, float], message: str) -> None:
-    with pytest.raises(ValueError, match=message):
-        replace(ROPE, **changes)

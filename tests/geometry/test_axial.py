@@ -6,8 +6,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from protractile.dynamics.excitation import PiecewiseLinear
+from protractile.dynamics.excitation import PiecewiseLinear, Step
 from protractile.geometry.axial import (
+    AxialChange,
     MovingForce,
     Thrust,
     axial_force,
@@ -103,6 +104,18 @@ def test_each_of_three_segments_carries_the_outboard_forces() -> None:
     assert at(jib, 13.0, 19.0) == [700.0, 700.0]
     assert at(fly, 7.0, 12.5, 13.5) == pytest.approx([600.0, -100.0, 0.0], abs=1e-9)
     assert at(arm, 5.0, 6.5, 7.5) == pytest.approx([610.0, 10.0, 0.0], abs=1e-9)
+
+
+def test_axial_forces_and_masses_soften_a_mode() -> None:
+    """Reference: analytic, ∫ P w′² dx = P π²/2L and m w² of w = sin πx/L with a mass at L/3."""
+    (arm,) = with_compression([segments()[0]], [], [Thrust(0, 8.0, 900.0)])
+    x = np.linspace(0.0, 8.0, 81)
+    lines = {"z": (x, np.sin(np.pi * x / 8.0)[:, None]), "y": (x, 0.0 * x[:, None])}
+    masses = [[PointMass(8.0 / 3.0, 60.0)]]
+    found = AxialChange(Step(), [arm.compression], masses, "z").geometric_stiffness([lines])
+    # The force ends at the foot, at 1 m.
+    bent = 900.0 * (np.pi / 8.0) ** 2 * (3.5 - np.sin(0.25 * np.pi) / (0.5 * np.pi))
+    assert found == pytest.approx(np.array([[bent + 0.75 * 60.0]]), rel=1e-5)
 
 
 @pytest.mark.parametrize(

@@ -31,7 +31,7 @@ from protractile.geometry.boom import (
 )
 from protractile.geometry.box import BoxSection
 from protractile.geometry.place import Distance
-from protractile.geometry.typography import join_words, with_minus_signs
+from protractile.geometry.typography import join_words, number, with_minus_signs
 
 # What changes of the outer segment, of the inner one and of the joint.
 Changes = dict[str, dict[str, Any]]
@@ -49,6 +49,15 @@ def test_numbers_of_a_segment(paper_boom: Boom) -> None:
     assert replace(outer, supports=(Support(0.0, "clamped"),)).rigid_modes == 0
     assert replace(outer, supports=(Support(0.0, stiffness=1.0e6),)).rigid_modes == 1
     assert (outer.rigid_twists, inner.rigid_twists) == (0, 1)
+
+
+def test_stiffeners_weigh_as_their_plates(steel: Material) -> None:
+    """Reference: by hand, a collar of 0.5 m around the walls, and a lid of 8 mm within them."""
+    box = BoxSection(0.4, 0.3, 0.01, 0.01)
+    collars, lids = (Collar((1.0, 1.5), 0.012),), (Diaphragm(2.0, 0.008),)
+    arm = Segment.of_section("arm", 0.0, 3.0, steel, box, collars=collars, diaphragms=lids)
+    volume = box.area * 3.0 + 1.4 * 0.5 * 0.012 + 0.4 * 0.3 * 0.008
+    assert arm.mass == pytest.approx(7850.0 * volume, rel=1e-12)
 
 
 def test_ends_belong_to_a_segment(paper_boom: Boom) -> None:
@@ -433,3 +442,12 @@ def test_numbers_and_lists_in_texts() -> None:
     """Reference: by hand, without hyphens."""
     assert with_minus_signs("-1.5") == "\N{MINUS SIGN}1.5"
     assert [join_words("abc"[:count]) for count in (1, 2, 3)] == ["a", "a and b", "a, b and c"]
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(1234.0, "1230"), (99.96, "100"), (-12.34, "−12.3"), (0.001, "0.001"), (2e-5, "2 × 10⁻⁵")],
+)
+def test_a_number_has_three_significant_digits(value: float, text: str) -> None:
+    """Reference: by hand."""
+    assert number(value) == text

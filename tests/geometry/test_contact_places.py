@@ -36,6 +36,16 @@ def test_a_pad_keeps_its_distance_from_the_corner(paper_boom: Boom) -> None:
     assert tail.patch == Patch(9.0, 9.1, 0.03, 0.06)
 
 
+def test_the_centre_of_a_pad_lies_inwards_of_its_corner(spatial_boom: Boom) -> None:
+    """Reference: by hand, 30 mm and half of 60 mm, towards the middle of each wall."""
+    (joint,) = spatial_boom.joints
+    padded = replace(joint, pad=PadSize(length=0.1, width=0.06, offset=0.03))
+    found = pads(replace(spatial_boom, joints=(padded,)))
+    assert {pad.half for pad in found} == {-1, 1}
+    for pad in found:
+        assert pad.across == pytest.approx(-0.06 * pad.half, rel=0.1)
+
+
 def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
     """Reference: analytic, by hand: 4 flange pads at each station, then 4 web pads at each."""
     outer, inner = (segment.section for segment in spatial_boom.segments)

@@ -23,7 +23,7 @@ from protractile.geometry.boom import (
 from protractile.geometry.box import BoxSection
 from protractile.geometry.observation import Observation
 from protractile.geometry.support_check import check_contacts_at_rest
-from tests.space import in_space
+from tests.touching import in_space
 
 HINGE = Support(0.0)
 ACROSS = Support(0.0, "hinged")

@@ -144,6 +144,22 @@ def padded(steel: Material, widths: Mapping[PadSide, float]) -> Boom:
     return Boom((base, fly), (Joint(0, 1, (5.0, 6.0), play=0.01, lateral_play=0.01, pads=pads),))
 
 
+def test_pads_of_a_wall_lie_side_by_side(steel: Material) -> None:
+    """Reference: by hand, a pad of 40 mm from the corner inwards, and another from 30 mm on."""
+    boom = padded(steel, WIDTHS)
+    (joint,) = boom.joints
+    second = SlidePad(0.1, 0.03, side="above", thickness=0.02, offset=0.06)
+    assert replace(boom, joints=(replace(joint, pads=(*joint.pads, second)),)).joints[0].padded
+    over = replace(joint, pads=(*joint.pads, replace(second, offset=0.03)))
+    with pytest.raises(BoomError) as caught:
+        replace(boom, joints=(over,))
+    assert (caught.value.where, caught.value.what) == (
+        "joints[0].pads",
+        "two lie on one another above, 0.03 m from the corner; give the outer one a width of at "
+        "most 0.03 m",
+    )
+
+
 def test_a_pad_has_the_room_of_its_own_wall(steel: Material) -> None:
     """Half a wall of 0.5 m has room for 0.15 m, half a wall of 0.2 m does not."""
     assert padded(steel, WIDTHS).joints[0].padded

@@ -10,12 +10,18 @@ import pytest
 
 import protractile as pt
 from protractile.runs.case.kinds.model import ModelTable
+from tests.booms import telescope
 
 # The boom of the fixture.
 DECLARED = tomllib.loads("""
 title = "An arm and a fly"
 time = { duration = 0.2 }
-material = { youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850.0 }
+
+[material]
+youngs_modulus = 2.1e11
+poissons_ratio = 0.3
+density = 7850.0
+yield_strength = 355e6
 
 [[segment]]
 name = "arm"
@@ -42,18 +48,7 @@ LAW = pt.PowerContact(1.0e9, exponent=1.0)
 
 @pytest.fixture(scope="module")
 def boom() -> pt.Boom:
-    steel = pt.Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
-    arm = pt.Segment.of_section(
-        "arm", 0.0, 8.0, steel,
-        pt.BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006),
-        supports=(pt.Support(0.0, "clamped"),),
-    )  # fmt: skip
-    fly = pt.Segment.of_section(
-        "fly", 6.0, 14.0, steel,
-        pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005), load=-500.0,
-    )  # fmt: skip
-    joint = pt.Joint("arm", "fly", stations=(6.0, 8.0), play=0.010, contact=LAW)
-    return pt.Boom([arm, fly], [joint])
+    return telescope(joint__pad=None, joint__contact=LAW, fly__load=-500.0)
 
 
 def declared(model: ModelTable, **tables: Any) -> pt.Case:

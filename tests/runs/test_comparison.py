@@ -25,7 +25,7 @@ from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
 from protractile.runs.report.model_tables import law_table, model_table, step_table
 from protractile.runs.report.predictability import comparison_tables, predictability_tables
-from tests.dynamics.two_stops import CHAOTIC
+from tests.dynamics.reference import CHAOTIC
 from tests.runs.case_texts import shipped
 from tests.runs.paper_curves import members
 from tests.runs.summaries import (

@@ -12,8 +12,6 @@ from protractile.analysis.measure import measure_boom
 from protractile.analysis.model import AnalysisModel
 from protractile.analysis.plate_buckling import (
     measure_plates,
-    normal_coefficient,
-    panel_factor,
     weakest_plates,
 )
 from protractile.analysis.rows import INITIAL, REST, Rows, extremes, static_rows
@@ -39,39 +37,6 @@ from tests.runs import case_texts
 from tests.runs.case_texts import read_case, shipped
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
-SLENDERNESS = 80.0
-UNIT = np.pi**2 * 2.1e11 / (12.0 * 0.91) / SLENDERNESS**2
-
-
-@pytest.mark.parametrize(
-    ("ratio", "exact"), [(1.0, 4.0), (0.0, 7.81), (-1.0, 23.88), (-2.0, 53.8), (-9.0, 95.7)]
-)
-def test_coefficients_of_long_plates(ratio: float, exact: float) -> None:
-    """Reference: external, EN 1993-1-5, table 4.1, and analytic, 23.88 in bending."""
-    assert normal_coefficient(ratio) == pytest.approx(exact, rel=2.0e-3)
-
-
-@pytest.mark.parametrize("ratio", [1.0, 0.5, 0.0, -0.5, -1.0, -2.0])
-def test_a_stress_alone_has_its_own_factor(ratio: float) -> None:
-    """Reference: analytic. Without shear the interaction formula is k σ_E/σ."""
-    edges = -0.3 * UNIT, -0.3 * UNIT * ratio
-    expected = normal_coefficient(ratio) / 0.3
-    assert panel_factor(STEEL, SLENDERNESS, edges, 0.0) == pytest.approx(expected, rel=1.0e-12)
-    assert panel_factor(STEEL, SLENDERNESS, edges[::-1], 0.0) == pytest.approx(expected, rel=1e-12)
-
-
-def test_shear_interacts() -> None:
-    """Reference: analytic, 1/α = 1/(2 α_x) + √(1/(4 α_x²) + 1/α_τ²), a circle, 5.34."""
-    pressed, sheared = 0.5, 0.4
-    factor = panel_factor(STEEL, SLENDERNESS, (-4.0 * pressed * UNIT,) * 2, 5.34 * sheared * UNIT)
-    expected = 0.5 * pressed + np.hypot(0.5 * pressed, sheared)
-    assert 1.0 / factor == pytest.approx(expected, rel=1.0e-12)
-    bent = 23.92 * pressed * UNIT
-    factor = panel_factor(STEEL, SLENDERNESS, (-bent, bent), 5.34 * sheared * UNIT)
-    assert 1.0 / factor == pytest.approx(np.hypot(pressed, sheared), rel=1.0e-12)
-    tension = (UNIT, UNIT)
-    assert panel_factor(STEEL, SLENDERNESS, tension, -5.34 * UNIT) == pytest.approx(1.0)
-    assert panel_factor(STEEL, SLENDERNESS, tension, 0.0) == np.inf
 
 
 def test_the_weakest_wall_of_a_segment() -> None:

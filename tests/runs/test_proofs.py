@@ -11,7 +11,6 @@ from protractile.analysis.plate_buckling import (
     PlateStress,
     reduced_stress,
     shear_reduction,
-    winter,
 )
 from protractile.analysis.rows import Row
 from protractile.cases import run_case
@@ -88,20 +87,6 @@ def proofs_of(folder: Path, text: str) -> tuple[dict[tuple[str, str], Row], Proo
         ", ".join(filter(None, (r.part, s))) for r, s in zip(found.rows, stations, strict=True)
     ]
     return {(r.quantity, part): r for r, part in zip(found.rows, parts, strict=True)}, found
-
-
-@pytest.mark.parametrize(
-    ("slenderness", "ratio", "reduction"),
-    [
-        (0.673, 1.0, 1.0), (1.0, 1.0, 0.78), (2.0, 1.0, 0.445), (1.0, 0.0, 0.835),
-        (2.0, -1.0, 0.4725), (0.874, -1.0, 1.0),
-    ],
-)  # fmt: skip
-def test_winter(slenderness: float, ratio: float, reduction: float) -> None:
-    """Reference: analytic, (λ̄ − 0.055(3 + ψ))/λ̄² by hand; 0.673 and 0.874 end its plateaus."""
-    # The ends of plateaus are rounded.
-    off = 1e-9 if slenderness >= 1.0 else 1e-3
-    assert winter(slenderness, ratio) == pytest.approx(reduction, abs=off)
 
 
 def test_reduced_stress_of_a_wall() -> None:

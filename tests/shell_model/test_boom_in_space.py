@@ -15,8 +15,14 @@ from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, BoomError
 from studies import sections
-from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, flat_boom
-from tests.shell_model.models import bonded_beams, reduced
+from tests.shell_model.booms import (
+    LATERAL_LAW,
+    LAW,
+    bonded_beams,
+    boom_in_space,
+    flat_boom,
+    reduced,
+)
 from tests.touching import touching
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².

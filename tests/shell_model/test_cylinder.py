@@ -23,9 +23,8 @@ from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.stress.stresses import ShellStress, wall_forces
 from studies.reference_models.statics import static_response
-from tests.lowered_pin import level, raised
 from tests.shell_model.booms import boom_in_space, box_segment
-from tests.touching import touching
+from tests.touching import level, raised, touching
 
 # Thick walls: the section hardly distorts.
 BOX = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)

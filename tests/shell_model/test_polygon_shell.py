@@ -8,8 +8,6 @@ import pytest
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.integrator import AdaptiveStep
-from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import (
     Boom,
@@ -30,14 +28,16 @@ from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
 from protractile.shell_model.segment.cross_section import Row
 from studies import sections
-from tests.shell_model.booms import STEEL, flat_boom, two_segments
-from tests.shell_model.conftest import BOX, UNEQUAL, box_shell
-from tests.shell_model.models import (
+from tests.shell_model.booms import (
+    STEEL,
     assert_rests_as_beams,
+    flat_boom,
     frequencies_off,
     reduce_segment,
     reduced,
+    two_segments,
 )
+from tests.shell_model.conftest import BOX, UNEQUAL, box_shell
 
 LINEAR = sections.LAW
 (HEXAGON, INNER_HEXAGON), (OCTAGON, INNER_OCTAGON), (U, INNER_U) = sections.SHAPES.values()
@@ -93,8 +93,8 @@ def test_contacts_read_the_true_faces(section: Section) -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("section", "direction"),
-    [(HEXAGON, "z"), (HEXAGON, "y"), (OCTAGON, "z"), (OCTAGON, "y"), (U, "z"), (UNEQUAL, "z")],
-    ids=["hexagon", "hexagon-y", "octagon", "octagon-y", "u", "unequal box"],
+    [(HEXAGON, "z"), (OCTAGON, "y"), (U, "z"), (UNEQUAL, "z")],
+    ids=["hexagon", "octagon on its side", "u", "unequal box"],
 )
 def test_a_free_segment_vibrates_as_its_beam(section: Section, direction: Direction) -> None:
     """Reference: other code, Timoshenko elements, within 0.3 %. A tenth of J would change 5 %."""
@@ -150,44 +150,6 @@ def _compliance(system: GapSystem) -> Array:
     return np.asarray(rows / (system.omega2 + 1.0e4) @ rows.T)
 
 
-@pytest.mark.slow
-def test_a_hexagonal_boom_with_collars_follows_its_beam(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: other code, Timoshenko elements. Without collars the first peak is 9 % higher."""
-    monkeypatch.setattr(sections, "MESH_SIZE", 0.2)
-    monkeypatch.setattr(sections, "TOLERANCE", 0.03)
-    monkeypatch.setattr(sections, "DURATION", 0.65)
-    plain = sections.boom_of(HEXAGON, INNER_HEXAGON)
-    shell = sections.shell_peak(sections.add_collars(plain, 0.010))
-    assert shell == pytest.approx(sections.beam_peak(plain), rel=0.015)
-
-
-@pytest.mark.slow
-def test_a_mirrored_boom_moves_the_other_way() -> None:
-    """Reference: symmetry. The mirrored boom under mirrored forces has mirrored contact forces."""
-    upright = sections.add_collars(sections.boom_of(U, INNER_U), 0.006)
-    mirrored = replace(
-        upright,
-        segments=tuple(
-            replace(one, section=_upside_down(section), load=-one.load)
-            for one, section in zip(upright.segments, (U, INNER_U), strict=True)
-        ),
-    )
-    systems = [reduced(boom, 0.25, law=LINEAR).system for boom in (upright, mirrored)]
-    first, second = ([law.terms[0].side for law in system.laws] for system in systems)
-    assert first == [1.0, -1.0, 1.0, -1.0]
-    assert first == second
-    both = [_compliance(system)[:4, :4] for system in systems]
-    swapped = [1, 0, 3, 2]
-    assert both[1][np.ix_(swapped, swapped)] == pytest.approx(both[0], rel=1e-8)
-    assert np.abs(both[1] - both[0]).max() > 1e-6 * np.abs(both[0]).max()
-    motions = [
-        AdaptiveStep()(Motion(system, 0.3, output_step=0.01)).data["tip"] for system in systems
-    ]
-    early = motions[0]["time"].values < 0.115
-    tips = [motion.values for motion in motions]
-    assert -tips[1][early] == pytest.approx(tips[0][early], rel=1e-6, abs=1e-9)
-
-
 def _upside_down(section: PolygonSection) -> PolygonSection:
     return PolygonSection(tuple((y, -z) for y, z in section.corners), section.thicknesses)
 
@@ -210,7 +172,7 @@ def test_thicker_flanges_give_way_less() -> None:
     compliances = []
     for pair in ((BOX, replace(BOX, height=0.46, width=0.28)), UNEQUAL_BOXES):
         boom = _laden(sections.boom_of(*pair), "near webs")
-        found = reduced(boom, 0.5, law=LINEAR, contact_tolerance=0.3)
+        found = reduced(boom, 0.5, law=LINEAR, contact_tolerance=1.0)
         assert np.isfinite(found.local_compliance).all()
         rows, squares = found.system.rows[:2], found.system.omega2
         # At 9 m up and down, beyond slow motion of the segments.
@@ -225,9 +187,9 @@ def test_thicker_flanges_give_way_less() -> None:
     ("pair", "line"),
     [
         ((OCTAGON, INNER_OCTAGON), "near webs"),
-        *(((U, INNER_U), line) for line in ("near webs", "across", "surface")),
+        *(((U, INNER_U), line) for line in ("across", "surface")),
     ],
-    ids=["octagon", "u", "u-across", "u-surface"],
+    ids=["octagon", "u-across", "u-surface"],
 )
 def test_polygon_segment_with_attachments(pair: tuple[Section, Section], line: ContactLine) -> None:
     """Reference: analytic, the masses of a rigid motion along z, on any outline."""

@@ -17,9 +17,8 @@ from protractile.shell_model.segment.solver import times
 from studies.reference_models.shell_readings import flange_deflection
 from studies.reference_models.single_segment import natural_frequencies
 from tests.beam_model.exact import frequencies
-from tests.shell_model.booms import HELD, STEEL, box_segment
+from tests.shell_model.booms import HELD, STEEL, box_segment, reduce_segment
 from tests.shell_model.conftest import BOX, box_shell, compliance
-from tests.shell_model.models import reduce_segment
 
 
 def test_rigid_motions_carry_the_mass_of_the_box() -> None:

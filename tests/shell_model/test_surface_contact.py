@@ -21,9 +21,8 @@ from protractile.shell_model.contact.wall_rows import Wall, WallPoints
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.segment.cross_section import COMPONENT
-from tests.shell_model.booms import LAW, boom_in_space, flat_boom
+from tests.shell_model.booms import LAW, boom_in_space, flat_boom, reduced
 from tests.shell_model.conftest import BOX, box_shell
-from tests.shell_model.models import reduced
 from tests.touching import touching
 
 PAD = PadSize(length=0.1, width=0.06)

@@ -106,13 +106,10 @@ def test_shell_at_an_extension_equals_a_shell_built_there() -> None:
     errors = shell(0.0, DRIVE).errors
     assert 1.0e-4 < errors["contact_compliance"] < 0.01
     assert errors["deflections"] < 0.02
-    for way in (1.0, 2.0):
-        here, there = standing(shell(0.0, DRIVE).system, way), shell(way).system
-        tips = [
-            float(one.observers["tip"].row @ equilibrium(one, one.load)) for one in (here, there)
-        ]
-        assert tips[0] == pytest.approx(tips[1], rel=1e-6)
-        assert local(here) == pytest.approx(local(there), rel=1e-4)
+    here, there = standing(shell(0.0, DRIVE).system, 2.0), shell(2.0).system
+    tips = [float(s.observers["tip"].row @ equilibrium(s, s.load)) for s in (here, there)]
+    assert tips[0] == pytest.approx(tips[1], rel=1e-6)
+    assert local(here) == pytest.approx(local(there), rel=1e-4)
     # Springs give way by a good part of that.
     modes = here.omega2 < squared(1000.0)
     whole = compliance(here.omega2[modes], here.rows[:, modes])
@@ -223,12 +220,11 @@ def test_shell_with_axial_forces_equals_a_shell_built_there() -> None:
         return reduce_boom(touching(boom, LAW), ShellOptions(0.3), MPI.COMM_WORLD).system
 
     system = reduced(0.0, Drive(Stroke(2.0, 4.0, 0.1), DRIVE.carriers))
-    for way in (0.0, 2.0):
-        here, there = standing(system, way), told(reduced(way))
-        assert told(here) == pytest.approx(there, rel=1e-4)
+    here, there = standing(system, 2.0), told(reduced(2.0))
+    assert told(here) == pytest.approx(there, rel=1e-4)
     # Without the force that goes along it rests and swings by several times that elsewhere.
     plain = replace(here, geometric_stiffness=np.zeros((0, 0)))
     assert (np.abs(told(plain)[:4] / there[:4] - 1.0) > 5.0e-4).all()
-    run = FixedStep(5.0e-6)(Motion(system, 0.7, 1.0e-2))
+    run = FixedStep(1.0e-5)(Motion(system, 0.6, 1.0e-2))
     assert run.energy_residual < 1.0e-4
     assert abs(float(run.data["drive_work"][-1])) > 0.01 * float(np.abs(run.data["work"]).max())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Interpretations of the paper become cases, and a contradicted statement excludes them."""
+"""Interpretations of the paper become cases; verdicts and their distances from thresholds."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,8 +11,8 @@ from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.kantorovich import Kantorovich
 from protractile.runs.case.schema import Case
-from protractile.runs.paper.verdicts import Judgement
-from studies import interpretations
+from protractile.runs.paper.verdicts import Judgement, Verdict
+from studies import interpretations, verdicts
 from studies.interpretations import (
     ALL,
     COMMON,
@@ -123,3 +123,31 @@ def test_a_survey_of_two_interpretations(monkeypatch: pytest.MonkeyPatch) -> Non
     rows = finding_table(found).rows
     assert [row[0] for row in rows] == [f"14, literal, as printed, {n}" for n in (1, 2)]
     assert all(row[3].startswith("✗ ") for row in rows)
+
+
+def test_distances_of_all_samples(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: by hand. The second sample is 0.1 higher, and nearer to its threshold."""
+
+    def judged(case: str, change: float) -> list[Verdict]:
+        late = change > 0.0
+        distance = 4.0 - late
+        return [
+            Verdict("S2", case, 0.4 + 0.1 * late, 0.2, "", "reproduced", "", distance),
+            Verdict("S8", case, 10.0, 7.0, "s", "contradicted", ""),
+        ]
+
+    monkeypatch.setattr(verdicts, "verdicts_on", judged)
+    monkeypatch.setattr(verdicts, "CHANGES", (0.0, 1.0e-12))
+    (table,) = verdicts.study(lambda what: None).tables
+    assert [row[0] for row in table.rows] == [case for case in verdicts.JUDGED for _ in range(2)]
+    assert table.rows[0][2:] == ("reproduced", "0.4", "0.2", "", "4.0", "3.0", "0.071")
+    assert table.rows[1][2:] == ("contradicted", "10", "7", "s", "–", "–", "0")
+
+
+def test_a_change_of_the_modulus_reaches_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Reference: analytic."""
+    cases = []
+    monkeypatch.setattr(verdicts, "run_case", cases.append)
+    monkeypatch.setattr(verdicts, "judge", lambda results: [])
+    assert verdicts.verdicts_on("paper", 1.0e-12) == []
+    assert cases[0].material.youngs_modulus == pytest.approx(2.1e11 * (1.0 + 1e-12), rel=1e-15)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""docs/verification.md has the sections and rows of the current studies."""
+"""Pages and the gallery have the sections, rows and pictures of the current studies."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -9,12 +9,13 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
-from studies import direct, step_tolerance, taper, working_load
+from studies import direct, gallery, step_tolerance, taper, working_load
 from studies.convergence import STUDIES, verification_table
 from studies.motions import friction_case
 from studies.study import Study
@@ -138,3 +139,33 @@ def test_rows_are_those_of_the_study(name: str, monkeypatch: pytest.MonkeyPatch)
         assert [
             verification.what for verification in study.verifications if not verification.holds
         ] == []
+
+
+DOCS = Path(__file__).parents[2] / "docs"
+MADE = {*gallery.COPIED, "lift", "mesh", "sections-largest-force", "crane-speeds"}
+
+
+def test_gallery_page_equals_the_output_of_its_script() -> None:
+    page = (DOCS / "gallery.md").read_text(encoding="utf-8")
+    shown = re.findall(r"!\[[^]]+\]\(gallery/([a-z-]+)\.png\)\n\n`([^`]+)`", page)
+    assert {*re.findall(r"\(gallery/([a-z-]+)\.png\)", page)} >= MADE
+    origins = dict(shown)
+    for name, (run, picture) in gallery.COPIED.items():
+        assert origins[name] == f"runs/out/{run}/{picture}"
+    for name, _ in shown:
+        path = DOCS / "gallery" / f"{name}.png"
+        assert path.stat().st_size < 320_000
+        with Image.open(path) as image:
+            image.verify()
+
+
+def test_missing_run_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(gallery, "RUNS", tmp_path / "out")
+    monkeypatch.setattr(gallery, "GALLERY", tmp_path / "gallery")
+    assert gallery.main() == 2
+    missing = tmp_path / "out" / "paper" / "snapshots" / "boom-first-peak.png"
+    assert capsys.readouterr().err == (
+        f"gallery: {missing}: file: missing; run the case with its shell, or make verify\n"
+    )

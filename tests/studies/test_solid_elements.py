@@ -39,11 +39,8 @@ from studies.solid import (
     Comparison,
     Sizes,
     compare,
-    error_table,
     order,
-    refinements,
     rod_verification,
-    shell_verifications,
     slenderness_at,
 )
 from tests.beam_model.exact import frequencies
@@ -247,29 +244,6 @@ def test_the_quarter_has_a_quarter_of_the_volume_and_of_both_second_moments(laye
         assert parts @ squares == pytest.approx(0.25 * moment * 2.0, rel=1.0e-12)
 
 
-def test_mid_lines_places_and_mirrors_are_planes_and_edges_grow_away_from_places() -> None:
-    """Reference: analytic."""
-    mesh = mesh_quarter(MESHED, PLACES, (0.02, 0.3), 0.05)
-    x, y, z = mesh.planes
-    for plane, places in ((x, PLACES), (y, (0.0, 0.14, 0.15, 0.16)), (z, (0.0, 0.185, 0.2, 0.215))):
-        for place in places:
-            assert np.abs(plane - place).min() < 1.0e-12
-    edges = np.diff(x)
-    for place in PLACES:
-        beside = np.abs(0.5 * (x[1:] + x[:-1]) - place) < 0.6 * edges
-        assert edges[beside].max() < 0.02 * (1.0 + 1.0e-12)
-    assert 0.1 < edges.max() < 0.3
-    assert (edges[1:] / edges[:-1]).max() < 3.0 + 1.0e-9
-    assert len(mesh.points) == mesh.hexahedra.max() + 1
-    for plane, wall in ((y, MESHED.web), (z, MESHED.flange)):
-        around = np.diff(plane)
-        assert (around[:-3] >= around[1:-2] - 1.0e-12).all()
-        assert 0.5 * wall < around[-3] < 1.0001 * wall
-        assert around.max() < 0.05
-    split = mesh_quarter(MESHED, PLACES, (0.02, 0.3), 0.05, splits=2)
-    assert split.planes[1][:-2:2] == pytest.approx(y[:-2], abs=1.0e-12)
-
-
 TINY = Sizes(walls=(0.04,), triangles=(0.2, 0.1, 0.05), splits=(1, 2), along=(0.1, 0.5), around=0.3)
 
 
@@ -318,16 +292,3 @@ def test_the_solid_stands_by_itself() -> None:
     assert rod.holds
     without = 0.5 * np.sqrt(2.1e11 / 7850.0) / 2.0
     assert rod.allowed < 0.5 * (without / rod.reference - 1.0)
-
-
-def test_tables_and_proofs_have_every_quantity() -> None:
-    found = [comparison(0.005, 0.004), comparison(0.01, -0.02)]
-    errors = error_table(found)
-    assert [row[0] for row in errors.rows] == [one.what for one in EVERY]
-    assert errors.rows[0][1:3] == ("0.40", "−2.00")
-    assert len(refinements(found).data) == 4 * len(EVERY)
-    verifications = list(shell_verifications(found[0]))
-    assert all(verification.holds for verification in verifications)
-    assert [verification.error for verification in verifications] == pytest.approx(
-        [0.004] * len(EVERY)
-    )

@@ -128,10 +128,9 @@ def test_the_method_takes_energy_and_gives_none(loaded: _Loaded) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("exponent", "stiffness"), [(1.0, 1.0e8), (2.0, 1.0e11)])
-def test_impact_follows_the_reduced_shell(exponent: float, stiffness: float) -> None:
+def test_impact_follows_the_reduced_shell() -> None:
     """Reference: other code, the reduced shell in short steps of exact flow."""
-    stop = Stop(0, 10.0, 0.002, PowerContact(stiffness, exponent, stiffness_below=0.0))
+    stop = Stop(0, 10.0, 0.002, PowerContact(1.0e11, 2.0, stiffness_below=0.0))
     boom = Boom(flat_boom().segments[:1], (), stops=(stop,))
     krylov = KrylovOptions((5.0, 50.0, 300.0, 1500.0, 8000.0), 4)
     reduced = reduce_boom(boom, ShellOptions(0.5, krylov=krylov), MPI.COMM_SELF)
