@@ -111,7 +111,7 @@ def _label(boom: Boom, station: Station) -> tuple[str, str]:
     name = boom.segments[station.segment].name
     if station.joint is None:
         return name, f"stop {station.number + 1}"
-    before = (one for one in boom.joints[: station.number] if one.inner == station.segment)
+    before = (joint for joint in boom.joints[: station.number] if joint.inner == station.segment)
     number = 1 + station.place + sum(len(joint.stations) for joint in before)
     return name, f"station {number}{', lateral' if station.direction == 'y' else ''}"
 

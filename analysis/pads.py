@@ -32,7 +32,7 @@ def largest_forces(
         if net:
             # Without preload by shims, one side carries the net force alone.
             sides = [station.law.one_sided(side) for side in EACH_SIDE]
-            preloads = [float(abs(one.force(np.zeros(())))) for one in sides if one]
+            preloads = [float(abs(law.force(np.zeros(())))) for law in sides if law]
             force = max(force, max(preloads) + 0.5 * force)
         side = _SIDE_NAMES[station.direction, 1 if largest > 0.0 else -1]
         yield station.joint.pad, side, force
@@ -68,7 +68,7 @@ def _pair_forces(station: Station, pushes: Array) -> list[float]:
     from scipy.optimize import brentq
 
     def force(approach: float) -> Array:
-        return np.array([float(one.force(np.array(approach))) for one in laws])
+        return np.array([float(law.force(np.array(approach))) for law in laws])
 
     def excess(approach: float, push: float) -> float:
         return float(force(approach) @ np.equal(sides, np.sign(push))) - push

@@ -86,8 +86,8 @@ class BoomModes:
             first = columns.stop
             sizes = np.cumsum([len(component.load) for component in group.components])
             parts = np.split(modes.shapes, sizes[:-1])
-            for one, part in zip(group.parts, parts, strict=True):
-                self._shapes[one] = columns, part
+            for number, part in zip(group.parts, parts, strict=True):
+                self._shapes[number] = columns, part
             load = np.concatenate([c.load for c in group.components]) @ modes.shapes
             rates = block_diag(*(c.damping for c in group.components))
             damping = np.einsum("ki,kl,li->i", modes.shapes, rates, modes.shapes, optimize=True)
@@ -223,8 +223,8 @@ def _coupled_groups(
     connected += [((c.segment, "y"), (c.segment, "twist")) for c in boom.cylinders if c.spread]
     connected += between
     group_of = {part: number for number, part in enumerate(parts)}
-    for one, other in connected:
-        kept, lost = group_of[one], group_of[other]
+    for first, second in connected:
+        kept, lost = group_of[first], group_of[second]
         group_of = {part: kept if at == lost else at for part, at in group_of.items()}
     return [
         _CoupledGroup(boom, models, [part for part in parts if group_of[part] == name])
@@ -422,7 +422,7 @@ def _extensions_between(
     low, high = ends
     extensions = np.unique(np.clip(np.concatenate([ends, *passed]), low, high))
     near = SAME_PLACE * boom.length
-    inside = (one for one in extensions[1:-1] if low + near < one < high - near)
+    inside = (extension for extension in extensions[1:-1] if low + near < extension < high - near)
     kept = [low, *inside, high]
     apart = np.diff(kept, prepend=low - 1.0) > near
     return [extension for extension, keep in zip(kept, apart, strict=True) if keep]

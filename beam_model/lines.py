@@ -50,7 +50,7 @@ def _line(boom: Boom, number: int, modes: BoomModes) -> Line:
     segment, model = boom.segments[number], modes.models[number]
     # Ends of the segment, and positions of forces.
     places = {*segment.ends, *load_places(boom, number), *segment.compression.places}
-    places |= {one.x for one in segment.supports} | {one.x for one in segment.all_masses}
+    places |= {support.x for support in segment.supports} | {mass.x for mass in segment.all_masses}
     # Ends of elements, or of equal pieces between forces.
     breaks = model.components["z"].breaks
     if not breaks.size:

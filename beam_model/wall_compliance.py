@@ -95,7 +95,7 @@ def contact_compliance(boom: Boom) -> Array:
     # Vertical and lateral pads at one x belong together: flanges that bend make webs bulge.
     places = [pad.patch and (pad.station.number, pad.station.place) for pad, _ in rows]
     for place in {*places} - {None}:
-        at = [i for i, one in enumerate(places) if one == place]
+        at = [i for i, known in enumerate(places) if known == place]
         joint = rows[at[0]][0].joint
         inner = unloaded[joint.inner]
         areas = tuple(_pad_area(*rows[i], inner) for i in at)
@@ -207,7 +207,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     edges = np.concatenate([folds, *cuts_around])
     around = HermiteAxis(_nodes_around(edges, folds, length, section.near), closed=True)
 
-    closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
+    closed_at = [diaphragm.x for diaphragm in segment.diaphragms if low < diaphragm.x < high]
     pad_ends = [x for area in areas for x in (area.start, area.end)]
     collar_ends = [x for collar in segment.collars for x in collar.span if low < x < high]
     cuts = np.unique([low, high, *pad_ends, *closed_at, *collar_ends])

@@ -173,7 +173,11 @@ def _minimum(
         """Return the derivative of the energy at ``x`` + ``length`` · ``step`` along the step."""
         return float(unbalanced(x + length * step) @ step)
 
-    x = min(np.zeros(load.size), start, key=lambda one: float(np.linalg.norm(unbalanced(one))))
+    x = min(
+        np.zeros(load.size),
+        start,
+        key=lambda candidate: float(np.linalg.norm(unbalanced(candidate))),
+    )
     for _ in range(_MOST_STEPS):
         force = unbalanced(x)
         if np.linalg.norm(force) < _AIM:

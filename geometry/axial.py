@@ -247,7 +247,9 @@ def largest_change(changes: Sequence[AxialChange]) -> Array:
     """Return the factors (num_changes,) of the histories when the foot's compression is largest."""
     times = np.unique(np.concatenate([np.zeros(1), *(change.times for change in changes)]))
     factors = np.array([change.history(times) for change in changes])
-    compressions = [one.compressions[0].transferred if one.compressions else 0.0 for one in changes]
+    compressions = [
+        change.compressions[0].transferred if change.compressions else 0.0 for change in changes
+    ]
     return np.asarray(factors[:, (np.array(compressions) @ factors).argmax()])
 
 
@@ -265,7 +267,7 @@ def lumped_masses(segment: Segment) -> tuple[PointMass, ...]:
     x, length = 0.5 * (ends[1:] + ends[:-1]), segment.length / _LUMPS
     ratio = segment.property_ratio(attrgetter("mass_per_length"), x)
     masses = segment.mass_per_length * length * ratio
-    lumps = (PointMass(*one) for one in zip(x.tolist(), masses.tolist(), strict=True))
+    lumps = (PointMass(*lump) for lump in zip(x.tolist(), masses.tolist(), strict=True))
     return (*lumps, *segment.all_masses)
 
 
@@ -310,12 +312,18 @@ def _weights(
         spread = [(a, b, density * mean_area(tail, head) * gravity) for a, b, tail, head in ends]
     if segment.section is not None:
         points += [
-            (one.x, density * gravity * segment.section_at(one.x).enclosed_area * one.thickness)
-            for one in segment.diaphragms
+            (
+                diaphragm.x,
+                density
+                * gravity
+                * segment.section_at(diaphragm.x).enclosed_area
+                * diaphragm.thickness,
+            )
+            for diaphragm in segment.diaphragms
         ]
         spread += [
-            (*one.span, density * gravity * segment.mean_width(one) * one.thickness)
-            for one in segment.collars
+            (*collar.span, density * gravity * segment.mean_width(collar) * collar.thickness)
+            for collar in segment.collars
         ]
     return points, spread
 

@@ -174,7 +174,9 @@ class Boom:
             for joint in loose
             for number in (joint.outer, joint.inner)
         ]
-        if any(one is not None and len(one.faces) < len(one.plates) for one in sections):
+        if any(
+            section is not None and len(section.faces) < len(section.plates) for section in sections
+        ):
             return "sections under pads" if any(j.padded for j in loose) else "sections at stations"
         on_walls = any(
             pad is not None and pad.bears == "wall"
@@ -239,7 +241,15 @@ class Boom:
 
     def observed_places(self, segment: int) -> tuple[float, ...]:
         """Return ascending x in m of the requested outputs of a segment."""
-        return tuple(sorted({one.x for one in self.observations if one.segment == segment}))
+        return tuple(
+            sorted(
+                {
+                    observation.x
+                    for observation in self.observations
+                    if observation.segment == segment
+                }
+            )
+        )
 
     def overlap(self, joint: Joint) -> tuple[float, float]:
         """Return both ends in m of the overlap of a joint's segments."""

@@ -50,7 +50,7 @@ def _ground(value: Any) -> Any:
     earth = isinstance(value, Mapping)
     if earth or isinstance(value, list | tuple):
         numbers = list(value.values() if earth else value)
-        finite = all(is_number(one) and isfinite(one) for one in numbers)
+        finite = all(is_number(number) and isfinite(number) for number in numbers)
         if finite and (value.keys() == {"front", "below"} if earth else len(numbers) == 2):
             return EarthPoint(**value) if earth else tuple(map(float, numbers))
     raise PydanticCustomError("ground", "a point of the ground")
@@ -237,11 +237,11 @@ def force_name(number: int) -> str:
 def forces(boom: Boom) -> dict[str, str]:
     """Return the descriptions of the cylinders' spring forces, by their names in results."""
     observations = {}
-    for number, one in enumerate(boom.cylinders, start=1):
+    for number, cylinder in enumerate(boom.cylinders, start=1):
         name = force_name(number)
-        where = f"at x = {one.x:g} m of {boom.segments[one.segment].name!r}"
+        where = f"at x = {cylinder.x:g} m of {boom.segments[cylinder.segment].name!r}"
         observations[name] = f"spring force of the cylinder {where}, positive in compression"
-        if one.spread > 0.0:
+        if cylinder.spread > 0.0:
             observations[name.replace("force", "force_difference")] = (
                 f"spring force of the cylinder at positive y {where}, less the force of the other"
             )
@@ -251,9 +251,13 @@ def forces(boom: Boom) -> dict[str, str]:
 def ground_lines(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[GroundLine]:
     """Yield springs and dashpots of cylinders, then dashpots of supports."""
     names = iter(forces(boom))
-    for one in boom.cylinders:
-        for push in one.load_vectors(bodies[one.segment], boom.segments[one.segment].foot):
-            yield GroundLine(one.segment, push, one.stiffness, one.dashpot, next(names))
+    for cylinder in boom.cylinders:
+        for push in cylinder.load_vectors(
+            bodies[cylinder.segment], boom.segments[cylinder.segment].foot
+        ):
+            yield GroundLine(
+                cylinder.segment, push, cylinder.stiffness, cylinder.dashpot, next(names)
+            )
     for number, segment in enumerate(boom.segments):
         for support in segment.supports:
             if support.dashpot > 0.0:

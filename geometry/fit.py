@@ -119,7 +119,8 @@ def check_contact_faces(
         if around is None or around.section is None:
             continue
         faces = [
-            [one.section_at(x).face(*sides).width for one in (around, segment)] for x in places
+            [member.section_at(x).face(*sides).width for member in (around, segment)]
+            for x in places
         ]
         free, width = min(faces, key=lambda pair: pair[0] - pair[1])
         if width > free:
@@ -151,8 +152,8 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
         pads = [pad for pad in joint.pads if pad.side == side]
         if joint.pads and not pads and direction in boom.directions:
             raise BoomError(f"{where}.pads", f"none is {side}; give each side one at least")
-        for one, other in combinations(pads, 2):
-            near, far = sorted((one, other), key=lambda pad: pad.offset)
+        for first, second in combinations(pads, 2):
+            near, far = sorted((first, second), key=lambda pad: pad.offset)
             if far.offset < near.offset + near.width:
                 raise BoomError(
                     f"{where}.pads",

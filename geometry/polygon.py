@@ -297,7 +297,7 @@ def _double_enclosed_area(corners: Array) -> float:
 
 
 def _mirror(places: Array, axis: Direction) -> Array:
-    return np.asarray(places * [-1.0 if axis == one else 1.0 for one in COMPONENT])
+    return np.asarray(places * [-1.0 if axis == component else 1.0 for component in COMPONENT])
 
 
 def _partners(places: Array, images: Array) -> Indices:

@@ -140,8 +140,8 @@ class _RigidBody(LoadedSegment):
         segment, acceleration = self.segment, force / self.segment.mass_per_length
         plain = force * segment.length * self.unit_load_vector(segment.mass_centre, direction)
         added = (
-            acceleration * one.mass * self.unit_load_vector(one.x, direction)
-            for one in segment.stiffener_masses
+            acceleration * mass.mass * self.unit_load_vector(mass.x, direction)
+            for mass in segment.stiffener_masses
         )
         return sum(added, plain)
 
@@ -153,8 +153,8 @@ class _RigidBody(LoadedSegment):
             middle, direction
         )
         added = (
-            one.mass * one.x * self.unit_load_vector(one.x, direction)
-            for one in segment.stiffener_masses
+            mass.mass * mass.x * self.unit_load_vector(mass.x, direction)
+            for mass in segment.stiffener_masses
         )
         return sum(added, plates)
 

@@ -101,7 +101,7 @@ class WallsAlong:
             places, at = np.unique(x, return_inverse=True)
             sections = [segment.section_at(place) for place in places.tolist()]
         self._at = at
-        self._starts = np.array([[plate.start for plate in one.plates] for one in sections])
+        self._starts = np.array([[plate.start for plate in section.plates] for section in sections])
 
     def starts(self, plate: int) -> Array:
         """Return the points (y, z) (num_places, 2) in m at which a plate starts."""

@@ -337,7 +337,7 @@ def prove(
             return 0
         with terminal.display() as report_progress:
             return print_proofs(checked, case, Terminal(), progress=report_progress)
-    shells = {one.name: one for one in checked.models if isinstance(one, Shell)}
+    shells = {model.name: model for model in checked.models if isinstance(model, Shell)}
     if shell not in shells:
         what = f"{shell!r} is not a shell of the case; leave it out for beam elements"
         raise BadInput(case, "--shell", what)

@@ -114,7 +114,7 @@ def with_weight(
     check_kind("with_weight.boom", boom, Boom)
     if any(segment.compression for segment in boom.segments):
         raise BoomError("boom", "has axial forces already; give all of them as thrusts at once")
-    if any(one.inertial and one.history == Step() for one in boom.loads):
+    if any(load.inertial and load.history == Step() for load in boom.loads):
         raise BoomError("boom", "has its weight already; give it once")
     check_numbers("with_weight", angle=angle, acceleration=acceleration)
     try:
@@ -172,7 +172,9 @@ def axial_force(where: str, table: AxialTable, case: Case, carried: float | None
                 f"{where}.mass",
                 "missing, and there is no payload; it is the mass in kg that the rope carries",
             )
-        mass = sum(one.mass for one in (case.payload, case.hoist) if one is not None)
+        mass = sum(
+            mass_table.mass for mass_table in (case.payload, case.hoist) if mass_table is not None
+        )
     gravity = payload_gravity(case.payload) if case.gravity is None else case.gravity.acceleration
     return mass * gravity / table.falls
 

@@ -81,7 +81,7 @@ def hold_ground(changed: Case, original: Case) -> Case:
     foot, angle = _foot(changed), original.gravity.angle
     if foot is None or changed.gravity.angle == angle or not changed.cylinders:
         return changed
-    on_earth = tuple(one.on_earth(radians(angle), foot) for one in changed.cylinders)
+    on_earth = tuple(cylinder.on_earth(radians(angle), foot) for cylinder in changed.cylinders)
     return changed.model_copy(update={"cylinders": on_earth})
 
 
@@ -89,20 +89,20 @@ def _cylinders(case: Case) -> tuple[Cylinder, ...]:
     """Return the cylinders with their ground in the axes of the boom."""
     angle = radians(0.0 if case.gravity is None else case.gravity.angle)
     foot = _foot(case)
-    for number, one in enumerate(case.cylinders, start=1):
-        if foot is None and isinstance(one.ground, EarthPoint):
+    for number, cylinder in enumerate(case.cylinders, start=1):
+        if foot is None and isinstance(cylinder.ground, EarthPoint):
             what = "no segment has a support, from whose pin front and below are measured; give one"
             raise BoomError(f"cylinder[{number}].ground", what)
     if foot is None:
         return case.cylinders
-    return tuple(one.in_boom_axes(angle, foot) for one in case.cylinders)
+    return tuple(cylinder.in_boom_axes(angle, foot) for cylinder in case.cylinders)
 
 
 def _foot(case: Case) -> Support | None:
     """Return the foot of the first segment that has one, about whose pin the boom luffs."""
     for table, ends in zip(case.segments, _spans(case.segments, case.joints), strict=True):
         if table.supports:
-            supports = [resolve_distances(one, *ends) for one in table.supports]
+            supports = [resolve_distances(support, *ends) for support in table.supports]
             return min(supports, key=lambda support: support.x)
     return None
 
@@ -225,10 +225,11 @@ def _check_planar(case: Case) -> None:
         "slew": case.slew,
         "limits.tip_lateral": case.limits and case.limits.tip_lateral,
         **{
-            f"segment[{i}].lateral_load": one.lateral_load for i, one in enumerate(case.segments, 1)
+            f"segment[{i}].lateral_load": segment.lateral_load
+            for i, segment in enumerate(case.segments, 1)
         },
-        **{f"base[{i}].direction": one.direction == "y" for i, one in enumerate(case.base, 1)},
-        **{f"hoist.wind[{i}].direction": one.direction == "y" for i, one in enumerate(winds, 1)},
+        **{f"base[{i}].direction": load.direction == "y" for i, load in enumerate(case.base, 1)},
+        **{f"hoist.wind[{i}].direction": wind.direction == "y" for i, wind in enumerate(winds, 1)},
         **{
             f"start.velocity.{name}.{key}": getattr(velocity, key)
             for name, velocity in case.start.velocity.items()
@@ -253,7 +254,7 @@ def _spans(
     ends = {segment.name: segment.span for segment in segments if segment.span is not None}
     # The keys of extensions that place inner segments, by the names of these.
     keys: dict[str, str] = {}
-    sliding = [one for one in joints if one.extension is not None]
+    sliding = [joint for joint in joints if joint.extension is not None]
     for number, joint in enumerate(joints, start=1):
         if joint.extension is None:
             continue

@@ -54,12 +54,12 @@ def combined_cases(case: Case) -> Iterator[CombinedCase]:
         factors = UNIT
         if combination is not default:
             factors = {group: combination.factors.of(group) or 0.0 for group in UNIT}
-        for one in case.load_cases or (_PLAIN,):
-            if combination.load_cases is None or one.name in combination.load_cases:
+        for load_case in case.load_cases or (_PLAIN,):
+            if combination.load_cases is None or load_case.name in combination.load_cases:
                 names = [combination.name] if case.combinations else []
-                if one is not _PLAIN or not names:
-                    names.append(one.name)
-                yield CombinedCase(", ".join(names), combine(case, one, factors), combination)
+                if load_case is not _PLAIN or not names:
+                    names.append(load_case.name)
+                yield CombinedCase(", ".join(names), combine(case, load_case, factors), combination)
 
 
 def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
@@ -94,19 +94,19 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
     )
     combined = hold_ground(changed, case)
     dead = factors["dead"]
-    segments = [_times(one, dead, "load", "lateral_load") for one in combined.segments]
-    loads = [_times(one, factors[one.group], one.amount) for one in combined.loads]
+    segments = [_times(segment, dead, "load", "lateral_load") for segment in combined.segments]
+    loads = [_times(load, factors[load.group], load.amount) for load in combined.loads]
     # An empty hook carries nothing.
     carried = 0.0 if case.hoist is not None and payload is None else None
     axial = [
         AxialTable(
-            segment=one.segment,
-            x=one.x,
-            force=factors[one.group] * axial_force(f"axial[{number}]", one, combined, carried),
+            segment=axial.segment,
+            x=axial.x,
+            force=factors[axial.group] * axial_force(f"axial[{number}]", axial, combined, carried),
         )
-        for number, one in enumerate(combined.axial, start=1)
+        for number, axial in enumerate(combined.axial, start=1)
     ]
-    base = [_times(one, factors[one.group], one.amount) for one in combined.base]
+    base = [_times(action, factors[action.group], action.amount) for action in combined.base]
     # Factor by which the model already multiplies the weight of the mass at the tip.
     weight_factor, acceleration = 0.0, payload_gravity(payload)
     if gravity is not None:
@@ -168,14 +168,14 @@ def check_combinations(case: Case) -> None:
         BoomError: a name is given twice or unknown, a load case has no valid boom, or a combination
             has no factor for a group of its load cases.
     """
-    check_names("load_case", [one.name for one in case.load_cases])
-    check_names("combination", [one.name for one in case.combinations])
-    for number, one in enumerate(case.load_cases, start=1):
+    check_names("load_case", [load_case.name for load_case in case.load_cases])
+    check_names("combination", [combination.name for combination in case.combinations])
+    for number, load_case in enumerate(case.load_cases, start=1):
         try:
-            build_boom(combine(case, one))
+            build_boom(combine(case, load_case))
         except BoomError as error:
             raise BoomError(f"load_case[{number}].{error.where}", error.what) from None
-    names = [one.name for one in case.load_cases]
+    names = [load_case.name for load_case in case.load_cases]
     for number, combination in enumerate(case.combinations, start=1):
         selected = names if combination.load_cases is None else combination.load_cases
         _check_names(f"combination[{number}].load_cases", selected, names)
@@ -195,7 +195,7 @@ def _check_names(where: str, selected: Sequence[str], names: Sequence[str]) -> N
 def _check_factors(
     case: Case, number: int, combination: CombinationTable, selected: Sequence[str]
 ) -> None:
-    tables = [one for one in case.load_cases if one.name in selected]
+    tables = [load_case for load_case in case.load_cases if load_case.name in selected]
     for table in tables or [_PLAIN]:
         for group, what in _groups(case, table):
             if combination.factors.of(group) is None:
@@ -208,7 +208,9 @@ def _check_factors(
 
 def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
     """Yield the load group (``dead``, ``payload`` …) and the name of each load of a load case."""
-    if case.gravity is not None or any(one.load or one.lateral_load for one in case.segments):
+    if case.gravity is not None or any(
+        segment.load or segment.lateral_load for segment in case.segments
+    ):
         yield "dead", "the weight of the boom"
     if case.payload is not None:
         yield case.payload.group, "the weight of the payload"
@@ -220,5 +222,5 @@ def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
         "base": case.base if table.base is None else table.base,
     }
     for key, several in parts.items():
-        for number, one in enumerate(several, start=1):
-            yield one.group, f"{key}[{number}]"
+        for number, combination in enumerate(several, start=1):
+            yield combination.group, f"{key}[{number}]"

@@ -177,7 +177,7 @@ def _unknown_key(location: Sequence[int | str]) -> str:
         return f"unknown key; use {synonym}"
     if synonym in keys:
         return f"unknown key; use {synonym}, {describe(fields_of(table)[names_of(table)[synonym]])}"
-    near = [one for one in keys if sorted(one.split("_")) == sorted(key.split("_"))]
+    near = [known for known in keys if sorted(known.split("_")) == sorted(key.split("_"))]
     near = near or get_close_matches(shorten(key), keys, n=1)
     if near:
         return f"unknown key; the nearest known one is {near[0]}"

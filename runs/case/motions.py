@@ -277,8 +277,8 @@ def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     drives = elastic_drives(case, boom)
     suffixes = {group.suffix: drives.get(group.joints[0]) for group in telescoping_stations(boom)}
     travels = [
-        replace(one, elastic=None if one.suffix is None else suffixes[one.suffix])
-        for one in system.travels
+        replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])
+        for travel in system.travels
     ]
     return replace(system, travels=travels)
 

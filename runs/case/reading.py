@@ -347,8 +347,8 @@ def _check_boom(checked: CheckedCase) -> None:
             model.check(where, checked.model_boom(model))
         except BoomError as error:
             # A wrong unit is a likely reason, for example of a boom that buckles.
-            unusual = (one for one in usual_ranges(case, boom) if one.unusual)
-            hint = next((one for one in unusual if any(one.likely_units(case.system))), None)
+            unusual = (usual for usual in usual_ranges(case, boom) if usual.unusual)
+            hint = next((usual for usual in unusual if any(usual.likely_units(case.system))), None)
             what = "" if hint is None else f"; {hint.key}: {hint.text(case.system)}"
             raise BoomError(error.where, f"{error.what}{what}") from None
     _check_step("time.step", case.time.step, case.time)
@@ -387,7 +387,7 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
         if item.keys() != {"mean", "sd"}:
             return {key: replace_by_means(value, (*steps, key)) for key, value in item.items()}
         mean, sd = item["mean"], item["sd"]
-        finite = all(is_number(one) and math.isfinite(one) for one in (mean, sd))
+        finite = all(is_number(number) and math.isfinite(number) for number in (mean, sd))
         if not (finite and sd > 0.0):
             what = f"must have a finite mean and an sd above 0, got {mean!r} and {sd!r}"
             raise BadInput(file, key_of(steps), what)
@@ -417,7 +417,11 @@ def convert_to_si(case: Case) -> Case:
         if isinstance(table, CaseTable):
             names = table.model_fields_set
         else:
-            names = {one.name for one in fields(table) if getattr(table, one.name) != one.default}
+            names = {
+                attribute.name
+                for attribute in fields(table)
+                if getattr(table, attribute.name) != attribute.default
+            }
         exponent, converted = exponents.get(key.partition(".")[0], 2.0), {}
         for name in names:
             if sizes := [system.size(unit) for unit in units_of(table, name, exponent)]:

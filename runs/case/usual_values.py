@@ -89,8 +89,8 @@ def key_values(case: Case, boom: Boom) -> Iterator[KeyValue]:
                 value = getattr(table, names_of(type(table))[key])
                 if not value and value != 0.0:
                     continue
-                one = usual(table, key) if callable(usual) else usual
-                columns = [one] if isinstance(one, Usual) else one
+                expected = usual(table, key) if callable(usual) else usual
+                columns = [expected] if isinstance(expected, Usual) else expected
                 for column, unit, sizes in zip(
                     columns, units_of(table, key), _columns(table, key, value), strict=False
                 ):

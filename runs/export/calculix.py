@@ -211,11 +211,11 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         SpringRow(line.force, {line.segment: line.push}, line.stiffness) for line in full.lines
     ]
     loads = [load.copy() for load in full.own_loads]
-    for one, push in full.loads:
-        if isinstance(one.history, ReleasedLoad):
-            loads[one.segment] += push
-        elif not isinstance(one.history, InitialImpulse):
-            loads[one.segment] += float(one.history(np.zeros(1))[0]) * push
+    for action, push in full.loads:
+        if isinstance(action.history, ReleasedLoad):
+            loads[action.segment] += push
+        elif not isinstance(action.history, InitialImpulse):
+            loads[action.segment] += float(action.history(np.zeros(1))[0]) * push
     for n, moment in full.pin_moments:
         loads[n] = loads[n] + moment
     lines = model.lines(boom, built)

@@ -107,7 +107,7 @@ def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) 
         start, end = boom.overlap(joint)
         half = 0.5 * (end - start)
         pad = None if joint.pad is None else replace(joint.pad, **changes(joint.pad, half))
-        pads = tuple(replace(one, **changes(one, half)) for one in joint.pads)
+        pads = tuple(replace(pad, **changes(pad, half)) for pad in joint.pads)
         joints.append(replace(joint, pad=pad, pads=pads))
     return replace(boom, joints=tuple(joints))
 
@@ -124,7 +124,9 @@ def _with_collars(boom: Boom) -> Boom:
             segment, section = segments[index], segments[index].section_at(x)
             reach, thickness = 0.5 * section.size("z"), section.face("z", 1).thickness
             start, end = max(segment.start, x - reach), min(segment.end, x + reach)
-            if not any(one.span[0] < end and one.span[1] > start for one in segment.collars):
+            if not any(
+                collar.span[0] < end and collar.span[1] > start for collar in segment.collars
+            ):
                 collars = (*segment.collars, Collar((start, end), thickness))
                 segments[index] = replace(segment, collars=collars)
     return replace(boom, segments=tuple(segments))

@@ -67,7 +67,7 @@ class OverlapView:
     @cached_property
     def motion(self) -> xr.Dataset:
         """The trajectories at the stations of the overlap."""
-        return self.scene.motion.isel(station=[one.index for one in self.overlap.stations])
+        return self.scene.motion.isel(station=[station.index for station in self.overlap.stations])
 
     @property
     def forces(self) -> Array:

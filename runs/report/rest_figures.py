@@ -81,10 +81,10 @@ def at_rest(run: FigureContext) -> list[Figure]:
 def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the envelopes of the section forces in motion."""
     curves = [
-        _curve(what, one.model, one.x, one.values[what], run.line_styles[one.model].color)
-        for one in run.curves.where(model=run.main_models, play=True, state=[LOW, HIGH])
+        _curve(what, curve.model, curve.x, curve.values[what], run.line_styles[curve.model].color)
+        for curve in run.curves.where(model=run.main_models, play=True, state=[LOW, HIGH])
         for what in _FORCES
-        if what in one.values
+        if what in curve.values
     ]
     caption = (
         "Minimum and maximum of the section forces over the run, along each segment; signs as in "
@@ -122,9 +122,9 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
 def rest_curves(static: Curves, name: str, color: str) -> list[Curve]:
     """Return the curves of a static state along the boom, with ``name`` in the legend."""
     return [
-        _curve(what, name, one.x, values, color)
-        for one in static
-        for what, values in one.values.items()
+        _curve(what, name, curve.x, values, color)
+        for curve in static
+        for what, values in curve.values.items()
         if what in _PANELS
     ]
 

@@ -140,7 +140,7 @@ def edges(
 def abbreviate(value: float, unit: str) -> str:
     """Return a number with its unit as text, with prefix k or M for large numbers."""
     units = (*_LARGER.get(unit, ()), (unit, 1.0))
-    name, factor = next((one for one in units if abs(value) >= one[1]), units[-1])
+    name, factor = next((prefix for prefix in units if abs(value) >= prefix[1]), units[-1])
     return f"{number(value / factor, 4)} {name}"
 
 
@@ -152,8 +152,8 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
         for load, direction in ((segment_table.load, "z"), (segment_table.lateral_load, "y")):
             if load:
                 yield _spread(boom, index, segment.ends, load, direction, "")
-        for one in segment_table.masses:
-            yield _mass(index, at(one.x, *segment.ends), f"mass, {number(one.mass, 4)} kg")
+        for mass in segment_table.masses:
+            yield _mass(index, at(mass.x, *segment.ends), f"mass, {number(mass.mass, 4)} kg")
     if case.payload is not None:
         payload = f"mass at the tip, {number(case.payload.mass, 4)} kg"
         yield _mass(len(boom.segments) - 1, boom.tip, payload)

@@ -91,7 +91,7 @@ class Column:
         if cell is None:
             return NONE
         if isinstance(cell, list):
-            return repeated([self.factor * one for one in cell])
+            return repeated([self.factor * value for value in cell])
         if not self.form:
             return count(cell)
         digits = int(self.form[1:-1])
@@ -102,7 +102,7 @@ class Column:
     def _plain(self, cell: Cell) -> Any:
         """Return a cell in the displayed unit; without conversion an integer stays an integer."""
         if isinstance(cell, list):
-            return [self._plain(one) for one in cell]
+            return [self._plain(value) for value in cell]
         if cell is None or isinstance(cell, str) or (isinstance(cell, int) and self.factor == 1.0):
             return cell
         return float(self.factor * cell) if math.isfinite(cell) else None

@@ -102,8 +102,8 @@ def plan(
     first = _set_numbers(file, whole, tables, tuple((v, v.values[0]) for v in variations))
     units = [whole.system.unit(unit_of(variation.places[0], first)) for variation in variations]
     variations = [
-        replace(one, places=tuple(with_size(place, first) for place in one.places))
-        for one in variations
+        replace(variation, places=tuple(with_size(place, first) for place in variation.places))
+        for variation in variations
     ]
     combinations = (
         tuple(zip(variations, values, strict=True))
