@@ -154,8 +154,8 @@ class HangingLoad:
             x: position of the tip in m.
         """
         dimensions = self._coordinates(system.observers)
-        aside = system.observers.get("tip_lateral")
-        lateral = np.zeros(tip.shape) if aside is None else aside.row
+        observer = system.observers.get("tip_lateral")
+        lateral = np.zeros(tip.shape) if observer is None else observer.row
         coordinates = np.eye(dimensions, system.num_modes + dimensions, system.num_modes) / np.sqrt(
             self.mass
         )

@@ -57,7 +57,7 @@ _ADVICE = {
 
 
 @contextmanager
-def refusing(file: str) -> Iterator[None]:
+def translated_errors(file: str) -> Iterator[None]:
     """Raise errors in the tables and in the boom of a case file as :class:`BadInput`.
 
     If a misspelled key causes two errors, the message is on the unknown key, not the missing one.
@@ -67,8 +67,8 @@ def refusing(file: str) -> Iterator[None]:
     except ValidationError as error:
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] in UNKNOWN), faults[0])
-        told = _explain(first["type"], first["loc"], first["input"], first.get("ctx"))
-        raise BadInput(file, *told) from None
+        explained = _explain(first["type"], first["loc"], first["input"], first.get("ctx"))
+        raise BadInput(file, *explained) from None
     except BoomError as error:
         raise BadInput(file, _key_of_part(error.where), error.what) from None
 

@@ -41,7 +41,7 @@ from protractile.runs.case.limits import (
     units_of,
 )
 from protractile.runs.case.load_tables import HistoryTable
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.motion_tables import TravelTable
 from protractile.runs.case.sanity import check_ranges, usual_ranges
 from protractile.runs.case.schema import Case, EnsembleTable, Model, TimeTable
@@ -104,7 +104,7 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
         BadInput: the content is invalid.
     """
     try:
-        with refusing(path):
+        with translated_errors(path):
             means, _ = take_means(tables, path)
             case = convert_to_si(_read_files(Case.model_validate(means), path))
     except OverflowError:
@@ -121,7 +121,7 @@ def check(case: Case, path: str) -> CheckedCase:
     """
     checked = CheckedCase(case)
     try:
-        with refusing(path):
+        with translated_errors(path):
             _check_time(case.time)
             _check_boom(checked)
     except BadInput as fault:
@@ -173,7 +173,7 @@ def select(
             raise BadInput(
                 path, "--mesh-size", f"must be a finite number of m above 0, got {mesh_size:g}"
             )
-        with refusing(path):
+        with translated_errors(path):
             check_mesh_size("--mesh-size", mesh_size, build_boom(case))
         subset = _with_shells(
             subset, path, "--mesh-size", {"mesh_size": mesh_size, "contact_tolerance": "any"}
@@ -196,7 +196,7 @@ def select(
         ensemble = EnsembleTable(**keys | {"members": members}) if members else None
     selected = case.model_copy(update={"models": subset, "ensemble": ensemble})
     if members:
-        with refusing(path):
+        with translated_errors(path):
             check_ensemble_data(selected, build_boom(selected))
     return selected
 

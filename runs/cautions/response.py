@@ -75,11 +75,15 @@ def wall_shares(context: Context) -> Iterator[str]:
         return
     (what, where), (time, tip) = beam.boom.yielding.split(maxsplit=1), largest_tip(beam)
     how, source = ("distort", "a frame of plates") if what == "sections" else ("bend", "plates")
-    told = (
+    sentence = (
         f"{what} {how} {where}, which moves the tip by {milli(part * tip)} of {milli(tip)} mm, "
         f"{percent(part, 2)}, under the loads at t = {time:.4g} s (estimate from {source})."
     )
-    yield told if abs(part) > GOVERNING_SHARE else Sentence(f"{told[0].upper()}{told[1:]}")
+    yield (
+        sentence
+        if abs(part) > GOVERNING_SHARE
+        else Sentence(f"{sentence[0].upper()}{sentence[1:]}")
+    )
 
 
 def stick_slip(context: Context) -> Iterator[str]:
@@ -91,8 +95,8 @@ def stick_slip(context: Context) -> Iterator[str]:
         remedy = "has no damping; give it a dashpot"
         if drive.critical_speed < inf:
             remedy = (
-                f"moves smoothly from {system.text(drive.critical_speed, 'm/s', 3)} on; increase the "
-                "speed, the stiffness or the damping"
+                f"moves smoothly from {system.text(drive.critical_speed, 'm/s', 3)} on; increase "
+                "the speed, the stiffness or the damping"
             )
         yield (
             f"the drive of {drive.inner!r} sticks and slips during its whole travel: it moves at "
@@ -139,15 +143,15 @@ def deflections(context: Context) -> Iterator[str]:
         part = abs(tip) / context.boom.length
         if not part > TOLD_DEFLECTION:
             continue
-        told = (
+        sentence = (
             f"{where} the tip {what} {tip:.3g} m, {100.0 * part:.2g} % of the boom's length: small "
             f"displacements make it about {100.0 * TIP_ERROR * part**2:.2g} % too large, and "
             f"moments about {100.0 * MOMENT_ERROR * part**2:.2g} %"
         )
         if part > LARGE_DEFLECTION:
-            yield f"{told}; {_advice(context, where)}"
+            yield f"{sentence}; {_advice(context, where)}"
         else:
-            yield Sentence(f"{told[0].upper()}{told[1:]}, on the safe side.")
+            yield Sentence(f"{sentence[0].upper()}{sentence[1:]}, on the safe side.")
 
 
 def _deflections(context: Context) -> Iterator[tuple[str, str, float]]:

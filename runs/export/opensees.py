@@ -28,7 +28,7 @@ from protractile.geometry.typography import choices
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import BuildContext, ModelBoom, select_kind
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.schema import Case
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import write_atomically
@@ -305,6 +305,6 @@ def write(
     if model.needs_shell:
         assert comm is not None
         calibration = build(case, boom, model, BuildContext(comm, cache=cache)).calibration
-    with refusing(file):
+    with translated_errors(file):
         text = script(case, model.model_boom(boom), model, calibration)
     write_atomically(path, text)

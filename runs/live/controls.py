@@ -21,7 +21,7 @@ from protractile.runs.case.build import build_boom, hold_ground
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.sanity import usual_ranges
 from protractile.runs.case.schema import Case
@@ -206,7 +206,7 @@ class Draft:
             if key not in self._numbers or not is_number(value) or not math.isfinite(value):
                 raise BadInput(self.file, key, f"must be a number of the case, got {value!r}")
             self._numbers[key][0].put(tables, float(value))
-        with refusing(self.file):
+        with translated_errors(self.file):
             return hold_ground(Case.model_validate(tables), self.case)
 
     @property

@@ -185,11 +185,11 @@ def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[A
         out, up = frame.position(time, boom.tip, extension)
         pendulum = case.hoist.pendulum if case.hoist and case.hoist.pendulum else np.inf
         pull = data["rope_force"].attrs["weight"] / pendulum
-        aside, ahead = (
+        lateral, ahead = (
             pull * data[name].values if name in data else 0.0 * time
             for name in ("swing_aside", "swing_out")
         )
-        total += -aside * out, data["rope_force"].values * (out - frame.radius) + ahead * up
+        total += -lateral * out, data["rope_force"].values * (out - frame.radius) + ahead * up
     rates = {"slew": frame.slew_angle(time, 1), "luff": frame.luff_angle(time, 1)}
     return {
         key: (moment, moment * rate)

@@ -70,9 +70,9 @@ def at_rest(run: FigureContext) -> list[Figure]:
         + extension_note(run.case, [tip.time for tip in tips.values()])
     )
     far = max(tips.values(), key=lambda tip: abs(tip.value))
-    aside = farthest.where(model=far.model, quantity="tip_lateral").largest
+    lateral = farthest.where(model=far.model, quantity="tip_lateral").largest
     both = [f"{TO_MILLI * far.value:.1f} mm"]
-    both += [f"lateral {TO_MILLI * aside.value:.1f} mm"] if aside and aside.value else []
+    both += [f"lateral {TO_MILLI * lateral.value:.1f} mm"] if lateral and lateral.value else []
     tip_text = with_minus_signs(", ".join(both))
     title = f"Static state under the loads at {far.time:g} s: tip at {tip_text} in {far.model}"
     return _draw_panels(run, curves, "at-rest", title, caption)

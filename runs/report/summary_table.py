@@ -79,7 +79,7 @@ def summary_table(results: Results) -> Table | None:
     def largest(quantity: str, at: bool = False) -> list[str | None]:
         return [_largest(peaks(rows).where(quantity=quantity), rows, at) for rows in of_models]
 
-    aside = [_value(rows, REST, "tip_lateral") or None for rows in of_models]
+    sideways = [_value(rows, REST, "tip_lateral") or None for rows in of_models]
     bending, plates = ([row and _stress(row) for row in several] for several in (fibres, walls))
     z, lateral = ", vertical (z)" if results.boom.spatial else "", "Static lateral tip deflection"
     rows_of_models = (
@@ -98,7 +98,7 @@ def summary_table(results: Results) -> Table | None:
             [_vibration(design[name]) for name in names],
             unit="mm",
         ),
-        Column(f"{lateral} (maximum load)", aside, ".1f", "mm"),
+        Column(f"{lateral} (maximum load)", sideways, ".1f", "mm"),
         Column("Lateral tip deflection, maximum", largest("tip_lateral"), unit="mm"),
         Column("First natural frequency", hertz, ".3g", "Hz"),
         Column("Period of the motion (time history)", periods, ".3g", "s"),

@@ -23,7 +23,7 @@ from protractile.geometry.typography import choices
 from protractile.runs.case import reading as case_file
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom, hold_ground
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SectionTable
 from protractile.runs.pipeline.quantities import Limit, case_limits
@@ -180,7 +180,7 @@ def _set_numbers(file: str, whole: Case, tables: Tables, settings: Sequence[Sett
         for variation, value in settings:
             for place in variation.places:
                 place.put(changed, value)
-        with refusing(file):
+        with translated_errors(file):
             return hold_ground(Case.model_validate(changed), whole)
     except OverflowError:
         what = "a value is too large for SI units; give smaller ones"
