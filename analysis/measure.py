@@ -23,7 +23,7 @@ from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.contact_places import contact_centres, pads
 from protractile.geometry.cylinder import forces
-from protractile.geometry.joint import PADS_OF_SIDE, Joint, PadSize
+from protractile.geometry.joint import PADS_OF_SIDE, Joint, Pad
 from protractile.geometry.section import EACH_SIDE, Direction
 from protractile.geometry.station import Station
 from protractile.geometry.telescoping import station_positions, travel
@@ -135,7 +135,7 @@ def _recorded_contacts(boom: Boom, system: GapSystem, data: xr.Dataset) -> Itera
 
 
 def _pad(
-    part: str, place: str, x: float, force: Array, pad: PadSize, time: Array | None
+    part: str, place: str, x: float, force: Array, pad: Pad, time: Array | None
 ) -> Iterator[Measured]:
     """Yield force and pressure of a pad from its force (num_states,) in N."""
     yield _single("pad_force", part, force, time, x, place)

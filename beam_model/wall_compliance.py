@@ -28,7 +28,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.compression import NO_COMPRESSION
-from protractile.geometry.contact_places import Pad, pads
+from protractile.geometry.contact_places import ContactPair, pads
 from protractile.geometry.material import Material
 from protractile.geometry.section import EACH_SIDE, Direction, Section, Side
 from protractile.geometry.segment import Segment
@@ -140,7 +140,7 @@ def station_compliance(boom: Boom, stiffness: Array) -> StationCompliance:
     return StationCompliance(places, np.linalg.inv(together))
 
 
-def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
+def _contact_rows(boom: Boom) -> list[tuple[ContactPair, Side]]:
     """Return the pad and the side of each contact of the joints."""
     return [
         (pad, side)
@@ -150,7 +150,7 @@ def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
     ]
 
 
-def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
+def _pad_area(pad: ContactPair, side: Side, inner: Segment) -> PressedArea:
     """Return the area of a pad, or of a symmetric pair of pads in a planar boom."""
     assert pad.patch is not None
     near, far = pad.patch.across(inner.section_at(pad.station.x).face(pad.station.direction, side))
@@ -159,7 +159,7 @@ def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
     return PressedArea(pad.patch.start, pad.patch.end, pad.station.direction, side, spans)
 
 
-def _press(pad: Pad, side: Side, members: tuple[Segment, Segment], member: int) -> Press:
+def _press(pad: ContactPair, side: Side, members: tuple[Segment, Segment], member: int) -> Press:
     """Return the force of a contact on the inner (0) or the outer segment (1) of its joint."""
     if pad.patch is not None:
         area = _pad_area(pad, side, members[0])

@@ -14,7 +14,7 @@ from protractile.geometry.axial import AxialChange, moving_force_places
 from protractile.geometry.boom_checks import check_boom
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import BoomError, check_kind, format_value
-from protractile.geometry.joint import Joint, PadSize, SlidePad, Stop
+from protractile.geometry.joint import Joint, Pad, SlidePad, Stop
 from protractile.geometry.load import Load
 from protractile.geometry.material import Material
 from protractile.geometry.observation import Observation, Quantity
@@ -39,7 +39,7 @@ __all__ = [
     "Load",
     "Material",
     "Observation",
-    "PadSize",
+    "Pad",
     "PointMass",
     "Segment",
     "SlidePad",

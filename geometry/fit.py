@@ -8,7 +8,7 @@ from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 from protractile.geometry.fields import BoomError
-from protractile.geometry.joint import SIDES, Joint, PadSize, SlidePad
+from protractile.geometry.joint import SIDES, Joint, Pad, SlidePad
 from protractile.geometry.section import Direction, Side
 from protractile.geometry.segment import SAME_PLACE, Segment
 from protractile.geometry.typography import TO_MILLI
@@ -196,7 +196,7 @@ def check_pads_in_travel(where: str, joint: Joint, boom: Boom) -> None:
                     )
 
 
-def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
+def _check_pad(where: str, joint: Joint, pad: Pad, boom: Boom) -> None:
     if joint.bonded:
         raise BoomError(where, "the joint is bonded, and nothing touches; leave it out")
     start, end = boom.overlap(joint)
@@ -219,7 +219,7 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
         )
 
 
-def pad_room(joint: Joint, pad: PadSize, boom: Boom) -> float:
+def pad_room(joint: Joint, pad: Pad, boom: Boom) -> float:
     """Return half the width in m of the narrowest wall of a pad; infinite without a section."""
     inner = boom.segments[joint.inner]
     if inner.section is None:

@@ -20,7 +20,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import (
     ContactInterval,
     ContactLine,
-    Pad,
+    ContactPair,
     pads,
     stop_patches,
 )
@@ -159,7 +159,9 @@ def _envelope(zones: Iterable[RefinementZone]) -> RefinementZone:
     return replace(first, low=min(first.low, last.low), high=max(first.high, last.high))
 
 
-def _pad_zone(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> RefinementZone:
+def _pad_zone(
+    boom: Boom, pad: ContactPair, end: int, face: Face, line: ContactLine
+) -> RefinementZone:
     """Return the zone of a pad on a face of the inner (``end`` 0) or outer segment (``end`` 1)."""
     covered = pad.patch
     if covered is None:

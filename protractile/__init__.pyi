@@ -7,7 +7,7 @@ from protractile.geometry.cylinder import Cylinder as Cylinder
 from protractile.geometry.place import Distance as Distance
 from protractile.geometry.joint import Drive as Drive
 from protractile.geometry.joint import Joint as Joint
-from protractile.geometry.joint import PadSize as PadSize
+from protractile.geometry.joint import Pad as Pad
 from protractile.geometry.joint import SlidePad as SlidePad
 from protractile.geometry.joint import Stop as Stop
 from protractile.geometry.observation import Observation as Observation

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import names_of
-from protractile.geometry.joint import BareStop, PadSize, SlidePad
+from protractile.geometry.joint import BareStop, Pad, SlidePad
 from protractile.geometry.material import Material
 from protractile.geometry.segment import PointMass
 from protractile.geometry.stiffeners import Collar, Diaphragm
@@ -294,7 +294,7 @@ def _of_contacts(sizes: _Sizes) -> Ranges:
             "dashpot": sizes.dashpot("joint"),
             "detail_category": _CATEGORY._replace(least=12.0),
         },
-        PadSize: {
+        Pad: {
             "length": Usual("the length of the pad", 0.001, 0.2 * length, 20.0),
             "width": Usual("the width of the pad", 0.001, 0.1 * length, 20.0),
             "offset": Usual("the offset of the pad", 0.0, 0.1 * length, 20.0),

@@ -23,7 +23,7 @@ from protractile.dynamics.contact import ContactLaw
 from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, BoomError
-from protractile.geometry.contact_places import Pad, pads
+from protractile.geometry.contact_places import ContactPair, pads
 from protractile.geometry.typography import choices
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
@@ -263,7 +263,7 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
         }
 
 
-def _ends(pad: Pad, parts: Sequence[Part]) -> list[list[int]]:
+def _ends(pad: ContactPair, parts: Sequence[Part]) -> list[list[int]]:
     """Return segment and node of both segments at a pad, the outer segment first."""
     return [
         [number, parts[number].node(pad.midpoint)] for number in (pad.joint.outer, pad.joint.inner)

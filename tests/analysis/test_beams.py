@@ -31,7 +31,7 @@ def telescope() -> pt.Boom:
     arm = pt.Segment.of_section("arm", 0.0, 8.0, STEEL, BOX, supports=(clamp,))
     inner = pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
     fly = pt.Segment.of_section("fly", 6.0, 14.0, STEEL, inner)
-    pad = pt.PadSize(length=0.1, width=0.08, thickness=0.02, modulus=2e9)
+    pad = pt.Pad(length=0.1, width=0.08, thickness=0.02, modulus=2e9)
     joint = pt.Joint("arm", "fly", stations=(6.0, 8.0), play=0.010, pad=pad)
     gust = pt.Load("fly", "z", -500.0, x=14.0, history=pt.Ramp(0.1))
     return pt.with_weight(pt.Boom([arm, fly], [joint], loads=[gust]), angle=30.0)

@@ -22,7 +22,7 @@ from protractile.geometry.boom import (
     Load,
     Material,
     Observation,
-    PadSize,
+    Pad,
     PointMass,
     Segment,
     SlidePad,
@@ -331,7 +331,7 @@ JACK: dict[str, Any] = {"segment": 0, "x": 4.0, "ground": (1.0, -2.0), "stiffnes
         (Collar, {"span": (1.0, 2.0), "thickness": 0.0}, "thickness", POSITIVE),
         (Cylinder, JACK | {"dashpot": -1.0}, "dashpot", "not less than 0, got -1.0"),
         (Cylinder, JACK | {"stiffness": 0.0}, "stiffness", POSITIVE),
-        (PadSize, {"length": 0.0, "width": 0.1}, "length", POSITIVE),
+        (Pad, {"length": 0.0, "width": 0.1}, "length", POSITIVE),
         (Segment, BEAM | {"mass_per_length": 0.0}, "mass_per_length", POSITIVE),
     ],
 )
