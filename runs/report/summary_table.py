@@ -123,12 +123,7 @@ def summary_table(results: Results) -> Table | None:
     columns = [Column("", list(rows))]
     columns += [Column(name, [cells[i] for cells in rows.values()]) for i, name in enumerate(names)]
     loaded = [*walls, *fibres, *pads, *damages]
-    texts = [
-        *plates,
-        *bending,
-        *pad_cells,
-        *(damage and number(damage.value) for damage in damages),
-    ]
+    texts = [*plates, *bending, *pad_cells, *(row and number(row.value) for row in damages)]
     strong = [
         text
         for row, text in zip(loaded, texts, strict=True)
@@ -203,11 +198,7 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
     categories the text is empty.
     """
     rows = results.rows.where(model=model or results.main_models[0], play=True)
-    governing = [
-        utilisation
-        for utilisation in utilisations(rows).values()
-        if utilisation.utilisation is not None
-    ]
+    governing = [row for row in utilisations(rows).values() if row.utilisation is not None]
     if not governing:
         return ""
     governing.sort(key=lambda row: row.utilisation or 0.0, reverse=True)
