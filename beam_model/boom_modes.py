@@ -247,11 +247,12 @@ class _CoupledGroup:
         self._boom, self.parts = boom, parts
         self.components = [models[i].components[motion] for i, motion in parts]
         self.beams = [self._beam(number) for number in range(len(boom.segments))]
-        lines = ground_lines(boom, self.beams)
-        self.springs = [line for line in lines if line.stiffness > 0.0 and line.push.any()]
+        lines = [line for line in ground_lines(boom, self.beams) if line.push.any()]
+        self.springs = [line for line in lines if line.force]
+        # The springs of leads grow with the axial forces.
         self.geometric_stiffness = block_diag(
             *(component.geometric_stiffness for component in self.components)
-        )
+        ) - sum(line.stiffness * np.outer(line.push, line.push) for line in lines if not line.force)
 
     def _beam(self, segment: int) -> BeamSegment:
         def read(motion: Motion, rule: Rule) -> Array:

@@ -56,6 +56,33 @@ class Thrust:
     """the force in N"""
 
 
+@part
+class Lead:
+    """Force of the rope from the head back to the winch, which stands on the axis of the boom.
+
+    The rope points to the winch as the boom deflects. Second-order work of its force S over the
+    distance ℓ to the winch is that of an axial force and of a spring S/ℓ across the axis
+    (Timoshenko and Gere 1961, article 2.6: a force through a fixed point).
+
+    >>> pt.Lead(segment=1, x=14.0, force=28e3).stiffness
+    2000.0
+    """
+
+    segment: SegmentRef
+    """the name of the segment with the head"""
+    x: Place
+    """the x in m of the head"""
+    force: Annotated[Number, In("N")]
+    """the force in N"""
+    winch: Annotated[Number, In("m")] = 0.0
+    """the x in m of the winch, at or behind the foot, where nothing deflects"""
+
+    @property
+    def stiffness(self) -> float:
+        """The stiffness S/ℓ in N/m across the axis."""
+        return self.force / (self.x - self.winch)
+
+
 def with_compression(
     segments: Sequence[Segment],
     joints: Sequence[Joint],
@@ -201,8 +228,9 @@ def moving_force_places(
 class AxialChange:
     """Change of the stiffness over time, due to axial and centrifugal forces.
 
-    The strain energy decreases by ½ g_e (∫ P w′² dx + Σ m w²). Here g_e is the value of the
-    history, P the axial force, m a point mass and w its deflection.
+    The strain energy decreases by ½ g_e (∫ P w′² dx + Σ m w² − Σ k w²). Here g_e is the value of
+    the history, P the axial force, m a point mass, k the stiffness of a lead and w the deflection
+    of mass or head.
     """
 
     history: Any  #: factor g_e over time, see :mod:`.dynamics.excitation`
@@ -211,6 +239,7 @@ class AxialChange:
     #: point masses m of each segment in kg; none unless given
     masses: Sequence[Sequence[PointMass]] = ()
     direction: Direction = "z"  #: direction of the deflection w of the masses
+    leads: Sequence[Lead] = ()  #: ropes from the head to a winch, with indices of segments
 
     @property
     def times(self) -> Array:
@@ -240,6 +269,10 @@ class AxialChange:
                 if self.masses and direction == self.direction:
                     values = spline([mass.x for mass in self.masses[number]])
                     total = total + (values.T * [m.mass for m in self.masses[number]]) @ values
+                for lead in self.leads:
+                    if lead.segment == number:
+                        head = spline(lead.x)
+                        total = total - lead.stiffness * np.outer(head, head)
         return total
 
 

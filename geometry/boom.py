@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from protractile.geometry.axial import AxialChange, moving_force_places
+from protractile.geometry.axial import AxialChange, Lead, moving_force_places
 from protractile.geometry.boom_checks import check_boom
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import BoomError, check_kind, format_value
@@ -57,6 +57,7 @@ _KINDS: Mapping[str, type] = {
     "observations": Observation,
     "cylinders": Cylinder,
     "axial_changes": AxialChange,
+    "leads": Lead,
 }
 
 
@@ -98,6 +99,7 @@ class Boom:
     observations: Sequence[Observation] = ()
     cylinders: Sequence[Cylinder] = ()
     axial_changes: Sequence[AxialChange] = ()
+    leads: Sequence[Lead] = ()
 
     def __post_init__(self) -> None:
         for group, kind in _KINDS.items():

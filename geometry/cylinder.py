@@ -249,7 +249,7 @@ def forces(boom: Boom) -> dict[str, str]:
 
 
 def ground_lines(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[GroundLine]:
-    """Yield springs and dashpots of cylinders, then dashpots of supports."""
+    """Yield springs and dashpots of cylinders, springs of leads, and dashpots of supports."""
     names = iter(forces(boom))
     for cylinder in boom.cylinders:
         for push in cylinder.load_vectors(
@@ -258,6 +258,10 @@ def ground_lines(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[Ground
             yield GroundLine(
                 cylinder.segment, push, cylinder.stiffness, cylinder.dashpot, next(names)
             )
+    for lead in boom.leads:
+        for direction in boom.directions:
+            push = bodies[lead.segment].unit_load_vector(lead.x, direction)
+            yield GroundLine(lead.segment, push, lead.stiffness, 0.0)
     for number, segment in enumerate(boom.segments):
         for support in segment.supports:
             if support.dashpot > 0.0:

@@ -170,6 +170,11 @@ class PolygonSection(Section):
     def turned(self) -> PolygonSection:
         return PolygonSection(tuple((z, y) for y, z in self.corners), self.thicknesses)
 
+    def within_outline(self) -> PolygonSection:
+        corners = trapezoids(_plates(*self.upwards))[:, 3]
+        walls = tuple(self.upwards[1].tolist())
+        return PolygonSection(tuple((y, z) for y, z in corners.tolist()), walls)
+
     @cached_property
     def upwards(self) -> tuple[Array, Array]:
         """The corners (num_plates, 2) and thicknesses (num_plates,) in m in the order of plates."""

@@ -201,7 +201,8 @@ def _two_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]
                     yield body.moment(support.x, direction)
             if boom.spatial:
                 yield body.torque(support.x)
-    yield from (line.push for line in ground_lines(boom, bodies) if line.stiffness > 0.0)
+    # A lead is none: its spring is a part of the work of an axial force.
+    yield from (line.push for line in ground_lines(boom, bodies) if line.force)
     for joint in boom.joints:
         inner, outer = bodies[joint.inner], bodies[joint.outer]
         for x in joint.stations:

@@ -10,7 +10,7 @@ from protractile.dynamics.energy import DRIVEN_ENERGIES
 from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES
 from protractile.dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
-from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.axial import with_compression
 from protractile.geometry.boom import Boom, BoomError, Joint
 from protractile.geometry.boom_checks import check_order
 from protractile.geometry.cylinder import Cylinder, EarthPoint
@@ -44,8 +44,7 @@ def build_boom(case: Case) -> Boom:
     along = 0.0 if case.gravity is None else case.gravity.along
     hoist = case.hoist
     hanging = hoist.mass if hoist and hoist.hanging else 0.0
-    rope = Thrust(len(segments) - 1, segments[-1].end, hanging * along)
-    thrusts = (*actions.thrusts(case, segments), rope)
+    thrusts = (*actions.thrusts(case, segments), *actions.tip_thrusts(case, segments))
     segments = with_compression(segments, joints, thrusts, along)
     motions.check_turning(case)
     motions.check_hoist(case)
@@ -54,7 +53,7 @@ def build_boom(case: Case) -> Boom:
     boom = Boom(
         segments,
         joints,
-        (*actions.loads(case, segments), *motions.turning_loads(frame, segments, joints)),
+        (*actions.loads(case, segments, joints), *motions.turning_loads(frame, segments, joints)),
         tuple(actions.stops(case)),
         case.observe,
         _cylinders(case),
@@ -64,6 +63,7 @@ def build_boom(case: Case) -> Boom:
                 frame, segments, joints, 0.0 if hoist and hoist.dropped else hanging
             ),
         ),
+        tuple(actions.leads(case, segments)),
     )
     check_contacts_at_rest(boom)
     motions.check_elastic_drives(case, boom)
@@ -224,6 +224,8 @@ def _check_planar(case: Case) -> None:
     lateral_actions = {
         "slew": case.slew,
         "limits.tip_lateral": case.limits and case.limits.tip_lateral,
+        "head.beside": case.head and case.head.beside,
+        "wind.direction": case.wind and case.wind.dynamic_pressure and case.wind.direction % 180.0,
         **{
             f"segment[{i}].lateral_load": segment.lateral_load
             for i, segment in enumerate(case.segments, 1)

@@ -2,20 +2,19 @@
 """Load cases and combinations: static cases with changed keys and with factors on loads.
 
 The case of a combination has the masses of its load case. A load on a rope hangs at rest, as a
-mass at the tip. If the payload and the dead weight have
-different factors, a force at the tip, across and along the boom, adds the difference in weight.
+mass at the tip. If the payload and the dead weight have different factors, the payload has an
+acceleration of gravity of its own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import cos, radians, sin
 from typing import Any, NamedTuple, TypeVar, get_args
 
 from protractile.geometry.boom import BoomError
 from protractile.geometry.typography import choices
-from protractile.runs.case.actions import axial_force, payload_gravity
+from protractile.runs.case.actions import payload_weight
 from protractile.runs.case.build import build_boom, check_names, hold_ground
 from protractile.runs.case.limits import CaseTable
 from protractile.runs.case.load_tables import (
@@ -78,7 +77,7 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
         payload = (payload or PayloadTable(mass=mass)).model_copy(update={"mass": mass})
     replacements: Mapping[str, Any] = {
         key: getattr(case if getattr(table, key) is None else table, key)
-        for key in ("loads", "axial", "base")
+        for key in ("loads", "axial", "base", "wind")
     }
     changed = case.model_copy(
         update={
@@ -96,34 +95,23 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
     dead = factors["dead"]
     segments = [_times(segment, dead, "load", "lateral_load") for segment in combined.segments]
     loads = [_times(load, factors[load.group], load.amount) for load in combined.loads]
-    # An empty hook carries nothing.
-    carried = 0.0 if case.hoist is not None and payload is None else None
-    axial = [
-        AxialTable(
-            segment=axial.segment,
-            x=axial.x,
-            force=factors[axial.group] * axial_force(f"axial[{number}]", axial, combined, carried),
-        )
-        for number, axial in enumerate(combined.axial, start=1)
-    ]
+    axial = [_times(axial, factors[axial.group], "force") for axial in combined.axial]
     base = [_times(action, factors[action.group], action.amount) for action in combined.base]
-    # Factor by which the model already multiplies the weight of the mass at the tip.
-    weight_factor, acceleration = 0.0, payload_gravity(payload)
-    if gravity is not None:
-        weight_factor, acceleration = dead, gravity.acceleration
-        gravity = _times(gravity, dead, "acceleration")
-    elif payload is not None:
-        payload = payload.model_copy(update={"gravity": 0.0})
     masses: list[tuple[Group, float]] = [("payload", hung)]
     if case.payload is not None:
         masses.append((case.payload.group, case.payload.mass))
-    extra = acceleration * sum((factors[group] - weight_factor) * mass for group, mass in masses)
-    if extra:
-        angle = radians(0.0 if gravity is None else gravity.angle)
-        last = combined.segments[-1].name
-        tip = {"segment": last, "x": "head", "magnitude": -extra * cos(angle)}
-        loads.append(LoadTable.model_validate(tip))
-        axial.append(AxialTable(force=extra * sin(angle)))
+    if payload is not None:
+        total = payload_weight(combined) / payload.mass
+        weighed = sum(factors[group] * mass for group, mass in masses) / payload.mass
+        payload = payload.model_copy(update={"gravity": total * weighed})
+    if gravity is not None:
+        gravity = _times(gravity, dead, "acceleration")
+    wind, rope = combined.wind, combined.rope
+    if wind is not None:
+        pressure = factors["wind"] * wind.dynamic_pressure
+        wind = wind.model_copy(update={"pressure": pressure, "speed": None})
+    if rope is not None and rope.falls is None and case.hoist is not None:
+        rope = rope.model_copy(update={"falls": case.hoist.falls})
     return combined.model_copy(
         update={
             "segments": tuple(segments),
@@ -132,6 +120,8 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
             "base": tuple(base),
             "gravity": gravity,
             "payload": payload,
+            "wind": wind,
+            "rope": rope,
         }
     )
 
@@ -214,6 +204,9 @@ def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
         yield "dead", "the weight of the boom"
     if case.payload is not None:
         yield case.payload.group, "the weight of the payload"
+    wind = case.wind if table.wind is None else table.wind
+    if wind is not None and wind.dynamic_pressure:
+        yield "wind", "the table wind"
     if _hung_mass(case, table):
         yield "payload", f"the payload of {table.name!r}" if table.payload else "the load of hoist"
     parts: dict[str, Sequence[LoadTable | AxialTable | GroundAccelerationTable]] = {

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import names_of
+from protractile.geometry.head import Head
 from protractile.geometry.joint import BareStop, Pad, SlidePad
 from protractile.geometry.material import Material
 from protractile.geometry.segment import PointMass
@@ -28,6 +29,8 @@ from protractile.runs.case.load_tables import (
     LoadTable,
     PayloadTable,
     ResistanceTable,
+    RopeTable,
+    WindPressureTable,
 )
 from protractile.runs.case.motion_tables import (
     DriveTable,
@@ -326,7 +329,19 @@ def _of_actions(sizes: _Sizes) -> Ranges:
         WindTable: {"force": Usual("the force on the load", 0.0, 10.0 * hoisted, 1.0e3)},
         AxialTable: {
             "force": Usual("the size of the force along the boom", 0.0, most_axial, 100.0),
-            "mass": Usual("the mass on the rope", 0.0, 50.0 * bare, 1.0e4),
+        },
+        WindPressureTable: {
+            "pressure": Usual("the wind pressure", 0.0, 3.0e3, 50.0),
+            "speed": Usual("the wind speed", 0.0, 70.0, 20.0),
+            "load_area": Usual("the area of the load in the wind", 0.0, 500.0, 100.0),
+            "shape_factor": Usual("the shape factor", 0.3, 3.0, 10.0),
+        },
+        RopeTable: {"winch": Usual("the distance of the winch behind the foot", 0.0, 20.0, 50.0)},
+        Head: {
+            **dict.fromkeys(
+                ("ahead", "below", "beside"), Usual("the distance of the load", 0.0, 10.0, 100.0)
+            ),
+            "mass": Usual("the mass of the head", 0.0, 10.0 * bare, 1.0e4),
         },
         PayloadTable: {
             "mass": Usual("the mass of the payload", 0.0, 50.0 * bare, 1.0e4),

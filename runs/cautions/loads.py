@@ -243,10 +243,10 @@ def hoisted_loads(context: Context) -> Iterator[str]:
             f"payload.mass: the {case.system.text(payload, 'kg')} at the tip are also the load of "
             "[hoist], so that they weigh twice; leave one of them out"
         )
-    if case.hoist.has_winch and not case.axial:
+    if case.hoist.has_winch and not (case.rope or case.axial):
         yield (
-            "axial: missing, so that the rope of [hoist] does not press the boom on its way to the "
-            "winch; give [[axial]] with falls and the mass on the rope"
+            "rope: missing, so that the rope of [hoist] does not press the boom on its way to the "
+            "winch; give [rope]"
         )
 
 

@@ -183,6 +183,7 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         ("mpirun", comm.size > 1),
         ("joint.lateral_play", boom.spatial),
         ("hoist", case.hoist is not None),
+        ("rope", case.rope is not None),
     ):
         if present:
             what = "cannot be exported to CalculiX, for which one process writes a flat boom, with"
