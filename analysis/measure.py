@@ -92,7 +92,7 @@ def measure_boom(states: States) -> Iterator[Measured]:
         cylinder, pair = boom.cylinders[number - 1], "difference" in name
         quantity = "cylinder_force_difference" if pair else "cylinder_force"
         part = "cylinder" if len(boom.cylinders) == 1 else f"cylinder {number}"
-        capacity = None if pair else cylinder.capacity
+        capacity = None if pair else cylinder.resistance
         yield _single(quantity, part, states.observed(name), time, cylinder.x, limit=capacity)
     if (data := states.recorded) is not None:
         if "rope_force_peak" in data:

@@ -175,8 +175,8 @@ def _of_forces(states: States, rows: Rows, resistance: Resistance) -> Iterator[R
             yield _proof("pad", row.part, row.place, row.value, limit, row.x)
     forces = rows.where(quantity="cylinder_force")
     for row, cylinder in zip(forces, states.boom.cylinders, strict=True):
-        if cylinder.capacity is not None:
-            limit = cylinder.capacity / resistance.cylinder
+        if cylinder.resistance is not None:
+            limit = cylinder.resistance / resistance.cylinder
             yield _proof("cylinder", row.part, "", row.value, limit)
         if cylinder.pin is not None:
             limit = cylinder.pin.resistance / resistance.pin

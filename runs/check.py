@@ -330,14 +330,19 @@ def _cylinders(state: StaticState, system: System) -> Table:
     """Return the table of lengths, lever arms and static forces of cylinders, a pair as one."""
     segments, metre = state.boom.segments, system.label("m")
     rows: list[tuple[Cell, ...]] = []
+    notes = ["Cylinder forces are positive in compression."] if state.boom.cylinders else []
     for k, cylinder in enumerate(state.boom.cylinders, start=1):
         segment, force = segments[cylinder.segment], cylinder_force(state, k)
         arm = "" if segment.foot is None else system.of(cylinder.arm(segment.foot), "m")
         place, length = f"{system.of(cylinder.x, 'm'):g}", system.of(cylinder.length, "m")
         rows.append((segment.name, place, length, arm, force))
+        if cylinder.stroke is not None:
+            notes.append(f"Stroke of cylinder {k}: {system.text(cylinder.stroke, 'm')}.")
+        if cylinder.piston_area is not None:
+            pressure = system.text(force / cylinder.piston_area, "Pa")
+            notes.append(f"Oil pressure of cylinder {k}: {pressure}.")
     lengths = (f"length\n{metre}", ".5g"), (f"lever arm\n{metre}", ".5g")
     columns = "cylinder of", f"x\n{metre}", *lengths, ("force", ".4g", "kN")
-    notes = ["Cylinder forces are positive in compression."] if rows else []
     return Table.of_rows("", "Cylinders at rest, t = 0", columns, rows, notes)
 
 

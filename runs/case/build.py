@@ -95,7 +95,12 @@ def _cylinders(case: Case) -> tuple[Cylinder, ...]:
             raise BoomError(f"cylinder[{number}].ground", what)
     if foot is None:
         return case.cylinders
-    return tuple(cylinder.in_boom_axes(angle, foot) for cylinder in case.cylinders)
+    cylinders = tuple(cylinder.in_boom_axes(angle, foot) for cylinder in case.cylinders)
+    if case.luff is not None and case.luff.travel:
+        for number, cylinder in enumerate(cylinders):
+            luffed = cylinder.luffed(radians(case.luff.travel), foot)
+            luffed.check(f"cylinders[{number}]", case.spatial)
+    return cylinders
 
 
 def _foot(case: Case) -> Support | None:

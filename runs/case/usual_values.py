@@ -265,6 +265,14 @@ def _of_parts(sizes: _Sizes) -> Ranges:
                 1e7 * weight / length, 1.0e4,
             ),
             "capacity": Usual("the capacity of the cylinder", 0.5 * weight, 1e3 * weight, 1.0e3),
+            **dict.fromkeys(
+                ("closed", "open"), Usual("the length of the cylinder", 0.02 * length, length, 20.0)
+            ),
+            **dict.fromkeys(
+                ("bore", "rod"), Usual("the diameter of the cylinder", 0.02, 0.6, 20.0)
+            ),
+            "pressure": Usual("the pressure of the cylinder", 5e6, 7e7, 50.0),
+            "oil_modulus": Usual("the bulk modulus of the oil", 5e8, 2.2e9, 20.0),
             "depth": Usual("the depth of the lug", 0.0, 0.3 * length, 20.0),
             "dashpot": sizes.dashpot("cylinder"),
             "spread": Usual("the spread of the cylinders", 0.0, 0.3 * length, 20.0),

@@ -93,7 +93,7 @@ def script(
                 "node": [cylinder.segment, parts[cylinder.segment].node(cylinder.x)],
                 "lug": [cylinder.x, -cylinder.depth],
                 "ground": list(cylinder.ground),
-                "stiffness": cylinder.stiffness,
+                "stiffness": cylinder.axial_stiffness,
                 "length": cylinder.length,
             }
             for cylinder in boom.cylinders

@@ -141,10 +141,10 @@ def _state(
     lines = model.lines(boom, replace(built, shell=shell))
     deflections = [dict(line.deflections) for line in lines]
     forces, largest = (
-        AxialChange(Step(), [segment.compression for segment in segments]).geometric_stiffness(
-            deflections
-        )
-        for segments in (boom.segments, shared.segments)
+        AxialChange(
+            Step(), [segment.compression for segment in each.segments], leads=each.leads
+        ).geometric_stiffness(deflections)
+        for each in (boom, shared)
     )
     system = replace(shell.system.gather_loads(), geometric_stiffness=forces - largest)
     factor = None

@@ -285,7 +285,7 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
     if panel.whole:
         panel.line([ground], **marker_style(PINNED, theme.INK, SIGN))
     thick = Line2D([], [], color=theme.INK, linewidth=4.0)
-    panel.meanings[f"cylinder, {abbreviate(cylinder.stiffness, 'N/m')}"] = thick
+    panel.meanings[f"cylinder, {abbreviate(cylinder.axial_stiffness, 'N/m')}"] = thick
 
 
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
