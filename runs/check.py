@@ -37,7 +37,7 @@ from protractile.dynamics.motion import constant_load_equilibrium
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import axial_force, moving_force_places
 from protractile.geometry.boom import Boom
-from protractile.geometry.typography import milli, number, without_round_off
+from protractile.geometry.typography import amount, milli, number, without_round_off
 from protractile.geometry.units import System
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case, Model
@@ -339,7 +339,7 @@ def _cylinders(state: StaticState, system: System) -> Table:
         if cylinder.stroke is not None:
             notes.append(f"Stroke of cylinder {k}: {system.text(cylinder.stroke, 'm')}.")
         if cylinder.piston_area is not None:
-            pressure = system.text(force / cylinder.piston_area, "Pa")
+            pressure = amount(force / cylinder.piston_area, "Pa")
             notes.append(f"Oil pressure of cylinder {k}: {pressure}.")
     lengths = (f"length\n{metre}", ".5g"), (f"lever arm\n{metre}", ".5g")
     columns = "cylinder of", f"x\n{metre}", *lengths, ("force", ".4g", "kN")

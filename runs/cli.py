@@ -31,7 +31,7 @@ app = typer.Typer(
 )
 
 # Commands that one rank executes; the other commands share their work among ranks.
-_OF_ONE_RANK = ("report", "snapshot", "check", "schema")
+_OF_ONE_RANK = ("report", "snapshot", "check", "new", "schema")
 
 
 def _print_version(requested: bool) -> None:
@@ -355,6 +355,16 @@ def prove(
 for client in clients.modules("commands"):
     for command in client.COMMANDS:
         app.command()(command)
+
+
+@app.command()
+def new(case: options.CaseFile, standard: options.OfStandard, kind: options.OfKind) -> int:
+    """Write a case file to start from, with load combinations to be checked in your edition."""
+    from protractile.runs.case.starting_points import write_case
+
+    write_case(case, standard, kind)
+    print(f"{printable(case)}: change its numbers, then protractile check and prove it.")
+    return 0
 
 
 @app.command()

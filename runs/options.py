@@ -7,7 +7,13 @@ from typing import Annotated
 
 import typer
 
+from protractile.runs.case.starting_points import Kind, Standard
+
 CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
+OfStandard = Annotated[
+    Standard, typer.Option("--standard", help="The standard of the load combinations.")
+]
+OfKind = Annotated[Kind, typer.Option("--kind", help="The kind of machine.")]
 ModelNames = Annotated[str | None, typer.Option(metavar="NAME,...", help="Run only these models.")]
 MeshSize = Annotated[
     float | None, typer.Option(metavar="M", help="Edge length of uniform shell meshes in m.")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import radians
 
 from protractile.dynamics.energy import DRIVEN_ENERGIES
@@ -35,7 +36,7 @@ def build_boom(case: Case) -> Boom:
     check_names("segment", [segment.name for segment in case.segments])
     _check_joint_segments(case)
     _check_observations(case)
-    ends = _spans(case.segments, case.joints)
+    ends = _spans(case.segments, telescoped_joints(case))
     joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
     sections = infer_sections(case, joints)
     segments = tuple(
@@ -105,7 +106,9 @@ def _cylinders(case: Case) -> tuple[Cylinder, ...]:
 
 def _foot(case: Case) -> Support | None:
     """Return the foot of the first segment that has one, about whose pin the boom luffs."""
-    for table, ends in zip(case.segments, _spans(case.segments, case.joints), strict=True):
+    for table, ends in zip(
+        case.segments, _spans(case.segments, telescoped_joints(case)), strict=True
+    ):
         if table.supports:
             supports = [resolve_distances(support, *ends) for support in table.supports]
             return min(supports, key=lambda support: support.x)
@@ -247,6 +250,38 @@ def _check_planar(case: Case) -> None:
         if action and not case.spatial:
             what = "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
             raise BoomError(where, what)
+
+
+def telescoped_joints(case: Case) -> tuple[JointTable, ...]:
+    """Return the joints with their extensions at the fraction of the stroke of the case.
+
+    Raises:
+        BoomError: no joint has an extension, or one is below that of the retracted boom.
+    """
+    table, lengths = case.telescoping, {one.name: one.length for one in case.segments}
+    if table is None:
+        return case.joints
+    strokes: dict[int, tuple[float, float]] = {}
+    for number, joint in enumerate(case.joints):
+        inner, outer = (lengths.get(name) for name in (joint.inner, joint.outer))
+        if joint.extension is not None and inner is not None:
+            least = max(table.retracted, inner - (inner if outer is None else outer))
+            if least > joint.extension:
+                what = f"must be at least {least:g} m, that of the retracted boom"
+                raise BoomError(f"joint[{number + 1}].extension", what)
+            strokes[number] = least, joint.extension - least
+    if not strokes:
+        raise BoomError("telescoping", "no joint has an extension; give the largest one to each")
+    travel = table.extension * sum(stroke for _, stroke in strokes.values())
+    joints = list(case.joints)
+    for number in reversed(strokes) if table.order == "from the tip" else strokes:
+        least, stroke = strokes[number]
+        moved = min(stroke, travel)
+        if table.order == "in proportion":
+            moved = table.extension * stroke
+        travel -= moved
+        joints[number] = replace(joints[number], extension=least + moved)
+    return tuple(joints)
 
 
 def _spans(

@@ -25,6 +25,7 @@ from protractile.runs.case.load_tables import (
     LoadCaseTable,
     LoadTable,
     PayloadTable,
+    TelescopingTable,
 )
 from protractile.runs.case.schema import Case
 
@@ -72,6 +73,10 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
         if gravity is None:
             raise BoomError("angle", "the case has no table gravity, whose angle it replaces")
         gravity = gravity.model_copy(update={"angle": table.angle})
+    telescoping = None if table.extension else case.telescoping
+    if table.telescoped is not None:
+        update = {"extension": table.telescoped}
+        telescoping = (telescoping or TelescopingTable()).model_copy(update=update)
     if hung := _hung_mass(case, table):
         mass = hung + (payload.mass if payload else 0.0)
         payload = (payload or PayloadTable(mass=mass)).model_copy(update={"mass": mass})
@@ -85,6 +90,7 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
             "gravity": gravity,
             "payload": payload,
             "joints": _joints(case, table),
+            "telescoping": telescoping,
             **dict.fromkeys(("hoist", "slew", "luff")),
             "load_cases": (),
             "combinations": (),

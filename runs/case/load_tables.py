@@ -243,6 +243,23 @@ class GroundAccelerationTable(HistoryTable):
     amount: ClassVar[str] = "acceleration"
 
 
+# Fraction of the stroke: 0 retracted, 1 extended.
+Telescoped = Annotated[float, Field(strict=True, ge=0.0, le=1.0), In("1")]
+
+
+class TelescopingTable(CaseTable):
+    """How far the boom is telescoped; the extensions of the joints are those of its full length."""
+
+    extension: Telescoped = 1.0
+    """the fraction of the stroke: 0 for the retracted boom, 1 for the extensions of the joints"""
+    order: Literal["in proportion", "from the base", "from the tip"] = "in proportion"
+    """the order in which the segments move: all in proportion, as ropes and chains couple them, or
+    one after the other from the base or from the tip"""
+    retracted: Annotated[NotNegative, In("m")] = 0.0
+    """the least extension in m of each joint in the retracted boom; longer segments stay out by
+    their difference in length"""
+
+
 class LoadCaseTable(CaseTable):
     """A load case of the boom at rest. Its keys replace keys of the case."""
 
@@ -253,6 +270,9 @@ class LoadCaseTable(CaseTable):
     it is on the earth"""
     extension: Annotated[dict[str, NotNegative], In("m")] = Field(default_factory=dict)
     """inner segment = extension in m, in place of the joint's extension"""
+    telescoped: Telescoped | None = None
+    """the fraction of the stroke to which the boom is telescoped, in place of
+    telescoping.extension"""
     payload: Annotated[NotNegative, In("kg")] | None = None
     """a mass in kg at the tip in addition to the table payload; it weighs along and across the
     boom, as a load of the group payload; the mass of the table hoist, if any, unless given"""

@@ -60,6 +60,7 @@ from protractile.runs.case.load_tables import (
     PayloadTable,
     RopeTable,
     SpectrumTable,
+    TelescopingTable,
     WindPressureTable,
 )
 from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
@@ -280,6 +281,9 @@ class Case(ClientKeys, CaseHeading):
         (), alias="joint"
     )
     """the joints, one [[joint]] each, from the base to the tip"""
+    telescoping: TelescopingTable | None = None
+    """the table of the fraction of the stroke to which the boom is telescoped; the extensions of
+    the joints unless given"""
     stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
         (), alias="stop"
     )

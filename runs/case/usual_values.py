@@ -30,6 +30,7 @@ from protractile.runs.case.load_tables import (
     PayloadTable,
     ResistanceTable,
     RopeTable,
+    TelescopingTable,
     WindPressureTable,
 )
 from protractile.runs.case.motion_tables import (
@@ -343,6 +344,9 @@ def _of_actions(sizes: _Sizes) -> Ranges:
             "speed": Usual("the wind speed", 0.0, 70.0, 20.0),
             "load_area": Usual("the area of the load in the wind", 0.0, 500.0, 100.0),
             "shape_factor": Usual("the shape factor", 0.3, 3.0, 10.0),
+        },
+        TelescopingTable: {
+            "retracted": Usual("the extension of a retracted joint", 0.0, length, 50.0)
         },
         RopeTable: {"winch": Usual("the distance of the winch behind the foot", 0.0, 20.0, 50.0)},
         Head: {

@@ -18,7 +18,7 @@ from protractile.runs.case.load_tables import HistoryTable, LoadTable, build_his
 from protractile.runs.case.schema import Case
 from protractile.runs.report.tables import Table
 
-# Forces and moments from this number on are in kN and kN m in all systems of units.
+# Forces and moments are in kN and kN m in other systems than SI, in SI from this number on.
 _ENGINEERS, _MANY = {"N", "N m"}, 1.0e5
 _CONSTANT, _ALL = "constant", "all masses"
 # Direction of axial forces, which are positive in compression.
@@ -42,7 +42,7 @@ def load_table(case: Case, boom: Boom) -> Table:
     system, rows = case.system, []
     for *names, largest, unit, time in _rows(case, boom):
         shown, label = system.of(largest, unit), system.label(unit)
-        if unit in _ENGINEERS and abs(shown) >= _MANY:
+        if unit in _ENGINEERS and (system.name != "SI" or abs(shown) >= _MANY):
             label, shown = SHOWN[unit], in_shown_unit(largest, unit)
         maximum = f"{number(shown, 4)} {label}"
         rows.append((*names, maximum, "" if time is None else f"{time:.4g}"))

@@ -351,7 +351,9 @@ SLIPS: dict[str, Callable[[], object]] = {
     "[x, height above the axis] in the axes of the boom at the luffing angle gravity.angle of the "
     "case": lambda: Cylinder(0, 4.0, 0.3, (1.0, -4.3), 5e7),  # type: ignore[call-arg,misc,arg-type]
     "Cylinder.stiff: unknown; known are segment, x, depth, ground, stiffness, dashpot, spread, "
-    "capacity, pin": lambda: Cylinder(**JACK, stiff=1.0),
+    "capacity, closed, open, bore, rod, pressure, oil_modulus, pin": lambda: Cylinder(
+        **JACK, stiff=1.0
+    ),
     "Cylinder.ground: must be two numbers, x and z in m, got 3.0": lambda: Cylinder(
         **JACK | {"ground": 3.0}
     ),
