@@ -52,9 +52,9 @@ def loads(case: Case, segments: Sequence[Segment], joints: Sequence[Joint]) -> I
         up = -1.0 if gravity is None else -float(cosdg(gravity.angle))
         yield Load(last, "z", extra * up, end, Step())
     if case.head is not None:
-        yield from _head_moments(case, case.head, last, end)
+        yield from head_moments(case, case.head, last, end)
     if case.wind is not None:
-        yield from _wind(case, case.wind, segments, joints)
+        yield from wind(case, case.wind, segments, joints)
     if gravity is not None:
         yield from _inertia_loads(-gravity.across, "z", Step(), segments)
         if case.hoist is not None and case.hoist.dropped:
@@ -219,7 +219,7 @@ def _luffing(case: Case) -> float:
     return 0.0 if case.gravity is None else radians(case.gravity.angle)
 
 
-def _head_moments(case: Case, head: Head, last: int, end: float) -> Iterator[Load]:
+def head_moments(case: Case, head: Head, last: int, end: float) -> Iterator[Load]:
     """Yield the moments of the weights of payload and head about the end of the last segment.
 
     Raises:
@@ -236,7 +236,7 @@ def _head_moments(case: Case, head: Head, last: int, end: float) -> Iterator[Loa
         yield from head.moments(last, end, weight * down, Step(), part)
 
 
-def _wind(
+def wind(
     case: Case, table: WindPressureTable, segments: Sequence[Segment], joints: Sequence[Joint]
 ) -> Iterator[Load]:
     """Yield the wind loads across the boom.

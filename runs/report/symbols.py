@@ -15,6 +15,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.load import PartialLoad
 from protractile.geometry.place import at
 from protractile.geometry.section import Direction
 from protractile.geometry.typography import number
@@ -163,6 +164,14 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
     names = [segment.name for segment in boom.segments]
     for table in case.loads:
         yield _load(table, boom, names.index(table.segment))
+    if case.wind is not None:
+        for blow in actions.wind(case, case.wind, boom.segments, boom.joints):
+            if isinstance(blow, PartialLoad):
+                force = blow.magnitude * getattr(blow.history, "peak", 1.0)
+                yield _spread(boom, blow.segment, blow.span, force, blow.direction, ", wind")
+    for lead in boom.leads:
+        along = f"{abbreviate(lead.force, 'N')} of the rope's lead"
+        yield Symbol("loads", lead.segment, (lead.x,), 0.0, FORCE_BACK, along)
     for thrust in actions.thrusts(case, boom.segments):
         sign = FORCE_BACK if thrust.force > 0.0 else FORCE_ON
         along = f"{abbreviate(abs(thrust.force), 'N')} along the boom"
