@@ -22,15 +22,6 @@ AIR_DENSITY = 1.25
 _STEPS = 8
 
 
-def dynamic_pressure(speed: float) -> float:
-    """Return the dynamic pressure ½ ρ v² in Pa of a wind speed in m/s (EN 13001-2).
-
-    >>> dynamic_pressure(20.0)
-    250.0
-    """
-    return 0.5 * AIR_DENSITY * speed**2
-
-
 def wind_direction(angle: float, luffing: float) -> Array:
     """Return the horizontal direction (3,) of a wind in the axes x, y and z of the boom.
 
@@ -46,17 +37,6 @@ def wind_direction(angle: float, luffing: float) -> Array:
             -np.cos(angle) * np.sin(luffing),
         ]
     )
-
-
-def exposed_spans(
-    segments: Sequence[Segment], joints: Sequence[Joint]
-) -> list[tuple[float, float]]:
-    """Return the x in m of both ends of the part of each segment outside all others."""
-    spans = []
-    for number, segment in enumerate(segments):
-        heads = [segments[joint.outer].end for joint in joints if joint.inner == number]
-        spans.append((min(max([segment.start, *heads]), segment.end), segment.end))
-    return spans
 
 
 def wind_loads(
@@ -91,8 +71,9 @@ def wind_loads(
     """
     _, lateral, up = direction.tolist()
     across = float(np.hypot(lateral, up))
-    for number, (start, end) in enumerate(exposed_spans(segments, joints)):
-        segment = segments[number]
+    for number, segment in enumerate(segments):
+        heads = [segments[joint.outer].end for joint in joints if joint.inner == number]
+        start, end = max([segment.start, *heads]), segment.end
         if end - start <= SAME_PLACE * segment.length or not pressure:
             continue
         if segment.section is None:

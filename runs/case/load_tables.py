@@ -23,7 +23,7 @@ from protractile.geometry.fields import (
     rising,
 )
 from protractile.geometry.place import Place
-from protractile.geometry.wind import dynamic_pressure
+from protractile.geometry.wind import AIR_DENSITY
 from protractile.runs.case.limits import (
     MOST_TIMES,
     CaseTable,
@@ -179,7 +179,7 @@ class WindPressureTable(HistoryTable):
     @property
     def dynamic_pressure(self) -> float:
         """The dynamic pressure in Pa at the value 1 of the history."""
-        return self.pressure if self.speed is None else dynamic_pressure(self.speed)
+        return self.pressure if self.speed is None else 0.5 * AIR_DENSITY * self.speed**2
 
     @model_validator(mode="after")
     def _has_an_amount(self) -> Self:

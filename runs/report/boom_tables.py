@@ -59,9 +59,7 @@ def stiffener_table(boom: Boom, system: System) -> Table:
         Column("segment", [row[1] for row in rows]),
         _spans(system, [row[2] for row in rows]),
         Column("thickness", [row[3] for row in rows], ".3g", "mm"),
-        column_in_units(
-            system, "mass", "kg", [density[row[1]] * row[3] * row[4] for row in rows], ".3g"
-        ),
+        Column("mass", [density[row[1]] * row[3] * row[4] for row in rows], ".3g", "kg"),
     ]
     return Table("Stiffeners", columns)
 
@@ -106,8 +104,8 @@ def mass_table(boom: Boom, system: System) -> Table:
     attached = [mass - part for mass, part in zip(masses, plain_masses, strict=True)]
     columns = [
         Column("segment", [*(segment.name for segment in segments), "all"]),
-        column_in_units(system, "own mass", "kg", [*plain_masses, sum(plain_masses)]),
-        column_in_units(system, "attached mass", "kg", [*attached, whole - sum(plain_masses)]),
+        Column("own mass", [*plain_masses, sum(plain_masses)], ".4g", "kg"),
+        Column("attached mass", [*attached, whole - sum(plain_masses)], ".4g", "kg"),
         column_in_units(system, "centre of mass x", "m", [*centres, moment / whole]),
     ]
     return Table("Masses", columns)

@@ -17,7 +17,7 @@ from protractile.geometry.load import Load, Moment, PartialLoad, Torque
 from protractile.geometry.polygon import closed_polygon
 from protractile.geometry.profiles import hexagon, u_section
 from protractile.geometry.support import Support
-from protractile.geometry.wind import dynamic_pressure, wind_direction, wind_loads
+from protractile.geometry.wind import wind_direction, wind_loads
 
 STEEL = Material(2.1e11, 0.3, 7850.0)
 PRESSURE, FACTORS = 250.0, (1.5, 1.3)
@@ -64,7 +64,6 @@ def test_resultant_and_moment_of_wind_follow_by_hand(
 def test_wind_along_the_axis_does_nothing() -> None:
     direction = wind_direction(0.0, 0.0)
     assert not [*wind_loads(*telescope(2.0), PRESSURE, direction, FACTORS, Step())]
-    assert dynamic_pressure(20.0) == 250.0
 
 
 def test_wind_on_a_taper_has_the_resultant_of_the_mean_width() -> None:
