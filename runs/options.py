@@ -3,11 +3,25 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated
 
 import typer
 
-from protractile.runs.case.starting_points import Kind, Standard
+
+class Standard(StrEnum):
+    """Standards with load combinations."""
+
+    EN13001 = "en13001"
+    EN280 = "en280"
+
+
+class Kind(StrEnum):
+    """Kinds of machines."""
+
+    CRANE = "crane"
+    LIFT = "lift"
+
 
 CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
 OfStandard = Annotated[

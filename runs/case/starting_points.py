@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 
 from protractile.runs.process.bad_input import BadInput
@@ -11,22 +10,8 @@ from protractile.runs.process.bad_input import BadInput
 _TEMPLATES = Path(__file__).parent / "templates"
 
 
-class Standard(StrEnum):
-    """Standards with load combinations."""
-
-    EN13001 = "en13001"
-    EN280 = "en280"
-
-
-class Kind(StrEnum):
-    """Kinds of machines."""
-
-    CRANE = "crane"
-    LIFT = "lift"
-
-
-def write_case(path: str, standard: Standard, kind: Kind) -> None:
-    """Write a case file that runs, whose numbers of standards are to be checked.
+def write_case(path: str, standard: str, kind: str) -> None:
+    """Write a case file that runs, with a kind of machine and the combinations of a standard.
 
     Raises:
         BadInput: the file exists already, or cannot be written.

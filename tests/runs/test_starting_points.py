@@ -6,9 +6,10 @@ from pathlib import Path
 import pytest
 
 from protractile.runs.case.reading import load_checked
-from protractile.runs.case.starting_points import Kind, Standard, write_case
+from protractile.runs.case.starting_points import write_case
 from protractile.runs.cautions import rules
 from protractile.runs.cautions.context import Context
+from protractile.runs.options import Kind, Standard
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.proofs import prove
 from protractile.runs.process.bad_input import BadInput
