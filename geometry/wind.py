@@ -30,13 +30,8 @@ def wind_direction(angle: float, luffing: float) -> Array:
             towards +y.
         luffing: luffing angle in rad.
     """
-    return np.array(
-        [
-            np.cos(angle) * np.cos(luffing),
-            np.sin(angle),
-            -np.cos(angle) * np.sin(luffing),
-        ]
-    )
+    forwards = np.cos(angle)
+    return np.array([forwards * np.cos(luffing), np.sin(angle), -forwards * np.sin(luffing)])
 
 
 def wind_loads(

@@ -158,7 +158,9 @@ def tip_thrusts(case: Case, segments: Sequence[Segment]) -> Iterator[Thrust]:
         yield Thrust(last, end, (_extra_weight(case) + hanging) * float(sindg(gravity.angle)))
     if case.wind is not None:
         along = wind_direction(radians(case.wind.direction), _luffing(case))[0]
-        yield Thrust(last, end, -float(along) * case.wind.load_area * case.wind.dynamic_pressure)
+        peak = build_history("wind", case.wind).peak
+        force = peak * case.wind.load_area * case.wind.dynamic_pressure
+        yield Thrust(last, end, -float(along) * force)
     for lead in leads(case, segments):
         yield Thrust(last, end, lead.force)
 

@@ -27,6 +27,7 @@ from protractile.runs.case.load_tables import (
     PayloadTable,
     TelescopingTable,
 )
+from protractile.runs.case.messages import key_of_part
 from protractile.runs.case.schema import Case
 
 Table = TypeVar("Table", bound=CaseTable)
@@ -170,7 +171,8 @@ def check_combinations(case: Case) -> None:
         try:
             build_boom(combine(case, load_case))
         except BoomError as error:
-            raise BoomError(f"load_case[{number}].{error.where}", error.what) from None
+            where = f"load_case[{number}].{key_of_part(error.where)}"
+            raise BoomError(where, error.what) from None
     names = [load_case.name for load_case in case.load_cases]
     for number, combination in enumerate(case.combinations, start=1):
         selected = names if combination.load_cases is None else combination.load_cases

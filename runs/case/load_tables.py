@@ -23,6 +23,7 @@ from protractile.geometry.fields import (
     rising,
 )
 from protractile.geometry.place import Place
+from protractile.geometry.typography import choices
 from protractile.geometry.wind import AIR_DENSITY
 from protractile.runs.case.limits import (
     MOST_TIMES,
@@ -31,6 +32,7 @@ from protractile.runs.case.limits import (
     Text,
     error_at,
     superfluous_error,
+    unsuitable,
 )
 
 # Groups of loads with a common factor in a combination.
@@ -138,6 +140,13 @@ class LoadTable(HistoryTable):
 _BLOWS = {"behind": 0.0, "side": 90.0, "front": 180.0}
 
 
+def _blow(value: Any) -> Any:
+    """Return the angle of a direction; other text than its name is an error."""
+    if isinstance(value, str) and value not in _BLOWS:
+        raise unsuitable(f"must be {choices([*_BLOWS])}, or an angle in degrees, got {value!r}")
+    return _BLOWS[value] if isinstance(value, str) else value
+
+
 class WindPressureTable(HistoryTable):
     """Horizontal wind on the exposed parts of the segments, and on the load at the tip.
 
@@ -154,10 +163,7 @@ class WindPressureTable(HistoryTable):
         float,
         Field(strict=True, ge=-360.0, le=360.0),
         In("deg"),
-        BeforeValidator(
-            lambda value: _BLOWS.get(value, value) if isinstance(value, str) else value,
-            json_schema_input_type=Literal["behind", "side", "front"] | float,
-        ),
+        BeforeValidator(_blow, json_schema_input_type=Literal["behind", "side", "front"] | float),
     ] = 0.0
     """the direction: behind, side (towards +y), front, or an angle in degrees from behind towards
     +y"""

@@ -70,10 +70,10 @@ def translated_errors(file: str) -> Iterator[None]:
         explained = _explain(first["type"], first["loc"], first["input"], first.get("ctx"))
         raise BadInput(file, *explained) from None
     except BoomError as error:
-        raise BadInput(file, _key_of_part(error.where), error.what) from None
+        raise BadInput(file, key_of_part(error.where), error.what) from None
 
 
-def _key_of_part(where: str) -> str:
+def key_of_part(where: str) -> str:
     """Return the key of a boom's part: ``segment[2].span`` for ``segments[1].start``."""
     part = re.split(r"\W", where)[0]
     if part not in _PARTS:

@@ -51,6 +51,7 @@ payload = {{ mass = 150.0, group = "dead" }}
 {elements("beam", theory="timoshenko")}
 """
 JACK = table("[[cylinder]]", **CYLINDER, stiffness=3e7)
+LIMITED = table("[[cylinder]]", **CYLINDER, stiffness=3e7, open=2.0)
 PEOPLE = table("[[load_case]]", name="people", payload=230.0)
 FACTORS = table("[[combination]]", name="A", factors={"dead": 1.2, "payload": 1.34, "wind": 1.16})
 
@@ -200,6 +201,11 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
          "wind.shape_factor: must be one number, or one for each of 2 segments, got 3"),
         (table("[wind]", pressure=100.0, speed=10.0, shape_factor=1.2),
          "wind.speed: pressure is given; leave one of them out"),
+        (table("[wind]", pressure=1.0, shape_factor=1.2, direction="left"),
+         "wind.direction: must be 'behind', 'side' or 'front', or an angle in degrees, got 'left'"),
+        (table("[[load_case]]", name="up", angle=88.0) + LIMITED,
+         "load_case[1].cylinder[2].open: 2 m, and from ground to lug it is 2.734 m: the cylinder "
+         "does not reach; change it, the ground or the luffing angle"),
         (table("[wind]", shape_factor=1.2),
          "wind.pressure: missing; it is the dynamic pressure in Pa; a factor, 1 unless given, if "
          "the heading of its file has such a unit"),
