@@ -65,8 +65,8 @@ def bonded_system(system: GapSystem, rests: Sequence[Array]) -> tuple[GapSystem,
         friction_rows=np.zeros((0, omega2.size)),
         frictions=(),
         travels=[
-            replace(one, moved_rows=[("rows", place_of[row]) for _, row in one.moved_rows])
-            for one in moved.travels
+            replace(travel, moved_rows=[("rows", place_of[row]) for _, row in travel.moved_rows])
+            for travel in moved.travels
         ],
     )
     return bonded, basis

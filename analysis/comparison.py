@@ -37,13 +37,13 @@ class PeakDifferences:
     explained: list[bool]  #: true where neither difference exceeds its combined spread
 
     @classmethod
-    def of(cls, one: SlowPeaks, other: SlowPeaks) -> PeakDifferences:
+    def of(cls, first: SlowPeaks, second: SlowPeaks) -> PeakDifferences:
         """Return the differences of peaks with the same number, as far as both models have them."""
-        common = slice(min(one.time.size, other.time.size))
-        time = other.time[common] - one.time[common]
-        height = other.height[common] - one.height[common]
-        time_spread = one.time_spread[common] + other.time_spread[common]
-        height_spread = one.height_spread[common] + other.height_spread[common]
+        common = slice(min(first.time.size, second.time.size))
+        time = second.time[common] - first.time[common]
+        height = second.height[common] - first.height[common]
+        time_spread = first.time_spread[common] + second.time_spread[common]
+        height_spread = first.height_spread[common] + second.height_spread[common]
         explained = (np.abs(time) <= time_spread) & (np.abs(height) <= height_spread)
         return cls(time, time_spread, height, height_spread, explained.tolist())
 
@@ -69,7 +69,7 @@ class Distributions:
     distance: Number
 
     @classmethod
-    def of(cls, one: Array, other: Array, time: Array, since: float) -> Distributions:
+    def of(cls, first: Array, second: Array, time: Array, since: float) -> Distributions:
         """Return the statistics of two ensembles after the time ``since`` in s.
 
         Values are (num_members, num_times). ``since`` is NaN if a model stays predictable.
@@ -77,7 +77,7 @@ class Distributions:
         # Imported here, since most runs have no ensemble and the import takes half a second.
         from scipy.stats import ks_2samp
 
-        both = [members[:, time >= since].ravel() for members in (one, other)]
+        both = [members[:, time >= since].ravel() for members in (first, second)]
         if both[0].size == 0:
             none = (np.nan, np.nan)
             return cls(since, none, none, none, np.nan)
@@ -99,7 +99,7 @@ class Comparison:
     distributions: Distributions
 
 
-def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float) -> Comparison:
+def compare(first: xr.Dataset, second: xr.Dataset, cutoff: float) -> Comparison:
     """Compare the tips of the ensembles of two models.
 
     Ensembles are those of :func:`.dynamics.predictability.integrate_ensemble`; the cut-off of the
@@ -108,11 +108,11 @@ def compare(one: xr.Dataset, other: xr.Dataset, cutoff: float) -> Comparison:
     Raises:
         ValueError: the times differ.
     """
-    time = one["time"].values
-    if not np.array_equal(time, other["time"].values):
+    time = first["time"].values
+    if not np.array_equal(time, second["time"].values):
         raise ValueError("the ensembles must have the same times")
-    members = one["tip"].values, other["tip"].values
-    horizons = np.array([ensemble_horizons(ensemble) for ensemble in (one, other)])
+    members = first["tip"].values, second["tip"].values
+    horizons = np.array([ensemble_horizons(ensemble) for ensemble in (first, second)])
     until = float(np.nan_to_num(horizons[:, 0], nan=time[-1]).min())
     # A horizon is NaN if the model is predictable to the end; then the maximum is NaN, too.
     since = float(horizons[:, -1].max())

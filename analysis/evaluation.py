@@ -87,7 +87,7 @@ def evaluate_motion(
         rows += extremes(measured, name, MOTION, play)
         curves += envelope(segment.name, line.x, forces, name, play)
         if HAS_RAINFLOW:
-            stresses = [one for one in measured if one.quantity == "stress"]
+            stresses = [measurement for measurement in measured if measurement.quantity == "stress"]
             rows += life_rows(stresses, name, play, life)
     if states.recorded is not None and "rope_force_peak" in states.recorded:
         weight = states.recorded["rope_force_peak"].attrs["weight"]

@@ -109,7 +109,7 @@ def life_rows(stresses: Sequence[Measured], model: str, play: bool, life: Life) 
     """
     if not stresses:
         return
-    widest = max(stresses, key=lambda one: float(np.ptp(one.values, axis=0).max()))
+    widest = max(stresses, key=lambda stress: float(np.ptp(stress.values, axis=0).max()))
     column = int(np.ptp(widest.values, axis=0).argmax())
     x, y, z = (None if at is None else float(at[column]) for at in widest.places)
     sizes, counts = count_stress_ranges(widest.values[:, column])
@@ -178,11 +178,11 @@ def fatigue_proofs(
     worst: dict[str, Row] = {}
     for detail in details:
         inside = detail.x - boom.segments[detail.segment].start
-        stress = {key: _stress(one, detail.segment, inside) for key, one in states.items()}
+        stress = {key: _stress(state, detail.segment, inside) for key, state in states.items()}
         shares = np.array(
             [
-                one.repeats * _damages(one, detail.category, stress, partial_factor)
-                for one in spectra
+                spectrum.repeats * _damages(spectrum, detail.category, stress, partial_factor)
+                for spectrum in spectra
             ]
         )
         fibre = int(shares.sum(axis=0).argmax())

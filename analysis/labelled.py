@@ -20,5 +20,5 @@ class Labelled(tuple[T, ...]):
             (name, value if isinstance(value, list) else [value]) for name, value in labels.items()
         ]
         return type(self)(
-            one for one in self if all(getattr(one, name) in of for name, of in wanted)
+            entry for entry in self if all(getattr(entry, name) in of for name, of in wanted)
         )

@@ -23,7 +23,7 @@ from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.contact_places import contact_centres, pads
 from protractile.geometry.cylinder import forces
-from protractile.geometry.joint import PADS_OF_SIDE, Joint, PadSize
+from protractile.geometry.joint import PADS_OF_SIDE, Joint, Pad
 from protractile.geometry.section import EACH_SIDE, Direction
 from protractile.geometry.station import Station
 from protractile.geometry.telescoping import station_positions, travel
@@ -93,7 +93,7 @@ def measure_boom(states: States) -> Iterator[Measured]:
         cylinder, pair = boom.cylinders[number - 1], "difference" in name
         quantity = "cylinder_force_difference" if pair else "cylinder_force"
         part = "cylinder" if len(boom.cylinders) == 1 else f"cylinder {number}"
-        capacity = None if pair else cylinder.capacity
+        capacity = None if pair else cylinder.resistance
         yield _single(quantity, part, states.observed(name), time, cylinder.x, limit=capacity)
     if (data := states.recorded) is not None:
         if "rope_force_peak" in data:
@@ -112,7 +112,7 @@ def _label(boom: Boom, station: Station) -> tuple[str, str]:
     name = boom.segments[station.segment].name
     if station.joint is None:
         return name, f"stop {station.number + 1}"
-    before = (one for one in boom.joints[: station.number] if one.inner == station.segment)
+    before = (joint for joint in boom.joints[: station.number] if joint.inner == station.segment)
     number = 1 + station.place + sum(len(joint.stations) for joint in before)
     return name, f"station {number}{', lateral' if station.direction == 'y' else ''}"
 
@@ -136,7 +136,7 @@ def _recorded_contacts(boom: Boom, system: GapSystem, data: xr.Dataset) -> Itera
 
 
 def _pad(
-    part: str, place: str, x: float, force: Array, pad: PadSize, time: Array | None
+    part: str, place: str, x: float, force: Array, pad: Pad, time: Array | None
 ) -> Iterator[Measured]:
     """Yield force and pressure of a pad from its force (num_states,) in N."""
     yield _single("pad_force", part, force, time, x, place)

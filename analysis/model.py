@@ -22,7 +22,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import force_name
 
 # Distance by which both positions at a jump are moved away from it, as a fraction of the length.
-_ASIDE = 1.0e-9
+_SHIFT = 1.0e-9
 
 _ACROSS: tuple[tuple[LineQuantity, LineQuantity], ...] = (
     ("deflection", "shear"),
@@ -80,8 +80,8 @@ def section_forces(
     read = line.read(states)
     # Both positions at a jump are moved slightly apart.
     jump = np.diff(line.x) == 0.0
-    aside = _ASIDE * max(1.0, float(np.ptp(line.x)))
-    x = line.x + aside * (np.append(False, jump).astype(float) - np.append(jump, False))
+    shift = _SHIFT * max(1.0, float(np.ptp(line.x)))
+    x = line.x + shift * (np.append(False, jump).astype(float) - np.append(jump, False))
     thrust = axial_force(boom.segments, boom.joints, number, x, time, boom.axial_changes)
     if boom.telescopes or boom.axial_changes:
         # Lines already include the shear force at the start due to axial forces.

@@ -10,8 +10,8 @@ import numpy as np
 
 from protractile.dynamics.contact import ContactLaw
 from protractile.geometry.arrays import Array
-from protractile.geometry.contact_places import Pad
-from protractile.geometry.joint import PADS_OF_SIDE, SIDES, PadSide, PadSize
+from protractile.geometry.contact_places import ContactPair
+from protractile.geometry.joint import PADS_OF_SIDE, SIDES, Pad, PadSide
 from protractile.geometry.section import EACH_SIDE, Offset, Side
 from protractile.geometry.station import Station
 
@@ -19,9 +19,7 @@ from protractile.geometry.station import Station
 _SIDE_NAMES = {on: side for side, on in SIDES.items()}
 
 
-def largest_forces(
-    station: Station, pushes: Array, net: bool
-) -> Iterator[tuple[PadSize, str, float]]:
+def largest_forces(station: Station, pushes: Array, net: bool) -> Iterator[tuple[Pad, str, float]]:
     """Yield the governing pads of a station, their name, and the force in N on both of a pair.
 
     The forces ``pushes`` are those of :func:`_pair_forces`, or the ``net`` forces of both sides.
@@ -32,7 +30,7 @@ def largest_forces(
         if net:
             # Without preload by shims, one side carries the net force alone.
             sides = [station.law.one_sided(side) for side in EACH_SIDE]
-            preloads = [float(abs(one.force(np.zeros(())))) for one in sides if one]
+            preloads = [float(abs(law.force(np.zeros(())))) for law in sides if law]
             force = max(force, max(preloads) + 0.5 * force)
         side = _SIDE_NAMES[station.direction, 1 if largest > 0.0 else -1]
         yield station.joint.pad, side, force
@@ -68,7 +66,7 @@ def _pair_forces(station: Station, pushes: Array) -> list[float]:
     from scipy.optimize import brentq
 
     def force(approach: float) -> Array:
-        return np.array([float(one.force(np.array(approach))) for one in laws])
+        return np.array([float(law.force(np.array(approach))) for law in laws])
 
     def excess(approach: float, push: float) -> float:
         return float(force(approach) @ np.equal(sides, np.sign(push))) - push
@@ -82,7 +80,7 @@ def _pair_forces(station: Station, pushes: Array) -> list[float]:
     return [float(most) for most in largest]
 
 
-def loaded_pads(station: Station, sides: Sequence[Array]) -> Iterator[tuple[PadSize, str, Array]]:
+def loaded_pads(station: Station, sides: Sequence[Array]) -> Iterator[tuple[Pad, str, Array]]:
     """Yield the pads of known size at a station, each with its name and forces (num_states,) in N.
 
     ``sides`` are the forces (num_states,) on the two sides in N, in the order of ``EACH_SIDE``, not
@@ -111,8 +109,8 @@ def loaded_pads(station: Station, sides: Sequence[Array]) -> Iterator[tuple[PadS
 
 
 def pad_forces(
-    station: Station, contacts: Sequence[Pad], forces: Sequence[Array]
-) -> Iterator[tuple[PadSize, str, Array]]:
+    station: Station, contacts: Sequence[ContactPair], forces: Sequence[Array]
+) -> Iterator[tuple[Pad, str, Array]]:
     """Yield the pads of a station whose contacts have rows of their own, as :func:`loaded_pads`.
 
     Plates that bend share the force of a side otherwise than the stiffness of its pads.

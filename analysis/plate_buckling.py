@@ -142,11 +142,16 @@ def _plates(
     names: tuple[LineQuantity, ...] = (
         "moment", "lateral_moment", "shear", "lateral_shear", "torque",
     )  # fmt: skip
-    moment, lateral, shear, aside, torque = (curves.get(name, np.zeros(x.size)) for name in names)
+    moment, lateral, shear, lateral_shear, torque = (
+        curves.get(name, np.zeros(x.size)) for name in names
+    )
     mean = curves["normal"] / section.area
     along_y = lateral / section.lateral_second_moment_of_area
     along_z = moment / section.second_moment_of_area
-    forces = [(shear, dict(section.shear_plates("z"))), (aside, dict(section.shear_plates("y")))]
+    forces = [
+        (shear, dict(section.shear_plates("z"))),
+        (lateral_shear, dict(section.shear_plates("y"))),
+    ]
     corners = np.transpose(outer_corners(section))
     for k, plate in enumerate(section.plates):
         outer = corners[[k, (k + 1) % len(section.plates)]]

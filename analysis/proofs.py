@@ -81,9 +81,9 @@ def proofs(
         (tip,) = rows.where(quantity="tip")
         proved.append(_proof("deflection", "tip", "", tip.value, permitted_tip))
     model, state = rows[0].model, rows[0].state
-    for one in proved:
-        if _OF_SHELLS.get(one.quantity, one.quantity) in requested:
-            yield one._replace(model=model, state=state)
+    for proof in proved:
+        if _OF_SHELLS.get(proof.quantity, proof.quantity) in requested:
+            yield proof._replace(model=model, state=state)
 
 
 def governing(proved: Iterable[Row]) -> Rows:
@@ -138,7 +138,7 @@ def most_slender_plate(states: Iterable[States]) -> tuple[float, PlateStress] | 
         for each in states
         for plate, strength in strong_plates(each)
     )
-    return max(slender, key=lambda one: one[0], default=None)
+    return max(slender, key=lambda row: row[0], default=None)
 
 
 def _of_shells(
@@ -153,19 +153,19 @@ def _of_shells(
         if row.limit is not None:
             limit = row.limit / resistance.material
             yield _proof("patch", row.part, "", row.value, limit, row.x)
-    for one in buckling:
-        plates = [plate for plate in plate_stresses(states) if plate.segment.name == one.segment]
+    for result in buckling:
+        plates = [plate for plate in plate_stresses(states) if plate.segment.name == result.segment]
         strength = plates[0].segment.yield_strength if plates else None
-        if strength is None or not one.factors:
+        if strength is None or not result.factors:
             continue
         stress = max(
             float(np.hypot(np.abs(plate.edges).max(axis=0), np.sqrt(3.0) * plate.shear).max())
             for plate in plates
         )
-        slenderness = float(np.sqrt(strength / (stress * one.factors[0])))
+        slenderness = float(np.sqrt(strength / (stress * result.factors[0])))
         reduction = float(min(reduction_factors(slenderness, 1.0, curve)))
         limit = reduction * strength / resistance.stability
-        yield _proof("buckling", one.segment, one.walls[0], stress, limit, one.x[0])
+        yield _proof("buckling", result.segment, result.walls[0], stress, limit, result.x[0])
 
 
 def _of_forces(states: States, rows: Rows, resistance: Resistance) -> Iterator[Row]:
@@ -176,8 +176,8 @@ def _of_forces(states: States, rows: Rows, resistance: Resistance) -> Iterator[R
             yield _proof("pad", row.part, row.place, row.value, limit, row.x)
     forces = rows.where(quantity="cylinder_force")
     for row, cylinder in zip(forces, states.boom.cylinders, strict=True):
-        if cylinder.capacity is not None:
-            limit = cylinder.capacity / resistance.cylinder
+        if cylinder.resistance is not None:
+            limit = cylinder.resistance / resistance.cylinder
             yield _proof("cylinder", row.part, "", row.value, limit)
         if cylinder.pin is not None:
             limit = cylinder.pin.resistance / resistance.pin

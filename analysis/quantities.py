@@ -62,8 +62,8 @@ _unswept = partial(Quantity, swept=False)
 
 #: quantities at places of the boom, by name
 MEASURED: Mapping[str, Quantity] = {
-    one.name: one
-    for one in (
+    quantity.name: quantity
+    for quantity in (
         Quantity(
             "tip", "m", "tip deflection", shown="mm",
             at_rest="static tip deflection (maximum load)",
@@ -120,8 +120,8 @@ MEASURED: Mapping[str, Quantity] = {
 
 #: design effects of proofs, by the kind of proof
 PROVED: Mapping[str, Quantity] = {
-    one.name: one
-    for one in (
+    quantity.name: quantity
+    for quantity in (
         Quantity("yield", "Pa", "static strength", shown="MPa"),
         Quantity("patch", "Pa", "local plate stress", shown="MPa"),
         Quantity("plate", "Pa", "plate buckling", shown="MPa"),
@@ -159,8 +159,8 @@ def declared_quantities(kind: type) -> dict[str, Quantity]:
 def records(kind: type) -> dict[str, type[Record]]:
     """Return, by field name, the :class:`Record` class of each field that may hold a record."""
     return {
-        name: one
+        name: record
         for name, hint in get_type_hints(kind).items()
-        for one in (get_args(hint) if isinstance(hint, UnionType) else ())
-        if issubclass(one, Record)
+        for record in (get_args(hint) if isinstance(hint, UnionType) else ())
+        if issubclass(record, Record)
     }

@@ -161,18 +161,18 @@ def extremes(
     Of equal extremes the first one counts.
     """
     rows: dict[tuple[str, str, str], Row] = {}
-    for one in measured:
-        if one.values.size == 0:
+    for measurement in measured:
+        if measurement.values.size == 0:
             continue
-        sign = -1.0 if MEASURED[one.quantity].lowest else 1.0
-        sizes = sign * np.abs(one.values)
+        sign = -1.0 if MEASURED[measurement.quantity].lowest else 1.0
+        sizes = sign * np.abs(measurement.values)
         at_least = sizes.max() - _ROUND_OFF * abs(sizes.max())
         step, column = np.unravel_index(int((sizes >= at_least).argmax()), sizes.shape)
-        x, y, z = (None if at is None else float(at[column]) for at in one.places)
+        x, y, z = (None if at is None else float(at[column]) for at in measurement.places)
         row = Row(
-            model, state, play, one.quantity, one.part, one.place,
-            float(one.values[step, column]), x, y, z,
-            None if one.time is None else float(one.time[step]), one.limit,
+            model, state, play, measurement.quantity, measurement.part, measurement.place,
+            float(measurement.values[step, column]), x, y, z,
+            None if measurement.time is None else float(measurement.time[step]), measurement.limit,
         )  # fmt: skip
         other = rows.setdefault(row.key, row)
         if sign * (abs(row.value) - abs(other.value)) > _ROUND_OFF * abs(other.value):

@@ -91,7 +91,7 @@ class States:
     def at_extremes(self) -> States:
         """The first state, and those with an extreme observer, contact or stress."""
         system = self.model.system
-        rows = [system.rows, *(one.row[None] for one in system.observers.values())]
+        rows = [system.rows, *(observer.row[None] for observer in system.observers.values())]
         curves = [self.positions @ np.vstack(rows).T]
         for number, (segment, line) in enumerate(
             zip(self.boom.segments, self.model.lines, strict=True)
@@ -99,7 +99,7 @@ class States:
             if (fibres := Fibres.of(segment, line)) is not None:
                 forces = self.section_forces(number)
                 stresses = (fibres.stress(fibre, forces) for fibre in range(len(fibres.z)))
-                curves += [np.abs(one).max(axis=1, keepdims=True) for one in stresses]
+                curves += [np.abs(stress).max(axis=1, keepdims=True) for stress in stresses]
         every = np.hstack(curves)
         return self.at(np.unique([0, *every.argmax(axis=0), *every.argmin(axis=0)]))
 

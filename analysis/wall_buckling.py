@@ -82,7 +82,7 @@ def buckle_shell(
     if comm.rank != 0:
         return None
     names = [segment.name for segment in boom.segments]
-    segments = [with_locations(name, one) for name, one in zip(names, results, strict=True)]
+    segments = [with_locations(name, result) for name, result in zip(names, results, strict=True)]
     return BuckledShell(segments, _first_shapes(results))
 
 
@@ -138,9 +138,9 @@ def with_locations(name: str, buckling: SegmentBuckling) -> WallBuckling:
 def _first_shapes(results: Sequence[SegmentBuckling]) -> xr.Dataset | None:
     """Return the first mode of each segment with a factor, as in :class:`BuckledShell`."""
     buckled = [
-        (number, one.mesh, one.shapes[0], one.factors[0])
-        for number, one in enumerate(results)
-        if one.factors.size and one.mesh is not None and one.shapes is not None
+        (number, result.mesh, result.shapes[0], result.factors[0])
+        for number, result in enumerate(results)
+        if result.factors.size and result.mesh is not None and result.shapes is not None
     ]
     if not buckled:
         return None

@@ -86,8 +86,8 @@ class BoomModes:
             first = columns.stop
             sizes = np.cumsum([len(component.load) for component in group.components])
             parts = np.split(modes.shapes, sizes[:-1])
-            for one, part in zip(group.parts, parts, strict=True):
-                self._shapes[one] = columns, part
+            for number, part in zip(group.parts, parts, strict=True):
+                self._shapes[number] = columns, part
             load = np.concatenate([c.load for c in group.components]) @ modes.shapes
             rates = block_diag(*(c.damping for c in group.components))
             damping = np.einsum("ki,kl,li->i", modes.shapes, rates, modes.shapes, optimize=True)
@@ -228,8 +228,8 @@ def _coupled_groups(
     connected += [((c.segment, "y"), (c.segment, "twist")) for c in boom.cylinders if c.spread]
     connected += between
     group_of = {part: number for number, part in enumerate(parts)}
-    for one, other in connected:
-        kept, lost = group_of[one], group_of[other]
+    for first, second in connected:
+        kept, lost = group_of[first], group_of[second]
         group_of = {part: kept if at == lost else at for part, at in group_of.items()}
     return [
         _CoupledGroup(boom, models, [part for part in parts if group_of[part] == name])
@@ -252,11 +252,12 @@ class _CoupledGroup:
         self._boom, self.parts = boom, parts
         self.components = [models[i].components[motion] for i, motion in parts]
         self.beams = [self._beam(number) for number in range(len(boom.segments))]
-        lines = ground_lines(boom, self.beams)
-        self.springs = [line for line in lines if line.stiffness > 0.0 and line.push.any()]
+        lines = [line for line in ground_lines(boom, self.beams) if line.push.any()]
+        self.springs = [line for line in lines if line.force]
+        # The springs of leads grow with the axial forces.
         self.geometric_stiffness = block_diag(
             *(component.geometric_stiffness for component in self.components)
-        )
+        ) - sum(line.stiffness * np.outer(line.push, line.push) for line in lines if not line.force)
 
     def _beam(self, segment: int) -> BeamSegment:
         def read(motion: Motion, rule: Rule) -> Array:
@@ -427,7 +428,7 @@ def _extensions_between(
     low, high = ends
     extensions = np.unique(np.clip(np.concatenate([ends, *passed]), low, high))
     near = SAME_PLACE * boom.length
-    inside = (one for one in extensions[1:-1] if low + near < one < high - near)
+    inside = (extension for extension in extensions[1:-1] if low + near < extension < high - near)
     kept = [low, *inside, high]
     apart = np.diff(kept, prepend=low - 1.0) > near
     return [extension for extension, keep in zip(kept, apart, strict=True) if keep]

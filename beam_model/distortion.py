@@ -105,7 +105,7 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
     places = [press.x for press in presses]
     section = segment.section_at(0.5 * (min(places) + max(places)))
     rigid = [support for support in segment.supports if support.stiffness is None]
-    closed = [*(one.x for one in segment.diaphragms), *(one.x for one in rigid)]
+    closed = [*(diaphragm.x for diaphragm in segment.diaphragms), *(support.x for support in rigid)]
     ends = np.clip([x for collar in segment.collars for x in collar.span], *segment.ends)
     cuts = np.unique([*segment.ends, *places, *closed, *ends])
     size = _LENGTH * min(section.size("y"), section.size("z"))
@@ -117,7 +117,9 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
     axis = HermiteAxis(np.unique(np.concatenate(pieces)), closed=False)
 
     def collars_at(x: float) -> tuple[Collar, ...]:
-        return tuple(one for one in segment.collars if abs(x - one.midpoint) < 0.5 * one.length)
+        return tuple(
+            collar for collar in segment.collars if abs(x - collar.midpoint) < 0.5 * collar.length
+        )
 
     around = [collars_at(x) for x in 0.5 * (axis.nodes[:-1] + axis.nodes[1:])]
     frames = {
@@ -131,7 +133,9 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
         lefts, rights = list[Array](), list[Array]()
         for collars in dict.fromkeys(around):
             frame = frames[collars]
-            lefts += axis.integrals(np.array([one == collars for one in around], dtype=float))[:3]
+            lefts += axis.integrals(
+                np.array([collars_there == collars for collars_there in around], dtype=float)
+            )[:3]
             rights += [frame.bending, frame.twisting, frame.warping]
         free = np.ones((axis.nodes.size, 2, rows[0].size // axis.nodes.size // 2), dtype=bool)
         for x in closed:
@@ -220,7 +224,7 @@ def _warping(section: Section, folds: Array, areas: Array) -> Array:
     start = np.roll(end, 1, axis=0)
     mean = areas @ (start + end) / (2.0 * areas.sum())
     start, end = start - mean, end - mean
-    products = ((one.T * areas) @ one for one in (start, end, start + end))
+    products = ((ends.T * areas) @ ends for ends in (start, end, start + end))
     return np.asarray(sum(products) / 6.0)
 
 

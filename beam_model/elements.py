@@ -33,7 +33,9 @@ def element(segment: Segment, theory: Theory, start: float, h: float) -> Element
     places = [segment]
     if segment.head_section is not None:
         places = [segment.prismatic_at(start + part * h) for part in (0.0, 0.5, 1.0)]
-    stiffnesses = [None if theory == "euler-bernoulli" else one.shear_stiffness for one in places]
+    stiffnesses = [
+        None if theory == "euler-bernoulli" else place.shear_stiffness for place in places
+    ]
     if segment.head_section is None:
         shear, bending = stiffnesses[0], segment.bending_stiffness
         return PrismaticElement(h, bending, 12.0 * bending / (shear * h**2) if shear else 0.0)
@@ -156,8 +158,12 @@ class TaperedElement:
 
     def _shapes(self, rigid: tuple[float | Array, ...], bent: _Pair, xi: Array) -> Array:
         """Return shape functions (4, num_points): rigid motion of the first node, plus bending."""
-        rigid_motion = np.array([np.broadcast_to(one, xi.shape) for one in (*rigid, 0.0, 0.0)])
-        return np.asarray(rigid_motion + self._moments.T @ np.array([one(xi) for one in bent]))
+        rigid_motion = np.array(
+            [np.broadcast_to(component, xi.shape) for component in (*rigid, 0.0, 0.0)]
+        )
+        return np.asarray(
+            rigid_motion + self._moments.T @ np.array([bending(xi) for bending in bent])
+        )
 
     @cached_property
     def _of_moments(self) -> tuple[_Pair, _Pair, _Pair]:

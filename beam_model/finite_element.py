@@ -96,7 +96,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
     stiffness, mass, damping = (np.zeros((num_dofs, num_dofs)) for _ in range(3))
     unit_load, rotation_load, inertia_load = np.zeros((3, num_dofs))
     lengths = np.diff(nodes).tolist()
-    elements = [element(segment, theory, *one) for one in zip(nodes, lengths, strict=False)]
+    elements = [element(segment, theory, *span) for span in zip(nodes, lengths, strict=False)]
     slopes, points = np.zeros((len(elements), _NUM_GAUSS, num_dofs)), list[Array]()
     for k, (here, h) in enumerate(zip(elements, lengths, strict=True)):
         dofs = slice(2 * k, 2 * k + 4)
@@ -211,7 +211,9 @@ def _nodes(segment: Segment, element_length: float, breaks: Sequence[float]) -> 
         (masses, _MASS_APART),
     ):
         for x in required:
-            if segment.holds(x) and all(abs(x - one) > apart * segment.length for one in places):
+            if segment.holds(x) and all(
+                abs(x - place) > apart * segment.length for place in places
+            ):
                 places.append(x)
     spans = [
         np.linspace(a, b, max(1, int(np.ceil((b - a) / element_length - SAME_PLACE))) + 1)[:-1]

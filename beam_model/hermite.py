@@ -29,7 +29,7 @@ def sum_of_products(lefts: Sequence[Array], rights: Sequence[Array], free: Array
     values = left[:, *of_left].T @ right[:, *of_right]
     number = np.where(free, np.cumsum(free) - 1, -1).reshape(left.shape[1], right.shape[1])
     row, column = (
-        number[one[:, None], other].ravel() for one, other in zip(of_left, of_right, strict=True)
+        number[left[:, None], other].ravel() for left, other in zip(of_left, of_right, strict=True)
     )
     kept = (row >= 0) & (column >= 0)
     shape = (np.count_nonzero(free),) * 2

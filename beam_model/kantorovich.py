@@ -266,7 +266,7 @@ class _SegmentBasis:
         nodes, weights = np.polynomial.legendre.leggauss(degree + 1 + tapering)
         self.x = segment.start + 0.5 * segment.length * (nodes + 1.0)
         self.weights = 0.5 * segment.length * weights
-        slopes, curvatures = ([one.deriv(order) for one in functions] for order in (1, 2))
+        slopes, curvatures = ([function.deriv(order) for function in functions] for order in (1, 2))
         self._derived = functions, slopes, curvatures
         self.value, self.slope, self.curvature = (
             np.array([function(self.x) for function in derived]) for derived in self._derived

@@ -115,7 +115,7 @@ class Elements:
     def _kind(self) -> tuple[float, Theory]:
         """The element length in m, smaller with axial forces or tapers, and the theory."""
         segments, count = self.boom.segments, self.count
-        if self.boom.compressed or any(one.head_section is not None for one in segments):
+        if self.boom.compressed or any(segment.head_section is not None for segment in segments):
             count = max(count, ELEMENTS_WITH_AXIAL_FORCE)
         longest = max(segment.length for segment in segments) / count
         return longest, static_theory(self.boom)

@@ -28,7 +28,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.compression import NO_COMPRESSION
-from protractile.geometry.contact_places import Pad, pads
+from protractile.geometry.contact_places import ContactPair, pads
 from protractile.geometry.material import Material
 from protractile.geometry.section import EACH_SIDE, Direction, Section, Side
 from protractile.geometry.segment import Segment
@@ -99,7 +99,7 @@ def contact_compliance(boom: Boom) -> Array:
     # Vertical and lateral pads at one x belong together: flanges that bend make webs bulge.
     places = [pad.patch and (pad.station.number, pad.station.place) for pad, _ in rows]
     for place in {*places} - {None}:
-        at = [i for i, one in enumerate(places) if one == place]
+        at = [i for i, known in enumerate(places) if known == place]
         joint = rows[at[0]][0].joint
         inner = unloaded[joint.inner]
         areas = tuple(_pad_area(*rows[i], inner) for i in at)
@@ -147,7 +147,7 @@ def station_compliance(
     return StationCompliance(places, np.linalg.inv(together))
 
 
-def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
+def _contact_rows(boom: Boom) -> list[tuple[ContactPair, Side]]:
     """Return the pad and the side of each contact of the joints."""
     return [
         (pad, side)
@@ -157,7 +157,7 @@ def _contact_rows(boom: Boom) -> list[tuple[Pad, Side]]:
     ]
 
 
-def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
+def _pad_area(pad: ContactPair, side: Side, inner: Segment) -> PressedArea:
     """Return the area of a pad, or of a symmetric pair of pads in a planar boom."""
     assert pad.patch is not None
     near, far = pad.patch.across(inner.section_at(pad.station.x).face(pad.station.direction, side))
@@ -166,7 +166,7 @@ def _pad_area(pad: Pad, side: Side, inner: Segment) -> PressedArea:
     return PressedArea(pad.patch.start, pad.patch.end, pad.station.direction, side, spans)
 
 
-def _press(pad: Pad, side: Side, members: tuple[Segment, Segment], member: int) -> Press:
+def _press(pad: ContactPair, side: Side, members: tuple[Segment, Segment], member: int) -> Press:
     """Return the force of a contact on the inner (0) or the outer segment (1) of its joint."""
     if pad.patch is not None:
         area = _pad_area(pad, side, members[0])
@@ -214,7 +214,7 @@ def wall_compliance(segment: Segment, areas: tuple[PressedArea, ...]) -> Array:
     edges = np.concatenate([folds, *cuts_around])
     around = HermiteAxis(_nodes_around(edges, folds, length, section.near), closed=True)
 
-    closed_at = [one.x for one in segment.diaphragms if low < one.x < high]
+    closed_at = [diaphragm.x for diaphragm in segment.diaphragms if low < diaphragm.x < high]
     pad_ends = [x for area in areas for x in (area.start, area.end)]
     collar_ends = [x for collar in segment.collars for x in collar.span if low < x < high]
     cuts = np.unique([low, high, *pad_ends, *closed_at, *collar_ends])

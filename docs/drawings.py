@@ -262,7 +262,7 @@ def sections(folder: Path) -> set[str]:
 def draw(folder: Path = FOLDER) -> set[str]:
     """Write all drawings, and return the keys that they show."""
     folder.mkdir(exist_ok=True)
-    return set().union(*(one(folder) for one in (boom, station, pads, cylinder, sections)))
+    return set().union(*(draw(folder) for draw in (boom, station, pads, cylinder, sections)))
 
 
 if __name__ == "__main__":

@@ -53,13 +53,13 @@ def _type(entry: dict[str, Any]) -> str:
         return f"[{_kind(name) or 'table'}](#{name.lower()})"
     for choice in ("anyOf", "oneOf"):
         if choice in entry:
-            if any(one.get("$ref", "").endswith("/Distance") for one in entry[choice]):
+            if any(option.get("$ref", "").endswith("/Distance") for option in entry[choice]):
                 return "[place](#places)"
-            types = [_type(one) for one in entry[choice] if one.get("type") != "null"]
+            types = [_type(option) for option in entry[choice] if option.get("type") != "null"]
             return " or ".join(dict.fromkeys(types))
     if entry.get("type") == "array":
         if "prefixItems" in entry:
-            return f"[{', '.join(_type(one) for one in entry['prefixItems'])}]"
+            return f"[{', '.join(_type(item) for item in entry['prefixItems'])}]"
         return f"list of {_type(entry['items'])}" if "items" in entry else "list"
     if entry.get("type") == "object":
         return f"table of {_type(entry['additionalProperties'])}"

@@ -95,7 +95,7 @@ class ContactLaw(ABC):
     def one_sided(self, side: int) -> Gap | None:
         """Return the law on one side, 1 or −1, only; None without contact on this side."""
         part = self.with_clearance(0.0)
-        part = replace(part, sides=tuple(one for one in part.sides if one == side))
+        part = replace(part, sides=tuple(kept for kept in part.sides if kept == side))
         return part if part.terms else None
 
     def with_weight(self, weight: float) -> Gap:

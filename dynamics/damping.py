@@ -108,14 +108,14 @@ def _touching(system: GapSystem, rows: list[int], force: Array) -> Array:
         side: np.array([_first_slope(system.laws[row], side) for row in rows])
         for side in (1.0, -1.0)
     }
-    side = max(slopes, key=lambda one: float(force[rows] @ (slopes[one] > 0.0)))
+    side = max(slopes, key=lambda candidate: float(force[rows] @ (slopes[candidate] > 0.0)))
     return slopes[side]
 
 
 def _first_slope(law: ContactLaw, side: float) -> float:
     """Return dF/dy in N/m where contact begins on a side; 0 for powers above 1."""
-    terms = [one for one in law.terms if one.side == side and one.onset == law.onset(side)]
-    return sum(one.stiffness for one in terms if one.exponent == 1.0)
+    terms = [term for term in law.terms if term.side == side and term.onset == law.onset(side)]
+    return sum(term.stiffness for term in terms if term.exponent == 1.0)
 
 
 def with_modal_damping(system: GapSystem, ratio: float, rest: Array | None = None) -> GapSystem:

@@ -183,7 +183,11 @@ def _minimum(
 
         return slope
 
-    x = min(np.zeros(load.size), start, key=lambda one: float(np.linalg.norm(unbalanced(one))))
+    x = min(
+        np.zeros(load.size),
+        start,
+        key=lambda candidate: float(np.linalg.norm(unbalanced(candidate))),
+    )
     for _ in range(_MOST_STEPS):
         force = unbalanced(x)
         if np.linalg.norm(force) < _AIM:

@@ -62,9 +62,9 @@ class FrameMotion:
         They are m r a_y about the slewing axis, and m ξ (a_z + g cos α) about the foot. The other
         arguments are as in :meth:`accelerations`.
         """
-        _, aside, across = self.accelerations(time, x, extension)
+        _, lateral, across = self.accelerations(time, x, extension)
         along, luffed = x - self.foot + extension(time), np.cos(self.luff_angle(time))
-        slewing = (self.radius + along * luffed) * aside
+        slewing = (self.radius + along * luffed) * lateral
         return mass * np.array([slewing, along * (across + self.gravity * luffed)])
 
     def accelerations(self, time: Array, x: float, extension: MotionLaw) -> Array:
@@ -162,10 +162,10 @@ class PathAcceleration(FrameAcceleration):
     """
 
     def __call__(self, time: Array) -> Array:
-        along, aside, across = self.frame.accelerations(time, self.x or 0.0, self.extension)
+        along, lateral, across = self.frame.accelerations(time, self.x or 0.0, self.extension)
         luffed, slewed = self.frame.luff_angle(time), self.frame.slew_angle(time)
         if self.direction == "z":
             return np.asarray(along * np.sin(luffed) + across * np.cos(luffed))
         out = along * np.cos(luffed) - across * np.sin(luffed)
-        first, second = (out, -aside) if self.direction == "x" else (aside, out)
+        first, second = (out, -lateral) if self.direction == "x" else (lateral, out)
         return np.asarray(first * np.cos(slewed) + second * np.sin(slewed))

@@ -155,8 +155,8 @@ class GapBuilder(Generic[R]):
         return [
             (kind, position)
             for kind, of_kind in self.rows.items()
-            for position, one in enumerate(of_kind)
-            if one.station in stations
+            for position, row in enumerate(of_kind)
+            if row.station in stations
         ]
 
     def evaluate_rows(
@@ -199,8 +199,8 @@ class GapBuilder(Generic[R]):
             return sum(pushes, np.zeros(omega2.size))
 
         observers = {
-            name: Observer(read(one.operator), one.unit, one.derivative)
-            for name, one in observed.items()
+            name: Observer(read(observer.operator), observer.unit, observer.derivative)
+            for name, observer in observed.items()
         }
         observers |= {name: Observer(-k * row, "N") for name, row, k, _ in lines if name}
         return GapSystem(

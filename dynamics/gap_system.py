@@ -133,7 +133,9 @@ class GapSystem:
         }
         arrays = [(name, getattr(self, name), shape) for name, shape in shapes.items()]
         arrays += [(f"excitation {e}", x.load, (n,)) for e, x in enumerate(self.excitations)]
-        arrays += [(f"observer {name!r}", one.row, (n,)) for name, one in self.observers.items()]
+        arrays += [
+            (f"observer {name!r}", observer.row, (n,)) for name, observer in self.observers.items()
+        ]
         for name, array, shape in arrays:
             if array.shape != shape:
                 raise ValueError(f"{name} must have the shape {shape}, got {array.shape}")
@@ -145,7 +147,9 @@ class GapSystem:
         if any(not 0 <= friction.station < places for friction in self.frictions):
             raise ValueError("the station of a friction must be a position in stations")
         coefficients: dict[int, float] = {}
-        for station, given in ((one.station, one.coefficient) for one in self.frictions):
+        for station, given in (
+            (friction.station, friction.coefficient) for friction in self.frictions
+        ):
             if self.travels and coefficients.setdefault(station, given) != given:
                 raise ValueError(
                     "the frictions of a station that may telescope must have one coefficient, got "

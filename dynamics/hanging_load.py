@@ -154,8 +154,8 @@ class HangingLoad:
             x: position of the tip in m.
         """
         dimensions = self._coordinates(system.observers)
-        aside = system.observers.get("tip_lateral")
-        lateral = np.zeros(tip.shape) if aside is None else aside.row
+        observer = system.observers.get("tip_lateral")
+        lateral = np.zeros(tip.shape) if observer is None else observer.row
         coordinates = np.eye(dimensions, system.num_modes + dimensions, system.num_modes) / np.sqrt(
             self.mass
         )
@@ -241,10 +241,10 @@ class HangingLoad:
             slewed = self.pendulum.frame.slew_angle(motion.time)
             # The gaps of the springs: the position of the tip relative to the load, in fixed axes.
             gaps = -motion.data["gap"].values.T[num_stations + 1 :]
-            one, other = gaps if len(gaps) == 2 else (gaps[0], np.zeros(slewed.shape))
-            swings = {"swing_out": np.cos(slewed) * one + np.sin(slewed) * other}
+            along_x, along_y = gaps if len(gaps) == 2 else (gaps[0], np.zeros(slewed.shape))
+            swings = {"swing_out": np.cos(slewed) * along_x + np.sin(slewed) * along_y}
             if len(gaps) == 2:
-                swings["swing_aside"] = np.cos(slewed) * other - np.sin(slewed) * one
+                swings["swing_aside"] = np.cos(slewed) * along_y - np.sin(slewed) * along_x
             for name, values in swings.items():
                 data[name] = "time", values, {"units": "m", "length": self.pendulum.length}
         return Trajectory(data, motion.states)

@@ -201,8 +201,8 @@ def integrate_ensemble(
     stations = slice(first.sizes.get("station"))
     runs = [first]
     runs += [
-        one.isel(station=stations, missing_dims="ignore")
-        for one in run_members(others, executor, progress)
+        member.isel(station=stations, missing_dims="ignore")
+        for member in run_members(others, executor, progress)
     ]
     ensemble = xr.concat(runs, "member", combine_attrs="drop_conflicts")
     ensemble.attrs = {
@@ -342,20 +342,20 @@ def measure_horizons(
     integrator = integrator or AdaptiveStep()
     unchanged = integrator(motion) if unchanged is None else unchanged
     sizes = np.sort(np.asarray(relatives, dtype=float))
-    one = EnsembleMember(motion, vary, 0.0, integrator.like(unchanged), (observer,))
+    member = EnsembleMember(motion, vary, 0.0, integrator.like(unchanged), (observer,))
     number = np.arange(partners)
     parts = (-1.0) ** number * (1.0 - 0.5 * number / partners)
     *smaller, largest = [
-        [replace(one, change=float(change)) for change in size * parts] for size in sizes
+        [replace(member, change=float(change)) for change in size * parts] for size in sizes
     ]
-    finer = [replace(one, integrator=one.integrator.finer())]
+    finer = [replace(member, integrator=member.integrator.finer())]
     whole, time = unchanged.data[observer].values, unchanged.time
 
     def measure(groups: Sequence[Sequence[EnsembleMember]], done: float) -> Array:
         def run(members: Sequence[EnsembleMember], stage: int) -> Iterator[Array]:
             before = done + stage * _STAGE
             runs = run_members(members, executor, lambda part: progress(before + _STAGE * part))
-            return (one[observer].values for one in runs)
+            return (run[observer].values for run in runs)
 
         return _horizons_of(groups, shares, whole, time, run)
 

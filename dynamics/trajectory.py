@@ -93,12 +93,12 @@ class PointwiseDifferences:
 
     @classmethod
     def from_curves(
-        cls, one: Array, other: Array, time: Array, until: float
+        cls, first: Array, second: Array, time: Array, until: float
     ) -> PointwiseDifferences:
         """Return the differences of two curves (num_times,) up to ``until``; times are in s."""
         before = time <= until
-        apart = np.abs(one - other)[before]
-        scale = max(np.ptp(one[before]), np.ptp(other[before]))
+        apart = np.abs(first - second)[before]
+        scale = max(np.ptp(first[before]), np.ptp(second[before]))
         largest, rms = float(apart.max()), float(np.sqrt(np.mean(apart**2)))
         return cls(until, largest / scale if scale else largest, rms / scale if scale else rms)
 
@@ -291,9 +291,9 @@ class Trajectory:
             raise ValueError("the motions must have the same times")
         if not (isinstance(until, Real) and until > self.time[0]):
             raise ValueError(f"until must be after the first time, got {until!r} s")
-        one, two = (motion._values(name) for motion in (self, other))
+        first, second = (motion._values(name) for motion in (self, other))
         return PointwiseDifferences.from_curves(
-            one, two, self.time, float(min(until, self.time[-1]))
+            first, second, self.time, float(min(until, self.time[-1]))
         )
 
     def _values(self, name: str) -> Array:

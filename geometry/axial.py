@@ -56,6 +56,33 @@ class Thrust:
     """the force in N"""
 
 
+@part
+class Lead:
+    """Force of the rope from the head back to the winch, which stands on the axis of the boom.
+
+    The rope points to the winch as the boom deflects. Second-order work of its force S over the
+    distance ℓ to the winch is that of an axial force and of a spring S/ℓ across the axis
+    (Timoshenko and Gere 1961, article 2.6: a force through a fixed point).
+
+    >>> pt.Lead(segment=1, x=14.0, force=28e3).stiffness
+    2000.0
+    """
+
+    segment: SegmentRef
+    """the name of the segment with the head"""
+    x: Place
+    """the x in m of the head"""
+    force: Annotated[Number, In("N")]
+    """the force in N"""
+    winch: Annotated[Number, In("m")] = 0.0
+    """the x in m of the winch, at or behind the foot, where nothing deflects"""
+
+    @property
+    def stiffness(self) -> float:
+        """The stiffness S/ℓ in N/m across the axis."""
+        return self.force / (self.x - self.winch)
+
+
 def with_compression(
     segments: Sequence[Segment],
     joints: Sequence[Joint],
@@ -201,8 +228,9 @@ def moving_force_places(
 class AxialChange:
     """Change of the stiffness over time, due to axial and centrifugal forces.
 
-    The strain energy decreases by ½ g_e (∫ P w′² dx + Σ m w²). Here g_e is the value of the
-    history, P the axial force, m a point mass and w its deflection.
+    The strain energy decreases by ½ g_e (∫ P w′² dx + Σ m w² − Σ k w²). Here g_e is the value of
+    the history, P the axial force, m a point mass, k the stiffness of a lead and w the deflection
+    of mass or head.
     """
 
     history: Any  #: factor g_e over time, see :mod:`.dynamics.excitation`
@@ -211,6 +239,7 @@ class AxialChange:
     #: point masses m of each segment in kg; none unless given
     masses: Sequence[Sequence[PointMass]] = ()
     direction: Direction = "z"  #: direction of the deflection w of the masses
+    leads: Sequence[Lead] = ()  #: ropes from the head to a winch, with indices of segments
 
     @property
     def times(self) -> Array:
@@ -240,6 +269,10 @@ class AxialChange:
                 if self.masses and direction == self.direction:
                     values = spline([mass.x for mass in self.masses[number]])
                     total = total + (values.T * [m.mass for m in self.masses[number]]) @ values
+                for lead in self.leads:
+                    if lead.segment == number:
+                        head = spline(lead.x)
+                        total = total - lead.stiffness * np.outer(head, head)
         return total
 
 
@@ -247,7 +280,9 @@ def largest_change(changes: Sequence[AxialChange]) -> Array:
     """Return the factors (num_changes,) of the histories when the foot's compression is largest."""
     times = np.unique(np.concatenate([np.zeros(1), *(change.times for change in changes)]))
     factors = np.array([change.history(times) for change in changes])
-    compressions = [one.compressions[0].transferred if one.compressions else 0.0 for one in changes]
+    compressions = [
+        change.compressions[0].transferred if change.compressions else 0.0 for change in changes
+    ]
     return np.asarray(factors[:, (np.array(compressions) @ factors).argmax()])
 
 
@@ -265,7 +300,7 @@ def lumped_masses(segment: Segment) -> tuple[PointMass, ...]:
     x, length = 0.5 * (ends[1:] + ends[:-1]), segment.length / _LUMPS
     ratio = segment.property_ratio(attrgetter("mass_per_length"), x)
     masses = segment.mass_per_length * length * ratio
-    lumps = (PointMass(*one) for one in zip(x.tolist(), masses.tolist(), strict=True))
+    lumps = (PointMass(*lump) for lump in zip(x.tolist(), masses.tolist(), strict=True))
     return (*lumps, *segment.all_masses)
 
 
@@ -310,12 +345,18 @@ def _weights(
         spread = [(a, b, density * mean_area(tail, head) * gravity) for a, b, tail, head in ends]
     if segment.section is not None:
         points += [
-            (one.x, density * gravity * segment.section_at(one.x).enclosed_area * one.thickness)
-            for one in segment.diaphragms
+            (
+                diaphragm.x,
+                density
+                * gravity
+                * segment.section_at(diaphragm.x).enclosed_area
+                * diaphragm.thickness,
+            )
+            for diaphragm in segment.diaphragms
         ]
         spread += [
-            (*one.span, density * gravity * segment.mean_width(one) * one.thickness)
-            for one in segment.collars
+            (*collar.span, density * gravity * segment.mean_width(collar) * collar.thickness)
+            for collar in segment.collars
         ]
     return points, spread
 

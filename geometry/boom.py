@@ -10,11 +10,11 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from protractile.geometry.axial import AxialChange, moving_force_places
+from protractile.geometry.axial import AxialChange, Lead, moving_force_places
 from protractile.geometry.boom_checks import check_boom
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import BoomError, check_kind, format_value
-from protractile.geometry.joint import Joint, PadSize, SlidePad, Stop
+from protractile.geometry.joint import Joint, Pad, SlidePad, Stop
 from protractile.geometry.load import Load
 from protractile.geometry.material import Material
 from protractile.geometry.observation import Observation, Quantity
@@ -39,7 +39,7 @@ __all__ = [
     "Load",
     "Material",
     "Observation",
-    "PadSize",
+    "Pad",
     "PointMass",
     "Segment",
     "SlidePad",
@@ -57,6 +57,7 @@ _KINDS: Mapping[str, type] = {
     "observations": Observation,
     "cylinders": Cylinder,
     "axial_changes": AxialChange,
+    "leads": Lead,
 }
 
 
@@ -98,6 +99,7 @@ class Boom:
     observations: Sequence[Observation] = ()
     cylinders: Sequence[Cylinder] = ()
     axial_changes: Sequence[AxialChange] = ()
+    leads: Sequence[Lead] = ()
 
     def __post_init__(self) -> None:
         for group, kind in _KINDS.items():
@@ -174,7 +176,9 @@ class Boom:
             for joint in loose
             for number in (joint.outer, joint.inner)
         ]
-        if any(one is not None and len(one.faces) < len(one.plates) for one in sections):
+        if any(
+            section is not None and len(section.faces) < len(section.plates) for section in sections
+        ):
             return "sections under pads" if any(j.padded for j in loose) else "sections at stations"
         on_walls = any(
             pad is not None and pad.bears == "wall"
@@ -239,7 +243,15 @@ class Boom:
 
     def observed_places(self, segment: int) -> tuple[float, ...]:
         """Return ascending x in m of the requested outputs of a segment."""
-        return tuple(sorted({one.x for one in self.observations if one.segment == segment}))
+        return tuple(
+            sorted(
+                {
+                    observation.x
+                    for observation in self.observations
+                    if observation.segment == segment
+                }
+            )
+        )
 
     def overlap(self, joint: Joint) -> tuple[float, float]:
         """Return both ends in m of the overlap of a joint's segments."""

@@ -9,7 +9,7 @@ for the outermost segment, and the clearance within the next larger section for 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, dataclass, fields, replace
 
 import numpy as np
 from numpy.polynomial import Polynomial
@@ -129,6 +129,10 @@ class BoxSection(Section):
     def turned(self) -> BoxSection:
         (top, bottom), (right, left) = self._walls
         return BoxSection(self.width, self.height, right, top, left, bottom)
+
+    def within_outline(self) -> BoxSection:
+        flange, web = (0.5 * sum(pair) for pair in self._walls)
+        return replace(self, height=self.height - flange, width=self.width - web)
 
     @property
     def plates(self) -> tuple[Plate, ...]:

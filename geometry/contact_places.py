@@ -87,7 +87,7 @@ class ContactInterval:
 
 
 @dataclass(frozen=True, slots=True)
-class Pad:
+class ContactPair:
     """Contact pair: a point of the inner segment and a point of the outer segment of a joint.
 
     Args:
@@ -156,7 +156,7 @@ class Pad:
         on_outer = extension if carrier == "inner" else 0.0
         return on_outer, -extension if carrier == "outer" else 0.0
 
-    def at_extension(self, boom: Boom, extension: float) -> Pad:
+    def at_extension(self, boom: Boom, extension: float) -> ContactPair:
         """Return the pad at an ``extension`` of the joint in m."""
         on_outer, on_inner = self.travels(extension)
         inner, outer = (
@@ -178,12 +178,12 @@ class Pad:
         return (a + step[0], b + step[1]), (c + step[0], d + step[1])
 
 
-def pads(boom: Boom) -> list[Pad]:
+def pads(boom: Boom) -> list[ContactPair]:
     """Return the pads of all joints that are not bonded, in the order of stations.
 
     The weights of each side of a station sum to one.
     """
-    pairs: list[Pad] = []
+    pairs: list[ContactPair] = []
     for station in boom.stations:
         joint, x, direction = station.joint, station.x, station.direction
         if joint is None:
@@ -207,7 +207,7 @@ def pads(boom: Boom) -> list[Pad]:
                         patch = Patch(*span, size.offset, size.width)
                     else:
                         intervals = (ContactInterval(*span, 0.5 * sum(span)),) * 2
-                pad = Pad(
+                pad = ContactPair(
                     station=station,
                     joint=joint,
                     side=side,

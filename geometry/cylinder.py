@@ -5,7 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from math import cos, hypot, isfinite, sin
+from math import cos, hypot, isfinite, pi, sin
 from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
 
 import numpy as np
@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     from protractile.geometry.boom import Boom
 
 
+# Young's modulus in Pa of the rod, of steel, and fraction of a length that is rounded in drawings.
+_ROD_MODULUS, _REACH = 2.1e11, 1.0e-6
+
+
 @part
 class EarthPoint:
     """A point in earth axes, from the pin of the foot about which the boom luffs."""
@@ -50,7 +54,7 @@ def _ground(value: Any) -> Any:
     earth = isinstance(value, Mapping)
     if earth or isinstance(value, list | tuple):
         numbers = list(value.values() if earth else value)
-        finite = all(is_number(one) and isfinite(one) for one in numbers)
+        finite = all(is_number(number) and isfinite(number) for number in numbers)
         if finite and (value.keys() == {"front", "below"} if earth else len(numbers) == 2):
             return EarthPoint(**value) if earth else tuple(map(float, numbers))
     raise PydanticCustomError("ground", "a point of the ground")
@@ -97,15 +101,29 @@ class Cylinder:
     """the other end in m, which does not luff: { front, below }, its distances in front of and
     below the foot pin in earth axes; or [x, height above the axis] in the axes of the boom at the
     luffing angle gravity.angle of the case"""
-    stiffness: Annotated[Positive, In("N/m")] = field(kw_only=True)
-    """the axial stiffness in N/m; of two cylinders side by side their sum"""
+    stiffness: Annotated[Positive, In("N/m")] | None = field(default=None, kw_only=True)
+    """the axial stiffness in N/m, of two cylinders side by side their sum; unless given, that of
+    oil column and rod by bore, rod, closed and open"""
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
     """the linear axial dashpot in N s/m; of two cylinders their sum"""
     spread: Annotated[NotNegative, In("m")] = 0.0
     """the lateral distance in m of two cylinders side by side, for a boom in space; unless given,
     one cylinder is in the middle"""
     capacity: Annotated[Positive, In("N")] | None = None
-    """the characteristic resistance in N to its force, for proofs; of two cylinders their sum"""
+    """the characteristic resistance in N to its force, for proofs; of two cylinders their sum;
+    unless given, the smaller one of pressure times area of the bore and of the buckling force"""
+    closed: Annotated[Positive, In("m")] | None = None
+    """the length in m from pin to pin of the retracted cylinder"""
+    open: Annotated[Positive, In("m")] | None = None
+    """the length in m from pin to pin of the extended cylinder"""
+    bore: Annotated[Positive, In("m")] | None = None
+    """the diameter in m of the piston"""
+    rod: Annotated[Positive, In("m")] | None = None
+    """the diameter in m of the rod"""
+    pressure: Annotated[Positive, In("Pa")] | None = None
+    """the largest permitted oil pressure in Pa"""
+    oil_modulus: Annotated[Positive, In("Pa")] = 1.4e9
+    """the bulk modulus in Pa of the oil with its hoses; 1.4e9 unless given, for oil without air"""
     pin: Pin | None = None
     """the table of the pin of its lug, for proofs"""
 
@@ -121,6 +139,59 @@ class Cylinder:
             (self.x - self.ground[0]) / self.length,
             (-self.depth - self.ground[1]) / self.length,
         )
+
+    @property
+    def count(self) -> int:
+        """The number of cylinders side by side."""
+        return 2 if self.spread > 0.0 else 1
+
+    @property
+    def stroke(self) -> float | None:
+        """The length in m by which the cylinder is extended; None without ``closed``."""
+        return None if self.closed is None else self.length - self.closed
+
+    @property
+    def piston_area(self) -> float | None:
+        """The area in m² of the pistons of all cylinders; None without ``bore``."""
+        return None if self.bore is None else 0.25 * pi * self.bore**2 * self.count
+
+    @property
+    def axial_stiffness(self) -> float:
+        """The axial stiffness in N/m: ``stiffness``, or that of oil column and rod in series.
+
+        The oil column is as long as the stroke, and the rod as the closed cylinder. Barrel and
+        hoses are rigid.
+        """
+        if self.stiffness is not None:
+            return self.stiffness
+        assert self.piston_area is not None
+        assert self.rod is not None
+        assert self.closed is not None
+        rods = 0.25 * pi * self.rod**2 * self.count
+        column = max(self.length - self.closed, 0.0) / (self.oil_modulus * self.piston_area)
+        return 1.0 / (column + self.closed / (_ROD_MODULUS * rods))
+
+    @property
+    def buckling_force(self) -> float | None:
+        """Euler's force in N of the rod, hinged at both pins; None without ``rod``.
+
+        It is the simplest case of ISO/TS 13725 on the safe side: the rod over the whole length,
+        without the stiffer barrel, and without eccentricities, to be covered by
+        ``resistance.cylinder``.
+        """
+        if self.rod is None:
+            return None
+        second_moment = pi * self.rod**4 / 64.0
+        return self.count * pi**2 * _ROD_MODULUS * second_moment / self.length**2
+
+    @property
+    def resistance(self) -> float | None:
+        """The characteristic resistance in N: ``capacity``, or by pressure and buckling."""
+        if self.capacity is not None:
+            return self.capacity
+        by_pressure = self.pressure and self.piston_area and self.pressure * self.piston_area
+        known = [force for force in (by_pressure, self.buckling_force) if force is not None]
+        return min(known, default=None)
 
     def arm(self, foot: Support) -> float:
         """Return the lever arm in m of the cylinder force about the pin of a foot."""
@@ -173,8 +244,8 @@ class Cylinder:
             spatial: whether the boom is three-dimensional.
 
         Raises:
-            BoomError: the cylinder has no length, its ground is in earth axes, or a flat boom has
-                two side by side.
+            BoomError: the cylinder has no length or stiffness, its ground is in earth axes, it does
+                not reach, or a flat boom has two side by side.
         """
         if isinstance(self.ground, EarthPoint):
             raise BoomError(
@@ -184,6 +255,19 @@ class Cylinder:
             raise BoomError(
                 f"{where}.ground", "must be another point than the lug; give x and z in m"
             )
+        if self.stiffness is None:
+            for key in ("bore", "rod", "closed"):
+                if getattr(self, key) is None:
+                    what = "missing; the stiffness needs it beside bore, rod and closed, or give it"
+                    raise BoomError(f"{where}.{key}", what)
+        for key, sign in (("closed", 1.0), ("open", -1.0)):
+            end = getattr(self, key)
+            if end is not None and sign * (self.length - end) < -_REACH * end:
+                raise BoomError(
+                    f"{where}.{key}",
+                    f"{end:g} m, and from ground to lug it is {self.length:.4g} m: the cylinder "
+                    "does not reach; change it, the ground or the luffing angle",
+                )
         if self.spread > 0.0 and not spatial:
             raise BoomError(
                 f"{where}.spread",
@@ -237,11 +321,11 @@ def force_name(number: int) -> str:
 def forces(boom: Boom) -> dict[str, str]:
     """Return the descriptions of the cylinders' spring forces, by their names in results."""
     observations = {}
-    for number, one in enumerate(boom.cylinders, start=1):
+    for number, cylinder in enumerate(boom.cylinders, start=1):
         name = force_name(number)
-        where = f"at x = {one.x:g} m of {boom.segments[one.segment].name!r}"
+        where = f"at x = {cylinder.x:g} m of {boom.segments[cylinder.segment].name!r}"
         observations[name] = f"spring force of the cylinder {where}, positive in compression"
-        if one.spread > 0.0:
+        if cylinder.spread > 0.0:
             observations[name.replace("force", "force_difference")] = (
                 f"spring force of the cylinder at positive y {where}, less the force of the other"
             )
@@ -249,11 +333,19 @@ def forces(boom: Boom) -> dict[str, str]:
 
 
 def ground_lines(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[GroundLine]:
-    """Yield springs and dashpots of cylinders, then dashpots of supports."""
+    """Yield springs and dashpots of cylinders, springs of leads, and dashpots of supports."""
     names = iter(forces(boom))
-    for one in boom.cylinders:
-        for push in one.load_vectors(bodies[one.segment], boom.segments[one.segment].foot):
-            yield GroundLine(one.segment, push, one.stiffness, one.dashpot, next(names))
+    for cylinder in boom.cylinders:
+        for push in cylinder.load_vectors(
+            bodies[cylinder.segment], boom.segments[cylinder.segment].foot
+        ):
+            yield GroundLine(
+                cylinder.segment, push, cylinder.axial_stiffness, cylinder.dashpot, next(names)
+            )
+    for lead in boom.leads:
+        for direction in boom.directions:
+            push = bodies[lead.segment].unit_load_vector(lead.x, direction)
+            yield GroundLine(lead.segment, push, lead.stiffness, 0.0)
     for number, segment in enumerate(boom.segments):
         for support in segment.supports:
             if support.dashpot > 0.0:

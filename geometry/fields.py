@@ -208,10 +208,12 @@ _FIRST = (*UNKNOWN, "missing", "unexpected_positional_argument")
 def error_in_python(table: Any, error: ValidationError) -> BoomError:
     """Return the most informative error of a part that is made in Python."""
     faults = error.errors(include_url=False)
-    fault = min(faults, key=lambda one: (*_FIRST, one["type"]).index(one["type"]))
+    fault = min(faults, key=lambda fault: (*_FIRST, fault["type"]).index(fault["type"]))
     kind, steps, limits = fault["type"], list(fault["loc"]), fault.get("ctx", {})
     by_position = [
-        one.name for one in getattr(table, "__dataclass_fields__", {}).values() if not one.kw_only
+        attribute.name
+        for attribute in getattr(table, "__dataclass_fields__", {}).values()
+        if not attribute.kw_only
     ]
     if kind == "unexpected_positional_argument":
         what = f"takes {len(by_position)} values by position, {', '.join(by_position)}"

@@ -8,7 +8,7 @@ from itertools import combinations, product
 from typing import TYPE_CHECKING
 
 from protractile.geometry.fields import BoomError
-from protractile.geometry.joint import SIDES, Joint, PadSize, SlidePad
+from protractile.geometry.joint import SIDES, Joint, Pad, SlidePad
 from protractile.geometry.section import Direction, Side
 from protractile.geometry.segment import SAME_PLACE, Segment
 from protractile.geometry.typography import TO_MILLI
@@ -120,7 +120,8 @@ def check_contact_faces(
         if around is None or around.section is None:
             continue
         faces = [
-            [one.section_at(x).face(*sides).width for one in (around, segment)] for x in places
+            [member.section_at(x).face(*sides).width for member in (around, segment)]
+            for x in places
         ]
         free, width = min(faces, key=lambda pair: pair[0] - pair[1])
         if width > free:
@@ -152,8 +153,8 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
         pads = [pad for pad in joint.pads if pad.side == side]
         if joint.pads and not pads and direction in boom.directions:
             raise BoomError(f"{where}.pads", f"none is {side}; give each side one at least")
-        for one, other in combinations(pads, 2):
-            near, far = sorted((one, other), key=lambda pad: pad.offset)
+        for first, second in combinations(pads, 2):
+            near, far = sorted((first, second), key=lambda pad: pad.offset)
             if far.offset < near.offset + near.width:
                 raise BoomError(
                     f"{where}.pads",
@@ -196,7 +197,7 @@ def check_pads_in_travel(where: str, joint: Joint, boom: Boom) -> None:
                     )
 
 
-def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
+def _check_pad(where: str, joint: Joint, pad: Pad, boom: Boom) -> None:
     if joint.bonded:
         raise BoomError(where, "the joint is bonded, and nothing touches; leave it out")
     start, end = boom.overlap(joint)
@@ -219,7 +220,7 @@ def _check_pad(where: str, joint: Joint, pad: PadSize, boom: Boom) -> None:
         )
 
 
-def pad_room(joint: Joint, pad: PadSize, boom: Boom) -> float:
+def pad_room(joint: Joint, pad: Pad, boom: Boom) -> float:
     """Return half the width in m of the narrowest wall of a pad; infinite without a section."""
     inner = boom.segments[joint.inner]
     if inner.section is None:

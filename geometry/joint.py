@@ -48,10 +48,10 @@ POLYAMIDE = 1.9e9
 
 
 @part
-class PadSize:
+class Pad:
     """Slide pad: a patch on a wall of the inner segment, beside a corner.
 
-    >>> polyamide = pt.PadSize(length=0.2, width=0.06, thickness=0.02)
+    >>> polyamide = pt.Pad(length=0.2, width=0.06, thickness=0.02)
     >>> padded = replace(boom.joints[0], contact=None, pad=polyamide)
     >>> str(padded.law("z"))
     'k 2.28e+09, n 1'
@@ -91,7 +91,7 @@ class PadSize:
 
 
 @part
-class SlidePad(PadSize):
+class SlidePad(Pad):
     """Pair of identical pads at both corners of one wall.
 
     Pads on one side share the force of this side in proportion to their stiffness.
@@ -200,7 +200,7 @@ class BareJoint:
     """the total interference in m of lateral shims, for a joint without lateral play"""
     bonded: Flag = False
     """whether the segments are bonded at the stations, without play"""
-    pad: PadSize | None = None
+    pad: Pad | None = None
     """the table of the slide pads' size, which only shells use; unless given, contact is at the
     corners of the boxes along contact_length"""
     pads: Annotated[tuple[SlidePad, ...], Few] = ()
@@ -226,9 +226,7 @@ class BareJoint:
         """True if the joint has pads of a given size."""
         return self.pad is not None or bool(self.pads)
 
-    def pads_of(
-        self, direction: Direction, side: Side
-    ) -> list[tuple[PadSize | None, float, float]]:
+    def pads_of(self, direction: Direction, side: Side) -> list[tuple[Pad | None, float, float]]:
         """Return (size, fraction of the force, shim in m) of each pad on a side; side 0 is both."""
         if not self.pads:
             return [(self.pad, 1.0, 0.0)]

@@ -116,6 +116,15 @@ class Moment(Load):
 
 
 @part
+class Torque(Moment):
+    """Torque in N·m about the axis at a point; the direction has no meaning."""
+
+    def push(self, segment: LoadedSegment) -> Array:
+        assert self.x is not None
+        return self.magnitude * segment.torque(self.x)
+
+
+@part
 class AngularAcceleration(Load):
     """Inertia load of an angular acceleration about x = 0; the magnitude is in rad/s².
 

@@ -158,7 +158,7 @@ def diaphragm_breaks(segment: Segment) -> dict[str, float]:
 def strip_lines(segment: Segment) -> dict[int, list[float]]:
     """Return the distances in m of collar edges from a plate's midpoint, by the plate's index."""
     lines: dict[int, list[float]] = {}
-    for strip in (one for collar in segment.collars for one in collar.strips(segment.widest)):
+    for strip in (strip for collar in segment.collars for strip in collar.strips(segment.widest)):
         half = 0.5 * segment.widest.plates[strip.wall].length
         inside = [x for x in strip[1:] if SAME_PLACE * half < x < (1.0 - SAME_PLACE) * half]
         lines[strip.wall] = _merge_places([*lines.get(strip.wall, []), *inside])
@@ -283,8 +283,10 @@ def _close(
     low, high = section.bounds
     middle = gmsh.model.geo.addPoint(x, *(0.5 * (a + b) for a, b in zip(low, high, strict=True)))
     counts = [
-        sum(_edges(float(np.hypot(*np.subtract(b, a))), size) for a, b in pairwise([*one, end[0]]))
-        for one, end in zip(halves[::2], halves[1::2], strict=True)
+        sum(
+            _edges(float(np.hypot(*np.subtract(b, a))), size) for a, b in pairwise([*start, end[0]])
+        )
+        for start, end in zip(halves[::2], halves[1::2], strict=True)
     ]
     if all(before == after for before, after in zip(counts, np.roll(counts, -2), strict=True)):
         spokes = dict(zip(range(1, len(ring.points), 2), np.roll(counts, -1), strict=True))

@@ -95,8 +95,8 @@ def resolve_distances(part: _Part, tail: float, head: float) -> _Part:
         value = getattr(part, field.name)
         if isinstance(value, Distance):
             resolved[field.name] = at(value, tail, head)
-        elif isinstance(value, tuple) and any(isinstance(one, Distance) for one in value):
-            resolved[field.name] = tuple(at(one, tail, head) for one in value)
+        elif isinstance(value, tuple) and any(isinstance(item, Distance) for item in value):
+            resolved[field.name] = tuple(at(item, tail, head) for item in value)
     return replace(part, **resolved) if resolved else part
 
 

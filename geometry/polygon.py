@@ -170,6 +170,11 @@ class PolygonSection(Section):
     def turned(self) -> PolygonSection:
         return PolygonSection(tuple((z, y) for y, z in self.corners), self.thicknesses)
 
+    def within_outline(self) -> PolygonSection:
+        corners = trapezoids(_plates(*self.upwards))[:, 3]
+        walls = tuple(self.upwards[1].tolist())
+        return PolygonSection(tuple((y, z) for y, z in corners.tolist()), walls)
+
     @cached_property
     def upwards(self) -> tuple[Array, Array]:
         """The corners (num_plates, 2) and thicknesses (num_plates,) in m in the order of plates."""
@@ -297,7 +302,7 @@ def _double_enclosed_area(corners: Array) -> float:
 
 
 def _mirror(places: Array, axis: Direction) -> Array:
-    return np.asarray(places * [-1.0 if axis == one else 1.0 for one in COMPONENT])
+    return np.asarray(places * [-1.0 if axis == component else 1.0 for component in COMPONENT])
 
 
 def _partners(places: Array, images: Array) -> Indices:

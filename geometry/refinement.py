@@ -20,7 +20,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import (
     ContactInterval,
     ContactLine,
-    Pad,
+    ContactPair,
     pads,
     stop_patches,
 )
@@ -109,13 +109,13 @@ def _zones(boom: Boom, number: int, line: ContactLine) -> Iterator[RefinementZon
         if rest.stop.segment == number:
             extended = [rest.at_extension(boom, extension) for extension in rest.reach]
             for face in _faces(section, "z"):
-                yield _envelope(_corner(one.interval, face) for one in extended)
+                yield _envelope(_corner(patch.interval, face) for patch in extended)
     for pad in pads(boom):
         for end, of in enumerate((pad.joint.inner, pad.joint.outer)):
             if of == number:
                 for face in _faces(section, pad.station.direction):
                     extended_pads = (pad.at_extension(boom, extension) for extension in pad.reach)
-                    yield _envelope(_pad_zone(boom, one, end, face, line) for one in extended_pads)
+                    yield _envelope(_pad_zone(boom, pad, end, face, line) for pad in extended_pads)
 
 
 def _walls(boom: Boom, number: int) -> Iterator[float]:
@@ -159,7 +159,9 @@ def _envelope(zones: Iterable[RefinementZone]) -> RefinementZone:
     return replace(first, low=min(first.low, last.low), high=max(first.high, last.high))
 
 
-def _pad_zone(boom: Boom, pad: Pad, end: int, face: Face, line: ContactLine) -> RefinementZone:
+def _pad_zone(
+    boom: Boom, pad: ContactPair, end: int, face: Face, line: ContactLine
+) -> RefinementZone:
     """Return the zone of a pad on a face of the inner (``end`` 0) or outer segment (``end`` 1)."""
     covered = pad.patch
     if covered is None:

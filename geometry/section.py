@@ -211,6 +211,13 @@ class Section(Protocol):
         low, high = self.reach(direction)
         return high - low
 
+    def within_outline(self) -> Section:
+        """Return the section whose outer surface is where the mid-lines of this one are.
+
+        Raises:
+            SectionError: the walls fill the cell.
+        """
+
     def face(self, direction: Direction, side: float) -> Face:
         """Return the face whose outward normal has a direction and the sign of ``side``."""
         return next(f for f in self.faces if f.direction == direction and f.side * side > 0.0)

@@ -126,7 +126,7 @@ class Segment:
     def __post_init__(self) -> None:
         for group in ("supports", "masses", "collars", "diaphragms"):
             on_segment = tuple(
-                resolve_distances(one, self.start, self.end) for one in getattr(self, group)
+                resolve_distances(item, self.start, self.end) for item in getattr(self, group)
             )
             object.__setattr__(self, group, on_segment)
 
@@ -196,7 +196,7 @@ class Segment:
             return self.material.yield_strength
         plates = (plate for x in self.ends for plate in self.section_at(x).plates)
         strengths = (self.material.strength(plate.thickness) for plate in plates)
-        return min((one for one in strengths if one is not None), default=None)
+        return min((strength for strength in strengths if strength is not None), default=None)
 
     @property
     def mass_centre(self) -> float:
@@ -237,12 +237,18 @@ class Segment:
             return ()
         density = self.material.density
         of_diaphragms = (
-            PointMass(one.x, density * self.section_at(one.x).enclosed_area * one.thickness)
-            for one in self.diaphragms
+            PointMass(
+                diaphragm.x,
+                density * self.section_at(diaphragm.x).enclosed_area * diaphragm.thickness,
+            )
+            for diaphragm in self.diaphragms
         )
         of_collars = (
-            PointMass(one.midpoint, density * self.mean_width(one) * one.length * one.thickness)
-            for one in self.collars
+            PointMass(
+                collar.midpoint,
+                density * self.mean_width(collar) * collar.length * collar.thickness,
+            )
+            for collar in self.collars
         )
         return (*of_diaphragms, *of_collars)
 

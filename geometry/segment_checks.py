@@ -74,10 +74,10 @@ def _check_collars(segment: Segment, where: str) -> None:
             )
         for x in collar.span:
             segment.check_place(f"{key}.span", x)
-    for one, other in combinations(segment.collars, 2):
-        start = max(one.span[0], other.span[0])
-        common = min(one.span[1], other.span[1]) - start
-        if common > SAME_PLACE * segment.length and _share_wall(segment, one, other):
+    for first, second in combinations(segment.collars, 2):
+        start = max(first.span[0], second.span[0])
+        common = min(first.span[1], second.span[1]) - start
+        if common > SAME_PLACE * segment.length and _share_wall(segment, first, second):
             raise BoomError(
                 f"{where}.collars",
                 f"two lie on one another from {start:g} m on; give one of the thickness of "
@@ -85,13 +85,13 @@ def _check_collars(segment: Segment, where: str) -> None:
             )
 
 
-def _share_wall(segment: Segment, one: Collar, other: Collar) -> bool:
+def _share_wall(segment: Segment, first: Collar, second: Collar) -> bool:
     """Return whether two collars cover a common part of a wall."""
     if segment.section is None:
         return True
     return any(
         a.wall == b.wall and min(a.high, b.high) - max(a.low, b.low) > segment.widest.near
-        for a, b in product(one.strips(segment.widest), other.strips(segment.widest))
+        for a, b in product(first.strips(segment.widest), second.strips(segment.widest))
     )
 
 

@@ -63,7 +63,7 @@ def stations(
         for place, x in enumerate(joint.stations)
     ]
     found += [Station(stop.x, "z", stop.segment, i, stop=stop) for i, stop in enumerate(stops)]
-    names = [f"{one.x:g}" + ("y" if one.direction == "y" else "") for one in found]
+    names = [f"{station.x:g}" + ("y" if station.direction == "y" else "") for station in found]
     counts = [names[: i + 1].count(name) for i, name in enumerate(names)]
     return tuple(
         replace(station, index=i, name=name if count == 1 else f"{name}#{count}")

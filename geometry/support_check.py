@@ -140,8 +140,8 @@ class _RigidBody(LoadedSegment):
         segment, acceleration = self.segment, force / self.segment.mass_per_length
         plain = force * segment.length * self.unit_load_vector(segment.mass_centre, direction)
         added = (
-            acceleration * one.mass * self.unit_load_vector(one.x, direction)
-            for one in segment.stiffener_masses
+            acceleration * mass.mass * self.unit_load_vector(mass.x, direction)
+            for mass in segment.stiffener_masses
         )
         return sum(added, plain)
 
@@ -153,8 +153,8 @@ class _RigidBody(LoadedSegment):
             middle, direction
         )
         added = (
-            one.mass * one.x * self.unit_load_vector(one.x, direction)
-            for one in segment.stiffener_masses
+            mass.mass * mass.x * self.unit_load_vector(mass.x, direction)
+            for mass in segment.stiffener_masses
         )
         return sum(added, plates)
 
@@ -201,7 +201,8 @@ def _two_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]
                     yield body.moment(support.x, direction)
             if boom.spatial:
                 yield body.torque(support.x)
-    yield from (line.push for line in ground_lines(boom, bodies) if line.stiffness > 0.0)
+    # A lead is none: its spring is a part of the work of an axial force.
+    yield from (line.push for line in ground_lines(boom, bodies) if line.force)
     for joint in boom.joints:
         inner, outer = bodies[joint.inner], bodies[joint.outer]
         for x in joint.stations:

@@ -23,8 +23,8 @@ def interpolate_section(tail: Section, head: Section, part: float) -> Section:
     """
     shape: Any = tail
     mixed = {
-        one.name: _interpolate(getattr(tail, one.name), getattr(head, one.name), part)
-        for one in fields(shape)
+        field.name: _interpolate(getattr(tail, field.name), getattr(head, field.name), part)
+        for field in fields(shape)
     }
     between: Section = type(shape)(**mixed)
     return between
@@ -34,7 +34,9 @@ def _interpolate(tail: Any, head: Any, part: float) -> Any:
     if tail is None:
         return None
     if isinstance(tail, tuple):
-        return tuple(_interpolate(one, other, part) for one, other in zip(tail, head, strict=True))
+        return tuple(
+            _interpolate(start, other, part) for start, other in zip(tail, head, strict=True)
+        )
     return head if part == 1.0 else tail + part * (head - tail)
 
 
@@ -44,13 +46,13 @@ def check_alike(tail: Section, head: Section) -> None:
     Raises:
         SectionError: the sections differ in shape, plates, faces or mirrors.
     """
-    for what, one, other in (
+    for what, at_tail, at_head in (
         ("shapes", type(tail), type(head)),
         ("plates", [plate.name for plate in tail.plates], [plate.name for plate in head.plates]),
         ("faces", *([face[:3] for face in section.faces] for section in (tail, head))),
         ("mirrors", tail.mirrors, head.mirrors),
     ):
-        if one != other:
+        if at_tail != at_head:
             raise SectionError(
                 f"has other {what} than the one at the tail; a segment tapers between sections of "
                 "one kind"

@@ -75,7 +75,7 @@ def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
 
 def travel(boom: Boom, segment: int, time: float) -> float:
     """Return the travel of a segment in m since the start, at a time in s."""
-    return sum(float(one.history(np.array(time))) for one in drives_of(boom.joints, segment))
+    return sum(float(drive.history(np.array(time))) for drive in drives_of(boom.joints, segment))
 
 
 def drives_of(joints: Sequence[Joint], segment: int) -> list[Drive]:

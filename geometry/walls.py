@@ -17,7 +17,7 @@ from protractile.geometry.segment import Segment
 _STRAIGHT = 0.1
 
 # Component of a normal below which a plate does not limit a shift.
-_ASIDE = 1.0e-9
+_ALONG = 1.0e-9
 
 
 def normals(plates: Sequence[Plate]) -> Array:
@@ -77,7 +77,7 @@ def _shift_range(slope: Array, clear: Array) -> tuple[float, float]:
         slope: reduction (num_plates,) of each plate's clearance per unit of shift.
         clear: clearance (num_plates,) in m at a shift of 0.
     """
-    ahead, behind = slope > _ASIDE, slope < -_ASIDE
+    ahead, behind = slope > _ALONG, slope < -_ALONG
     return float((clear[behind] / slope[behind]).max()), float((clear[ahead] / slope[ahead]).min())
 
 
@@ -104,7 +104,7 @@ class WallsAlong:
             places, at = np.unique(x, return_inverse=True)
             sections = [segment.section_at(place) for place in places.tolist()]
         self._at = at
-        self._starts = np.array([[plate.start for plate in one.plates] for one in sections])
+        self._starts = np.array([[plate.start for plate in section.plates] for section in sections])
 
     def starts(self, plate: int) -> Array:
         """Return the points (y, z) (num_places, 2) in m at which a plate starts."""

@@ -7,7 +7,7 @@ from protractile.geometry.cylinder import Cylinder as Cylinder
 from protractile.geometry.place import Distance as Distance
 from protractile.geometry.joint import Drive as Drive
 from protractile.geometry.joint import Joint as Joint
-from protractile.geometry.joint import PadSize as PadSize
+from protractile.geometry.joint import Pad as Pad
 from protractile.geometry.joint import SlidePad as SlidePad
 from protractile.geometry.joint import Stop as Stop
 from protractile.geometry.observation import Observation as Observation
@@ -41,12 +41,17 @@ from protractile.dynamics.excitation import Ramp as Ramp
 from protractile.dynamics.excitation import Sine as Sine
 from protractile.dynamics.excitation import Step as Step
 from protractile.dynamics.excitation import PiecewiseLinear as PiecewiseLinear
+from protractile.geometry.axial import Lead as Lead
 from protractile.geometry.axial import Thrust as Thrust
 from protractile.geometry.chassis import Chassis as Chassis
 from protractile.geometry.chassis import CraneForce as CraneForce
+from protractile.geometry.head import Head as Head
 from protractile.geometry.load import Load as Load
 from protractile.geometry.load import Moment as Moment
 from protractile.geometry.load import PartialLoad as PartialLoad
+from protractile.geometry.load import Torque as Torque
+from protractile.geometry.wind import wind_direction as wind_direction
+from protractile.geometry.wind import wind_loads as wind_loads
 from protractile.runs.case.actions import with_weight as with_weight
 
 # Models, and how they move

@@ -16,7 +16,7 @@ import xarray as xr
 from protractile.geometry.fields import format_value
 from protractile.runs.case import reading
 from protractile.runs.case.build import hold_ground
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.rules import add_cautions
@@ -106,7 +106,7 @@ def change(case: Case, **values: Any) -> Case:
                 place.put(tables, value)
         except InvalidVariation as reason:
             raise BadInput(_CASE, key, str(reason)) from None
-    with refusing(_CASE):
+    with translated_errors(_CASE):
         changed = hold_ground(Case.model_validate(tables), case)
     reading.check(changed, _CASE)
     return changed

@@ -37,7 +37,7 @@ from protractile.dynamics.motion import constant_load_equilibrium
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import axial_force, moving_force_places
 from protractile.geometry.boom import Boom
-from protractile.geometry.typography import milli, number, without_round_off
+from protractile.geometry.typography import amount, milli, number, without_round_off
 from protractile.geometry.units import System
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case, Model
@@ -163,7 +163,7 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     if static is None or beam is None:
         lines.append("There is no static equilibrium under the loads at t = 0.")
     else:
-        hertz = [first_frequency(case, one) for one in static]
+        hertz = [first_frequency(case, model) for model in static]
         lines += _static_lines(static, beam, hertz)
         closed = context.rows.where(state=INITIAL, quantity="closed_play")
         context.states.append(State(_BEAMS, None, static.with_play.tip, hertz[:1], closed))
@@ -208,7 +208,7 @@ def axial_forces(boom: Boom, static: Statics | None) -> Table:
     state = static.with_play if static else None
     extremes = [_extreme_axial_force(boom, i, state) for i in range(len(boom.segments))]
     columns = [
-        Column("segment", [one.name for one in boom.segments]),
+        Column("segment", [segment.name for segment in boom.segments]),
         Column("axial force", without_round_off([-force for force, _ in extremes]), ".4g", "kN"),
         Column("axial stress", [stress and -stress for _, stress in extremes], ".4g", "MPa"),
     ]
@@ -323,10 +323,16 @@ def _reactions(state: StaticState, system: System) -> Table:
         rows = [of.get(quantity) for of in at_place.values()]
         return ["" if row is None else row.value for row in rows]
 
-    along, forces = cells("axial_reaction"), [one.value for one in reactions]
+    along, forces = cells("axial_reaction"), [reaction.value for reaction in reactions]
     columns = [
-        Column("segment", [one.part + ", lug" * one.place.startswith("lug") for one in reactions]),
-        Column(f"x\n{system.label('m')}", [f"{system.of(one.x or 0, 'm'):g}" for one in reactions]),
+        Column(
+            "segment",
+            [reaction.part + ", lug" * reaction.place.startswith("lug") for reaction in reactions],
+        ),
+        Column(
+            f"x\n{system.label('m')}",
+            [f"{system.of(reaction.x or 0, 'm'):g}" for reaction in reactions],
+        ),
         Column("transverse\nforce", without_round_off(forces), ".4g", "kN"),
         *([Column("axial\nforce", along, ".4g", "kN")] if any(along) else []),
         Column("moment", cells("support_moment"), ".4g", "kN m"),
@@ -344,14 +350,19 @@ def _cylinders(state: StaticState, system: System) -> Table:
     """Return the table of lengths, lever arms and static forces of cylinders, a pair as one."""
     segments, metre = state.boom.segments, system.label("m")
     rows: list[tuple[Cell, ...]] = []
-    for k, one in enumerate(state.boom.cylinders, start=1):
-        segment, force = segments[one.segment], cylinder_force(state, k)
-        arm = "" if segment.foot is None else system.of(one.arm(segment.foot), "m")
-        place, length = f"{system.of(one.x, 'm'):g}", system.of(one.length, "m")
+    notes = ["Cylinder forces are positive in compression."] if state.boom.cylinders else []
+    for k, cylinder in enumerate(state.boom.cylinders, start=1):
+        segment, force = segments[cylinder.segment], cylinder_force(state, k)
+        arm = "" if segment.foot is None else system.of(cylinder.arm(segment.foot), "m")
+        place, length = f"{system.of(cylinder.x, 'm'):g}", system.of(cylinder.length, "m")
         rows.append((segment.name, place, length, arm, force))
+        if cylinder.stroke is not None:
+            notes.append(f"Stroke of cylinder {k}: {system.text(cylinder.stroke, 'm')}.")
+        if cylinder.piston_area is not None:
+            pressure = amount(force / cylinder.piston_area, "Pa")
+            notes.append(f"Oil pressure of cylinder {k}: {pressure}.")
     lengths = (f"length\n{metre}", ".5g"), (f"lever arm\n{metre}", ".5g")
     columns = "cylinder of", f"x\n{metre}", *lengths, ("force", ".4g", "kN")
-    notes = ["Cylinder forces are positive in compression."] if rows else []
     return Table.of_rows("", "Cylinders at rest, t = 0", columns, rows, notes)
 
 

@@ -31,7 +31,7 @@ app = typer.Typer(
 )
 
 # Commands that one rank executes; the other commands share their work among ranks.
-_OF_ONE_RANK = ("report", "snapshot", "check", "schema")
+_OF_ONE_RANK = ("report", "snapshot", "check", "new", "schema")
 
 
 def _print_version(requested: bool) -> None:
@@ -368,7 +368,7 @@ def prove(
             return 0
         with terminal.display() as report_progress:
             return print_proofs(checked, case, Terminal(), progress=report_progress)
-    shells = {one.name: one for one in checked.models if isinstance(one, Shell)}
+    shells = {model.name: model for model in checked.models if isinstance(model, Shell)}
     if shell not in shells:
         what = f"{shell!r} is not a shell of the case; leave it out for beam elements"
         raise BadInput(case, "--shell", what)
@@ -386,6 +386,16 @@ def prove(
 for client in clients.modules("commands"):
     for command in client.COMMANDS:
         app.command()(command)
+
+
+@app.command()
+def new(case: options.CaseFile, standard: options.OfStandard, kind: options.OfKind) -> int:
+    """Write a case file to start from, with load combinations to be checked in your edition."""
+    from protractile.runs.case.starting_points import write_case
+
+    write_case(case, standard, kind)
+    print(f"{printable(case)}: change its numbers, then protractile check and prove it.")
+    return 0
 
 
 @app.command()

@@ -3,11 +3,31 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from typing import Annotated
 
 import typer
 
+
+class Standard(StrEnum):
+    """Standards with load combinations."""
+
+    EN13001 = "en13001"
+    EN280 = "en280"
+
+
+class Kind(StrEnum):
+    """Kinds of machines."""
+
+    CRANE = "crane"
+    LIFT = "lift"
+
+
 CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
+OfStandard = Annotated[
+    Standard, typer.Option("--standard", help="The standard of the load combinations.")
+]
+OfKind = Annotated[Kind, typer.Option("--kind", help="The kind of machine.")]
 ModelNames = Annotated[str | None, typer.Option(metavar="NAME,...", help="Run only these models.")]
 MeshSize = Annotated[
     float | None, typer.Option(metavar="M", help="Edge length of uniform shell meshes in m.")

@@ -140,7 +140,7 @@ def _geometric_stiffness(shell: ShellMatrices, forces: Array) -> PETSc.Mat:
     """Return −K_n (num_dofs, num_dofs) of membrane forces (num_triangles, 3). Collective."""
     domain = shell.space.mesh
     along, around, _ = wall_frame(domain)
-    n_x, n_s, n_xs = (compat.cellwise_function(domain, one) for one in forces.T)
+    n_x, n_s, n_xs = (compat.cellwise_function(domain, component) for component in forces.T)
     u, _ = ufl.split(ufl.TrialFunction(shell.space))
     v, _ = ufl.split(ufl.TestFunction(shell.space))
     (u_x, u_s), (v_x, v_s) = (
@@ -232,7 +232,7 @@ def buckle_segments(
     """
     finer = [None if mesh is None else mesh.refined for mesh in meshes]
     coarse = _modes_on(boom, meshes, state, options, count, comm)
-    halves = replace(state, forces=[np.repeat(one, 4, axis=0) for one in state.forces])
+    halves = replace(state, forces=[np.repeat(force, 4, axis=0) for force in state.forces])
     fine = _modes_on(boom, finer, halves, options, count, comm)
     results = []
     for mesh, (before, _), (after, shapes) in zip(finer, coarse, fine, strict=True):
@@ -270,14 +270,14 @@ def _modes_on(
     for number, shell in enumerate(shells):
         springs = [
             *(
-                (shell.row(one[number]), k or rigid_stiffness(shell))
-                for one, k in joined
-                if number in one and k != 0.0
+                (shell.row(spring[number]), k or rigid_stiffness(shell))
+                for spring, k in joined
+                if number in spring and k != 0.0
             ),
-            *((one.push, one.stiffness) for one in lines if one.segment == number),
+            *((line.push, line.stiffness) for line in lines if line.segment == number),
             *lateral_springs(boom, number, shell),
         ]
-        rows, stiffness = (np.array(one) for one in zip(*springs, strict=True))
+        rows, stiffness = (np.array(part) for part in zip(*springs, strict=True))
         restrained = replace(shell, springs=with_springs(shell.springs, rows.T, stiffness))
         modes = buckling_modes(restrained, state.forces[number], count)
         restrained.stiffness.destroy()
@@ -299,7 +299,9 @@ def lateral_springs(boom: Boom, number: int, shell: SegmentShell) -> Iterator[tu
     Rows are (num_owned,); stiffness is in N/m or N·m/rad. Collective.
     """
     segment = boom.segments[number]
-    places = {x for one in boom.joints if number in (one.outer, one.inner) for x in one.stations}
+    places = {
+        x for joint in boom.joints if number in (joint.outer, joint.inner) for x in joint.stations
+    }
     places |= {stop.x for stop in boom.stops if stop.segment == number}
     places |= {cylinder.x for cylinder in boom.cylinders if cylinder.segment == number}
     places |= {support.x for support in segment.supports}

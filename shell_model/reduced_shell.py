@@ -248,7 +248,7 @@ def _gap_system(full: BoomShell, coordinates: BoomCoordinates, own_loads: Array)
     return full.rows.system(
         coordinates.row,
         coordinates.omega2,
-        sum((coordinates.push(*one) for one in full.pin_moments), own_loads.sum(axis=0)),
+        sum((coordinates.push(*moment) for moment in full.pin_moments), own_loads.sum(axis=0)),
         [(station.x, station.direction) for station in full.touching.boom.stations],
         full.observed,
         [(coordinates.push(load.segment, push), load.history) for load, push in full.loads],

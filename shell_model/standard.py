@@ -23,8 +23,10 @@ def standard_boom(boom: Boom) -> Boom:
     joints = boom.joints
     if not boom.spatial:
         joints = tuple(
-            one if _has_shims(one) else replace(one, play=0.0, play_above=None, interference=0.0)
-            for one in joints
+            joint
+            if _has_shims(joint)
+            else replace(joint, play=0.0, play_above=None, interference=0.0)
+            for joint in joints
         )
     return replace(
         boom,

@@ -85,8 +85,10 @@ class _SampledRows:
     def columns(self, shell: SegmentShell, number: int, step: int = 1) -> Array:
         """Return rows as columns (num_owned, num_columns), at each ``step``-th extension."""
         rows = [
-            one.evaluate_rows(self.moving, lambda operator: shell.row(operator.get(number, Row())))
-            for one in self.touching[::step]
+            contact.evaluate_rows(
+                self.moving, lambda operator: shell.row(operator.get(number, Row()))
+            )
+            for contact in self.touching[::step]
         ]
         return np.asarray(np.concatenate(rows).T)
 
@@ -105,7 +107,9 @@ class _SampledRows:
 
     def rows(self, coordinates: BoomCoordinates) -> Array:
         """Return the rows (num_extensions, num_moving, num_modes)."""
-        return np.array([one.evaluate_rows(self.moving, coordinates.row) for one in self.touching])
+        return np.array(
+            [contact.evaluate_rows(self.moving, coordinates.row) for contact in self.touching]
+        )
 
 
 def _sample_rows(boom: Boom, full: BoomShell, size: float) -> list[_SampledRows]:
@@ -161,7 +165,7 @@ class TelescopingShell:
             self._responses.append(pad_responses(symmetry, columns, test))
             self.reduced.append(self._with_few_modes(number, segment, columns))
         # Springs represent the residual response, without axial forces.
-        free = [replace(one, geometric=0.0 * one.geometric) for one in self.reduced]
+        free = [replace(segment, geometric=0.0 * segment.geometric) for segment in self.reduced]
         self._segment_coordinates = BoomCoordinates(full, free, ())
         self._rows = [sampled.rows(self._segment_coordinates) for sampled in self._sampled]
         self._springs = [springs(*self._residuals(k)) for k in range(len(self._sampled))]
@@ -232,7 +236,7 @@ class TelescopingShell:
             for sampled, part in zip(self._sampled, np.split(columns, bounds, axis=1), strict=True)
         ]
         moving, constant = (np.concatenate(which) for which in zip(*masks, strict=True))
-        outputs = [one.operator for one in self._full.observed.values()]
+        outputs = [observer.operator for observer in self._full.observed.values()]
         rows, observed = project(columns), project(self._full.columns(number, outputs))
         parts = rows[moving] ** 2 / (segment.omega2 + squared(SLOW))
         below = segment.omega2 < squared(_CUTOFF)
@@ -263,11 +267,14 @@ class TelescopingShell:
         the rows of pads and the rows of outputs in all modes, ``few`` ω² and shapes of kept modes.
         """
         omega2, rows, observed = many
-        shifted, shapes = (1.0 / (one + squared(self._test)) for one in (omega2, few[0])), few[1]
+        shifted, shapes = (
+            (1.0 / (squares + squared(self._test)) for squares in (omega2, few[0])),
+            few[1],
+        )
         of_many, of_few = shifted
         error = (observed * of_many) @ rows.T
         error -= ((observed @ shapes) * of_few) @ (rows @ shapes).T
-        sizes = (np.sqrt(one**2 @ of_many) for one in (observed, rows))
+        sizes = (np.sqrt(operator**2 @ of_many) for operator in (observed, rows))
         scale = np.maximum(np.outer(*sizes), np.finfo(float).tiny)
         return float((np.abs(error) / scale).max(initial=0.0))
 
@@ -284,9 +291,11 @@ class TelescopingShell:
 
     def _compliance(self, k: int, kind: str) -> Array:
         """Return a response (num_extensions, num_moving, num_moving) of all full segments."""
-        first, sampled = sum(one.count for one in self._sampled[:k]), self._sampled[k]
+        first, sampled = sum(sample.count for sample in self._sampled[:k]), self._sampled[k]
         block = slice(first, first + sampled.count)
-        whole = np.sum([getattr(one, kind)[block, block] for one in self._responses], axis=0)
+        whole = np.sum(
+            [getattr(response, kind)[block, block] for response in self._responses], axis=0
+        )
         size = sampled.extensions.size
         return np.asarray(
             np.einsum("wiwj->wij", whole.reshape(size, len(sampled.moving), size, -1))
@@ -371,7 +380,8 @@ def springs(residual: Array, inertia: Array) -> tuple[Array, Array]:
     values[values < _NEGLIGIBLE * values.max()] = 0.0
     inverse = np.divide(1.0, np.sqrt(values), out=np.zeros_like(values), where=values > 0.0)
     root, back = (
-        np.einsum("wij,wj,wkj->wik", patterns, one, patterns) for one in (np.sqrt(values), inverse)
+        np.einsum("wij,wj,wkj->wik", patterns, factor, patterns)
+        for factor in (np.sqrt(values), inverse)
     )
     slowness, turn = np.linalg.eigh((back @ (inertia / scale) @ back).mean(axis=0))
     # No residual mode is below the slowest frequency. Round-off may say so of a small compliance.

@@ -21,7 +21,7 @@ from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.boom import Boom
-from protractile.geometry.joint import PadSize
+from protractile.geometry.joint import Pad
 from protractile.runs import CASES
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
@@ -62,7 +62,7 @@ def set_duration(case: Case, duration: float) -> Case:
 
 def with_pads(case: Case, length: float, width: float) -> Case:
     """Return the case with pads of a length and a width in m at all joints."""
-    pad = PadSize(length, width)
+    pad = Pad(length, width)
     joints = tuple(replace(joint, pad=pad) for joint in case.joints)
     return case.model_copy(update={"joints": joints})
 

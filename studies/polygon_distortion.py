@@ -18,7 +18,7 @@ from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import Step
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Joint, PadSize, Segment, Support
+from protractile.geometry.boom import Boom, Joint, Pad, Segment, Support
 from protractile.geometry.load import Load
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.profiles import hexagon, octagon
@@ -34,7 +34,7 @@ MESH_SIZE = 0.08
 COMPLIANCE, TIP = 0.08, 0.04
 # Force across the tip in N, play in m, and stiffness of the pads in N/m.
 FORCE, PLAY, PADS = -2.0e4, 0.004, 1.0e8
-_PAD, _CORNER = PadSize(0.2, 0.07), PadSize(0.2, 0.07, bears="corner")
+_PAD, _CORNER = Pad(0.2, 0.07), Pad(0.2, 0.07, bears="corner")
 
 
 class Case(NamedTuple):
@@ -48,7 +48,7 @@ class Case(NamedTuple):
 
     outer: PolygonSection
     inner: PolygonSection
-    pad: PadSize | None = _CORNER
+    pad: Pad | None = _CORNER
     overlap: float = 1.5
     length: float = 8.0
 

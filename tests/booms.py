@@ -17,7 +17,7 @@ CLAMP = pt.Support(0.0, "clamped")
 # The boxes of both segments.
 ARM = pt.BoxSection(height=0.40, width=0.30, flange=0.008, web=0.006)
 FLY = pt.BoxSection(height=0.36, width=0.26, flange=0.006, web=0.005)
-PAD = pt.PadSize(length=0.1, width=0.08, thickness=0.02, modulus=2e9)
+PAD = pt.Pad(length=0.1, width=0.08, thickness=0.02, modulus=2e9)
 
 
 def force(segment: str, x: float, size: float, direction: Any = "z", **more: Any) -> pt.Load:

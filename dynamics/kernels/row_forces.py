@@ -132,8 +132,8 @@ def row_laws(system: GapSystem) -> Laws:
     first = np.searchsorted(terms["row"], np.arange(len(system.laws) + 1))
     friction = np.array([[f.coefficient, f.normal_force] for f in frictions]).reshape(-1, 2)
     pressing = np.zeros((len(frictions), len(system.laws)))
-    for number, one in enumerate(frictions):
-        pressing[number, list(one.normal_rows)] = 1.0
+    for number, law in enumerate(frictions):
+        pressing[number, list(law.normal_rows)] = 1.0
     return Laws(terms, contact_limits(system.laws), first, friction.T.copy(), pressing)
 
 

@@ -88,40 +88,44 @@ def moving_rows(system: GapSystem) -> MovingRows:
 
 def moving_axial_forces(system: GapSystem) -> AxialForces:
     """Return the axial forces of a system that move or change with travels."""
-    forces = [(k, one) for k, travel in enumerate(system.travels) for one in travel.axial_forces]
-    every = [
-        (k, one, plane)
-        for k, one in forces
-        if isinstance(one, MovingAxialForce)
-        for plane in range(one.table.coefficients.shape[2])
+    forces = [
+        (k, axial) for k, travel in enumerate(system.travels) for axial in travel.axial_forces
     ]
-    changing = [(k, one) for k, one in forces if isinstance(one, ChangingAxialForce)]
-    reach = [np.abs(one.slopes[:, :, plane]).max(axis=(0, 1)) for _, one, plane in every]
+    every = [
+        (k, axial, plane)
+        for k, axial in forces
+        if isinstance(axial, MovingAxialForce)
+        for plane in range(axial.table.coefficients.shape[2])
+    ]
+    changing = [(k, axial) for k, axial in forces if isinstance(axial, ChangingAxialForce)]
+    reach = [np.abs(axial.slopes[:, :, plane]).max(axis=(0, 1)) for _, axial, plane in every]
     moved = [np.flatnonzero(part > _NOTHING * part.max(initial=0.0)) for part in reach]
     most = max((modes.size for modes in moved), default=0)
-    pieces = sum(len(one.table.coefficients) for _, one, _ in every)
+    pieces = sum(len(axial.table.coefficients) for _, axial, _ in every)
     slopes, products = np.zeros((pieces, 3, most)), np.zeros((pieces, most, most))
     columns, spans, first = np.zeros((len(every), most), dtype=np.int64), [], 0
-    for t, ((number, one, plane), modes) in enumerate(zip(every, moved, strict=True)):
-        last = first + len(one.table.coefficients)
-        slopes[first:last, :, : modes.size] = one.slopes[:, :, plane, modes]
-        products[first:last, : modes.size, : modes.size] = one.slope_products(plane)[
+    for t, ((number, axial, plane), modes) in enumerate(zip(every, moved, strict=True)):
+        last = first + len(axial.table.coefficients)
+        slopes[first:last, :, : modes.size] = axial.slopes[:, :, plane, modes]
+        products[first:last, : modes.size, : modes.size] = axial.slope_products(plane)[
             :, modes[:, None], modes
         ]
         columns[t, : modes.size] = modes
         spans.append((number, first + t, last + t, first))
         first = last
     return AxialForces(
-        np.array([one.force for _, one, _ in every], dtype=np.float64),
+        np.array([axial.force for _, axial, _ in every], dtype=np.float64),
         np.array(spans, dtype=np.int64).reshape(-1, 4),
         np.array([modes.size for modes in moved], dtype=np.int64),
         columns,
-        np.concatenate([np.zeros(0), *(one.table.knots for _, one, _ in every)]),
+        np.concatenate([np.zeros(0), *(axial.table.knots for _, axial, _ in every)]),
         slopes,
         products,
-        np.array([k for k, one in changing for _ in one.factors], dtype=np.int64),
-        np.concatenate([np.zeros(0), *(one.factors for _, one in changing)]),
-        np.concatenate([np.zeros((0, system.num_modes)), *(one.vectors for _, one in changing)]),
+        np.array([k for k, axial in changing for _ in axial.factors], dtype=np.int64),
+        np.concatenate([np.zeros(0), *(axial.factors for _, axial in changing)]),
+        np.concatenate(
+            [np.zeros((0, system.num_modes)), *(axial.vectors for _, axial in changing)]
+        ),
     )
 
 

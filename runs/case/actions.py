@@ -5,52 +5,61 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
+from math import cos, radians, sin
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
+from scipy.special import cosdg, sindg
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
-from protractile.geometry.axial import Thrust, with_compression
-from protractile.geometry.boom import Boom, BoomError, Direction, Segment, Stop
-from protractile.geometry.fields import check_kind, check_numbers, error_in_python
+from protractile.geometry.axial import Lead, Thrust, with_compression
+from protractile.geometry.boom import Boom, BoomError, Direction, Joint, Segment, Stop
+from protractile.geometry.fields import check_kind, check_numbers, describe, error_in_python
+from protractile.geometry.head import Head
 from protractile.geometry.joint import BareStop
 from protractile.geometry.load import AngularAcceleration, Load, Moment, PartialLoad
 from protractile.geometry.place import Distance, at, resolve_segments
+from protractile.geometry.segment import SAME_PLACE
 from protractile.geometry.typography import choices
-from protractile.runs.case.load_tables import AxialTable, LoadTable, PayloadTable, build_history
+from protractile.geometry.wind import wind_direction, wind_loads
+from protractile.runs.case.load_tables import (
+    LoadTable,
+    RopeTable,
+    WindPressureTable,
+    build_history,
+)
 from protractile.runs.case.schema import Case, GravityTable, VelocityTable
 from protractile.runs.case.sections import SegmentTable
 
 STANDARD_GRAVITY = 9.80665
 
 
-def loads(case: Case, segments: Sequence[Segment]) -> Iterator[Load]:
+def loads(case: Case, segments: Sequence[Segment], joints: Sequence[Joint]) -> Iterator[Load]:
     """Yield all loads across the boom: weights, applied and released loads, and impulses.
 
     Released loads and impulses determine the state at t = 0.
 
     Raises:
-        BoomError: a segment is unknown, a history is invalid, or both the payload and the table
-            ``gravity`` give an acceleration of gravity.
+        BoomError: a segment or section is unknown, or a history, the head or the wind is invalid.
     """
-    payload, gravity = case.payload, case.gravity
-    if gravity is not None and payload is not None and payload.gravity is not None:
-        raise BoomError(
-            "payload.gravity",
-            "the table gravity is given, by which the payload weighs too; leave one of them out",
-        )
+    gravity = case.gravity
     for number, table in enumerate(case.loads, start=1):
         yield _load(f"load[{number}]", table)
-    if payload is not None and gravity is None:
-        weight = -payload.mass * payload_gravity(payload)
-        if weight < 0.0:
-            yield Load(len(segments) - 1, "z", weight, segments[-1].end, Step())
+    last, end, extra = len(segments) - 1, segments[-1].end, _extra_weight(case)
+    if extra:
+        up = -1.0 if gravity is None else -float(cosdg(gravity.angle))
+        yield Load(last, "z", extra * up, end, Step())
+    if case.head is not None:
+        yield from head_moments(case, case.head, last, end)
+    if case.wind is not None:
+        yield from wind(case, case.wind, segments, joints)
     if gravity is not None:
         yield from _inertia_loads(-gravity.across, "z", Step(), segments)
         if case.hoist is not None and case.hoist.dropped:
             weight = -case.hoist.mass * gravity.across
-            yield Load(len(segments) - 1, "z", weight, segments[-1].end, ReleasedLoad())
+            yield Load(last, "z", weight, end, ReleasedLoad())
     for number, base in enumerate(case.base, start=1):
         history = build_history(f"base[{number}]", base)
         yield from _inertia_loads(-base.acceleration, base.direction, history, segments)
@@ -114,7 +123,7 @@ def with_weight(
     check_kind("with_weight.boom", boom, Boom)
     if any(segment.compression for segment in boom.segments):
         raise BoomError("boom", "has axial forces already; give all of them as thrusts at once")
-    if any(one.inertial and one.history == Step() for one in boom.loads):
+    if any(load.inertial and load.history == Step() for load in boom.loads):
         raise BoomError("boom", "has its weight already; give it once")
     check_numbers("with_weight", angle=angle, acceleration=acceleration)
     try:
@@ -127,61 +136,136 @@ def with_weight(
 
 
 def thrusts(case: Case, segments: Sequence[Segment]) -> Iterator[Thrust]:
-    """Yield the axial forces on the boom except weights.
+    """Yield the axial forces of the tables ``axial``.
 
     Raises:
-        BoomError: a segment is unknown, a point is outside its segment, a rope has no payload, or a
-            force is given twice or not at all.
+        BoomError: a segment is unknown, or a point is outside its segment.
     """
     for number, table in enumerate(case.axial, start=1):
         where = f"axial[{number}]"
         name: Any = segments[-1].name if table.segment is None else table.segment
         place: Any = Distance(head=0.0) if table.x is None else table.x
-        thrust = Thrust(name, place, axial_force(where, table, case))
-        thrust = resolve_segments(thrust, where, segments)
+        thrust = resolve_segments(Thrust(name, place, table.force), where, segments)
         segments[thrust.segment].check_place(f"{where}.x", thrust.x)
         yield thrust
 
 
-def axial_force(where: str, table: AxialTable, case: Case, carried: float | None = None) -> float:
-    """Return the compressive force in N of a table ``axial`` of a case, at the key ``where``.
+def tip_thrusts(case: Case, segments: Sequence[Segment]) -> Iterator[Thrust]:
+    """Yield the axial forces at the tip in addition to the weights of masses of the segments."""
+    last, end, gravity, hoist = len(segments) - 1, segments[-1].end, case.gravity, case.hoist
+    if gravity is not None:
+        hanging = gravity.acceleration * hoist.mass if hoist and hoist.hanging else 0.0
+        yield Thrust(last, end, (_extra_weight(case) + hanging) * float(sindg(gravity.angle)))
+    if case.wind is not None:
+        along = wind_direction(radians(case.wind.direction), _luffing(case))[0]
+        peak = build_history("wind", case.wind).peak
+        force = peak * case.wind.load_area * case.wind.dynamic_pressure
+        yield Thrust(last, end, -float(along) * force)
+    for lead in leads(case, segments):
+        yield Thrust(last, end, lead.force)
 
-    Args:
-        where: key of the table.
-        table: table of the force.
-        case: case with the payload and the hoist.
-        carried: mass in kg on a hoist rope, in place of the mass of payload and hoist.
+
+def leads(case: Case, segments: Sequence[Segment]) -> Iterator[Lead]:
+    """Yield the lead of the hoist rope under the weights that hang on it at t = 0.
 
     Raises:
-        BoomError: a rope has no payload, or a force is given twice or not at all.
+        BoomError: the number of falls is missing or given twice, nothing hangs on the rope, or the
+            first segment has no foot.
     """
-    if table.force is not None:
-        for key in ("falls", "mass"):
-            if getattr(table, key) is not None:
-                raise BoomError(f"{where}.{key}", "force is given; leave one of them out")
-        return table.force
-    if table.falls is None:
-        raise BoomError(
-            f"{where}.force",
-            "missing; it is the force in N towards the base, or give the falls of a hoist rope",
-        )
-    mass = carried if table.mass is None else table.mass
-    if mass is None:
-        if case.payload is None and case.hoist is None:
-            raise BoomError(
-                f"{where}.mass",
-                "missing, and there is no payload; it is the mass in kg that the rope carries",
-            )
-        mass = sum(one.mass for one in (case.payload, case.hoist) if one is not None)
-    gravity = payload_gravity(case.payload) if case.gravity is None else case.gravity.acceleration
-    return mass * gravity / table.falls
+    weight, hoist = payload_weight(case), case.hoist
+    if hoist is not None and case.gravity is not None and hoist.hanging:
+        weight += case.gravity.acceleration * hoist.mass
+    if weight:
+        yield from lead_of(case, segments, weight)
 
 
-def payload_gravity(payload: PayloadTable | None) -> float:
-    """Return the acceleration of gravity in m/s² that acts on the payload alone."""
-    if payload is None or payload.gravity is None:
-        return STANDARD_GRAVITY
-    return payload.gravity
+def lead_of(case: Case, segments: Sequence[Segment], weight: float) -> Iterator[Lead]:
+    """Yield the lead of the hoist rope, if there is one, under a weight in N on the hook.
+
+    Raises:
+        BoomError: as in :func:`leads`.
+    """
+    rope, hoist, foot = case.rope, case.hoist, segments[0].foot
+    if rope is None:
+        return
+    if foot is None:
+        raise BoomError("rope.winch", f"{segments[0].name!r} has no support to measure it from")
+    if rope.falls is None and hoist is None:
+        raise BoomError("rope.falls", f"missing; it is {describe(RopeTable.model_fields['falls'])}")
+    if rope.falls is not None and hoist is not None and hoist.falls != 1:
+        raise BoomError("rope.falls", "hoist.falls is given; leave one of them out")
+    falls = rope.falls or (1 if hoist is None else hoist.falls)
+    yield Lead(len(segments) - 1, segments[-1].end, weight / falls, foot.x - rope.winch)
+
+
+def payload_weight(case: Case) -> float:
+    """Return the weight in N of the payload of a case."""
+    payload = case.payload
+    if payload is None:
+        return 0.0
+    if payload.gravity is not None:
+        return payload.mass * payload.gravity
+    return payload.mass * (STANDARD_GRAVITY if case.gravity is None else case.gravity.acceleration)
+
+
+def _extra_weight(case: Case) -> float:
+    """Return the weight in N of the payload beyond that by the table ``gravity``."""
+    weighs = 0.0 if case.gravity is None else case.gravity.acceleration
+    weight = payload_weight(case)
+    extra = weight - (weighs * case.payload.mass if case.payload else 0.0)
+    return extra if abs(extra) > SAME_PLACE * weight else 0.0
+
+
+def _luffing(case: Case) -> float:
+    """Return the luffing angle in rad."""
+    return 0.0 if case.gravity is None else radians(case.gravity.angle)
+
+
+def head_moments(case: Case, head: Head, last: int, end: float) -> Iterator[Load]:
+    """Yield the moments of the weights of payload and head about the end of the last segment.
+
+    Raises:
+        BoomError: the head weighs nothing, or a hoisted load hangs beside the end.
+    """
+    if case.hoist is not None and (head.ahead or head.below or head.beside):
+        what = "the load of hoist hangs at the end of the boom; leave ahead, below and beside out"
+        raise BoomError("head", what)
+    if case.gravity is None and head.mass:
+        raise BoomError("head.mass", "nothing weighs without the table gravity; give it")
+    own = 0.0 if case.gravity is None else case.gravity.acceleration * head.mass
+    down = -np.array([sin(_luffing(case)), 0.0, cos(_luffing(case))])
+    for weight, part in ((payload_weight(case), 1.0), (own, 0.5)):
+        yield from head.moments(last, end, weight * down, Step(), part)
+
+
+def wind(
+    case: Case, table: WindPressureTable, segments: Sequence[Segment], joints: Sequence[Joint]
+) -> Iterator[Load]:
+    """Yield the wind loads across the boom.
+
+    Raises:
+        BoomError: there is not one shape factor, or one for each segment; the boom moves; a segment
+            has no section; or the history is invalid.
+    """
+    for key, moves in {"drive": case.driven_segments, "slew": case.slew, "luff": case.luff}.items():
+        if moves:
+            what = f"the wind acts on the boom as it stands at t = 0; leave wind or {key} out"
+            raise BoomError("wind", what)
+    factors = table.shape_factor * (len(segments) if len(table.shape_factor) == 1 else 1)
+    if len(factors) != len(segments):
+        what = f"must be one number, or one for each of {len(segments)} segments"
+        raise BoomError("wind.shape_factor", f"{what}, got {len(factors)}")
+    history = build_history("wind", table)
+    direction = wind_direction(radians(table.direction), _luffing(case))
+    pressure, last = table.dynamic_pressure, len(segments) - 1
+    yield from wind_loads(segments, joints, pressure, direction, factors, history)
+    force = pressure * table.load_area * direction
+    axes: tuple[Direction, ...] = ("y", "z")
+    for axis, component in zip(axes, force[1:].tolist(), strict=True):
+        if abs(component) > SAME_PLACE * pressure * table.load_area:
+            yield Load(last, axis, component, segments[last].end, history)
+    if case.head is not None:
+        yield from case.head.moments(last, segments[last].end, force, history)
 
 
 def _load(where: str, table: LoadTable) -> Load:

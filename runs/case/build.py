@@ -4,13 +4,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import radians
 
 from protractile.dynamics.energy import DRIVEN_ENERGIES
 from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES
 from protractile.dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
-from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.axial import with_compression
 from protractile.geometry.boom import Boom, BoomError, Joint
 from protractile.geometry.boom_checks import check_order
 from protractile.geometry.cylinder import Cylinder, EarthPoint
@@ -35,7 +36,7 @@ def build_boom(case: Case) -> Boom:
     check_names("segment", [segment.name for segment in case.segments])
     _check_joint_segments(case)
     _check_observations(case)
-    ends = _spans(case.segments, case.joints)
+    ends = _spans(case.segments, telescoped_joints(case))
     joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
     sections = infer_sections(case, joints)
     segments = tuple(
@@ -44,8 +45,7 @@ def build_boom(case: Case) -> Boom:
     along = 0.0 if case.gravity is None else case.gravity.along
     hoist = case.hoist
     hanging = hoist.mass if hoist and hoist.hanging else 0.0
-    rope = Thrust(len(segments) - 1, segments[-1].end, hanging * along)
-    thrusts = (*actions.thrusts(case, segments), rope)
+    thrusts = (*actions.thrusts(case, segments), *actions.tip_thrusts(case, segments))
     segments = with_compression(segments, joints, thrusts, along)
     motions.check_turning(case)
     motions.check_hoist(case)
@@ -54,7 +54,7 @@ def build_boom(case: Case) -> Boom:
     boom = Boom(
         segments,
         joints,
-        (*actions.loads(case, segments), *motions.turning_loads(frame, segments, joints)),
+        (*actions.loads(case, segments, joints), *motions.turning_loads(frame, segments, joints)),
         tuple(actions.stops(case)),
         case.observe,
         _cylinders(case),
@@ -64,6 +64,7 @@ def build_boom(case: Case) -> Boom:
                 frame, segments, joints, 0.0 if hoist and hoist.dropped else hanging
             ),
         ),
+        tuple(actions.leads(case, segments)),
     )
     check_contacts_at_rest(boom)
     motions.check_elastic_drives(case, boom)
@@ -81,7 +82,7 @@ def hold_ground(changed: Case, original: Case) -> Case:
     foot, angle = _foot(changed), original.gravity.angle
     if foot is None or changed.gravity.angle == angle or not changed.cylinders:
         return changed
-    on_earth = tuple(one.on_earth(radians(angle), foot) for one in changed.cylinders)
+    on_earth = tuple(cylinder.on_earth(radians(angle), foot) for cylinder in changed.cylinders)
     return changed.model_copy(update={"cylinders": on_earth})
 
 
@@ -89,20 +90,27 @@ def _cylinders(case: Case) -> tuple[Cylinder, ...]:
     """Return the cylinders with their ground in the axes of the boom."""
     angle = radians(0.0 if case.gravity is None else case.gravity.angle)
     foot = _foot(case)
-    for number, one in enumerate(case.cylinders, start=1):
-        if foot is None and isinstance(one.ground, EarthPoint):
+    for number, cylinder in enumerate(case.cylinders, start=1):
+        if foot is None and isinstance(cylinder.ground, EarthPoint):
             what = "no segment has a support, from whose pin front and below are measured; give one"
             raise BoomError(f"cylinder[{number}].ground", what)
     if foot is None:
         return case.cylinders
-    return tuple(one.in_boom_axes(angle, foot) for one in case.cylinders)
+    cylinders = tuple(cylinder.in_boom_axes(angle, foot) for cylinder in case.cylinders)
+    if case.luff is not None and case.luff.travel:
+        for number, cylinder in enumerate(cylinders):
+            luffed = cylinder.luffed(radians(case.luff.travel), foot)
+            luffed.check(f"cylinders[{number}]", case.spatial)
+    return cylinders
 
 
 def _foot(case: Case) -> Support | None:
     """Return the foot of the first segment that has one, about whose pin the boom luffs."""
-    for table, ends in zip(case.segments, _spans(case.segments, case.joints), strict=True):
+    for table, ends in zip(
+        case.segments, _spans(case.segments, telescoped_joints(case)), strict=True
+    ):
         if table.supports:
-            supports = [resolve_distances(one, *ends) for one in table.supports]
+            supports = [resolve_distances(support, *ends) for support in table.supports]
             return min(supports, key=lambda support: support.x)
     return None
 
@@ -224,11 +232,14 @@ def _check_planar(case: Case) -> None:
     lateral_actions = {
         "slew": case.slew,
         "limits.tip_lateral": case.limits and case.limits.tip_lateral,
+        "head.beside": case.head and case.head.beside,
+        "wind.direction": case.wind and case.wind.dynamic_pressure and case.wind.direction % 180.0,
         **{
-            f"segment[{i}].lateral_load": one.lateral_load for i, one in enumerate(case.segments, 1)
+            f"segment[{i}].lateral_load": segment.lateral_load
+            for i, segment in enumerate(case.segments, 1)
         },
-        **{f"base[{i}].direction": one.direction == "y" for i, one in enumerate(case.base, 1)},
-        **{f"hoist.wind[{i}].direction": one.direction == "y" for i, one in enumerate(winds, 1)},
+        **{f"base[{i}].direction": load.direction == "y" for i, load in enumerate(case.base, 1)},
+        **{f"hoist.wind[{i}].direction": wind.direction == "y" for i, wind in enumerate(winds, 1)},
         **{
             f"start.velocity.{name}.{key}": getattr(velocity, key)
             for name, velocity in case.start.velocity.items()
@@ -239,6 +250,38 @@ def _check_planar(case: Case) -> None:
         if action and not case.spatial:
             what = "the boom is flat, and nothing moves along 'y'; give the joints lateral_play"
             raise BoomError(where, what)
+
+
+def telescoped_joints(case: Case) -> tuple[JointTable, ...]:
+    """Return the joints with their extensions at the fraction of the stroke of the case.
+
+    Raises:
+        BoomError: no joint has an extension, or one is below that of the retracted boom.
+    """
+    table, lengths = case.telescoping, {one.name: one.length for one in case.segments}
+    if table is None:
+        return case.joints
+    strokes: dict[int, tuple[float, float]] = {}
+    for number, joint in enumerate(case.joints):
+        inner, outer = (lengths.get(name) for name in (joint.inner, joint.outer))
+        if joint.extension is not None and inner is not None:
+            least = max(table.retracted, inner - (inner if outer is None else outer))
+            if least > joint.extension:
+                what = f"must be at least {least:g} m, that of the retracted boom"
+                raise BoomError(f"joint[{number + 1}].extension", what)
+            strokes[number] = least, joint.extension - least
+    if not strokes:
+        raise BoomError("telescoping", "no joint has an extension; give the largest one to each")
+    travel = table.extension * sum(stroke for _, stroke in strokes.values())
+    joints = list(case.joints)
+    for number in reversed(strokes) if table.order == "from the tip" else strokes:
+        least, stroke = strokes[number]
+        moved = min(stroke, travel)
+        if table.order == "in proportion":
+            moved = table.extension * stroke
+        travel -= moved
+        joints[number] = replace(joints[number], extension=least + moved)
+    return tuple(joints)
 
 
 def _spans(
@@ -253,7 +296,7 @@ def _spans(
     ends = {segment.name: segment.span for segment in segments if segment.span is not None}
     # The keys of extensions that place inner segments, by the names of these.
     keys: dict[str, str] = {}
-    sliding = [one for one in joints if one.extension is not None]
+    sliding = [joint for joint in joints if joint.extension is not None]
     for number, joint in enumerate(joints, start=1):
         if joint.extension is None:
             continue

@@ -207,10 +207,10 @@ def _check_thousands(rows: Sequence[_FileLine], indices: Sequence[int]) -> None:
         _FileError: a comma or a point may separate thousands.
     """
     cells = [(row.line, i, row.cells[i]) for row in rows for i in indices]
-    with_comma = [one for one in cells if "," in one[2]]
-    doubtful = [one for one in cells if with_comma and _THOUSANDS.fullmatch(one[2])]
-    if len([one for one in doubtful if "," in one[2]]) < len(with_comma):
-        doubtful = [one for one in doubtful if "." in one[2]]
+    with_comma = [cell for cell in cells if "," in cell[2]]
+    doubtful = [cell for cell in cells if with_comma and _THOUSANDS.fullmatch(cell[2])]
+    if len([cell for cell in doubtful if "," in cell[2]]) < len(with_comma):
+        doubtful = [cell for cell in doubtful if "." in cell[2]]
     if doubtful:
         line, i, cell = doubtful[0]
         mark = "comma" if "," in cell else "point"

@@ -2,20 +2,19 @@
 """Load cases and combinations: static cases with changed keys and with factors on loads.
 
 The case of a combination has the masses of its load case. A load on a rope hangs at rest, as a
-mass at the tip. If the payload and the dead weight have
-different factors, a force at the tip, across and along the boom, adds the difference in weight.
+mass at the tip. If the payload and the dead weight have different factors, the payload has an
+acceleration of gravity of its own.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from math import cos, radians, sin
 from typing import Any, NamedTuple, TypeVar, get_args
 
 from protractile.geometry.boom import BoomError
 from protractile.geometry.typography import choices
-from protractile.runs.case.actions import axial_force, payload_gravity
+from protractile.runs.case.actions import payload_weight
 from protractile.runs.case.build import build_boom, check_names, hold_ground
 from protractile.runs.case.limits import CaseTable
 from protractile.runs.case.load_tables import (
@@ -26,7 +25,9 @@ from protractile.runs.case.load_tables import (
     LoadCaseTable,
     LoadTable,
     PayloadTable,
+    TelescopingTable,
 )
+from protractile.runs.case.messages import key_of_part
 from protractile.runs.case.schema import Case
 
 Table = TypeVar("Table", bound=CaseTable)
@@ -57,13 +58,15 @@ def combined_cases(case: Case) -> Iterator[CombinedCase]:
         factors = UNIT
         if combination is not default:
             factors = {group: combination.factors.of(group) or 0.0 for group in UNIT}
-        for one in case.load_cases or (_PLAIN,):
-            if combination.load_cases is None or one.name in combination.load_cases:
+        for load_case in case.load_cases or (_PLAIN,):
+            if combination.load_cases is None or load_case.name in combination.load_cases:
                 names = [combination.name] if case.combinations else []
-                if one is not _PLAIN or not names:
-                    names.append(one.name)
-                combined = combine(case, one, factors)
-                yield CombinedCase(", ".join(names), combined, combination, case, one, factors)
+                if load_case is not _PLAIN or not names:
+                    names.append(load_case.name)
+                combined = combine(case, load_case, factors)
+                yield CombinedCase(
+                    ", ".join(names), combined, combination, case, load_case, factors
+                )
 
 
 def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
@@ -77,12 +80,16 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
         if gravity is None:
             raise BoomError("angle", "the case has no table gravity, whose angle it replaces")
         gravity = gravity.model_copy(update={"angle": table.angle})
+    telescoping = None if table.extension else case.telescoping
+    if table.telescoped is not None:
+        update = {"extension": table.telescoped}
+        telescoping = (telescoping or TelescopingTable()).model_copy(update=update)
     if hung := _hung_mass(case, table):
         mass = hung + (payload.mass if payload else 0.0)
         payload = (payload or PayloadTable(mass=mass)).model_copy(update={"mass": mass})
     replacements: Mapping[str, Any] = {
         key: getattr(case if getattr(table, key) is None else table, key)
-        for key in ("loads", "axial", "base")
+        for key in ("loads", "axial", "base", "wind")
     }
     changed = case.model_copy(
         update={
@@ -90,6 +97,7 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
             "gravity": gravity,
             "payload": payload,
             "joints": _joints(case, table),
+            "telescoping": telescoping,
             **dict.fromkeys(("hoist", "slew", "luff")),
             "load_cases": (),
             "combinations": (),
@@ -98,34 +106,23 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
     )
     combined = hold_ground(changed, case)
     dead = factors["dead"]
-    segments = [_times(one, dead, "load", "lateral_load") for one in combined.segments]
-    loads = [_times(one, factors[one.group], one.amount) for one in combined.loads]
-    # An empty hook carries nothing.
-    carried = 0.0 if case.hoist is not None and payload is None else None
-    axial = [
-        AxialTable(
-            segment=one.segment,
-            x=one.x,
-            force=factors[one.group] * axial_force(f"axial[{number}]", one, combined, carried),
-        )
-        for number, one in enumerate(combined.axial, start=1)
-    ]
-    base = [_times(one, factors[one.group], one.amount) for one in combined.base]
-    # Factor by which the model already multiplies the weight of the mass at the tip.
-    weight_factor, acceleration = 0.0, payload_gravity(payload)
-    if gravity is not None:
-        weight_factor, acceleration = dead, gravity.acceleration
-        gravity = _times(gravity, dead, "acceleration")
-    elif payload is not None:
-        payload = payload.model_copy(update={"gravity": 0.0})
+    segments = [_times(segment, dead, "load", "lateral_load") for segment in combined.segments]
+    loads = [_times(load, factors[load.group], load.amount) for load in combined.loads]
+    axial = [_times(axial, factors[axial.group], "force") for axial in combined.axial]
+    base = [_times(action, factors[action.group], action.amount) for action in combined.base]
     masses = tip_masses(case, table)
-    extra = acceleration * sum((factors[group] - weight_factor) * mass for group, mass in masses)
-    if extra:
-        angle = radians(0.0 if gravity is None else gravity.angle)
-        last = combined.segments[-1].name
-        tip = {"segment": last, "x": "head", "magnitude": -extra * cos(angle)}
-        loads.append(LoadTable.model_validate(tip))
-        axial.append(AxialTable(force=extra * sin(angle)))
+    if payload is not None:
+        total = payload_weight(combined) / payload.mass
+        weighed = sum(factors[group] * mass for group, mass in masses) / payload.mass
+        payload = payload.model_copy(update={"gravity": total * weighed})
+    if gravity is not None:
+        gravity = _times(gravity, dead, "acceleration")
+    wind, rope = combined.wind, combined.rope
+    if wind is not None:
+        pressure = factors["wind"] * wind.dynamic_pressure
+        wind = wind.model_copy(update={"pressure": pressure, "speed": None})
+    if rope is not None and rope.falls is None and case.hoist is not None:
+        rope = rope.model_copy(update={"falls": case.hoist.falls})
     return combined.model_copy(
         update={
             "segments": tuple(segments),
@@ -134,6 +131,8 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
             "base": tuple(base),
             "gravity": gravity,
             "payload": payload,
+            "wind": wind,
+            "rope": rope,
         }
     )
 
@@ -144,11 +143,6 @@ def tip_masses(case: Case, table: LoadCaseTable) -> list[tuple[Group, float]]:
     if case.payload is not None:
         masses.append((case.payload.group, case.payload.mass))
     return masses
-
-
-def load_tables(case: Case, table: LoadCaseTable) -> Sequence[LoadTable]:
-    """Return the tables of loads in a load case."""
-    return case.loads if table.loads is None else table.loads
 
 
 def _hung_mass(case: Case, table: LoadCaseTable) -> float:
@@ -183,14 +177,15 @@ def check_combinations(case: Case) -> None:
         BoomError: a name is given twice or unknown, a load case has no valid boom, or a combination
             has no factor for a group of its load cases.
     """
-    check_names("load_case", [one.name for one in case.load_cases])
-    check_names("combination", [one.name for one in case.combinations])
-    for number, one in enumerate(case.load_cases, start=1):
+    check_names("load_case", [load_case.name for load_case in case.load_cases])
+    check_names("combination", [combination.name for combination in case.combinations])
+    for number, load_case in enumerate(case.load_cases, start=1):
         try:
-            build_boom(combine(case, one))
+            build_boom(combine(case, load_case))
         except BoomError as error:
-            raise BoomError(f"load_case[{number}].{error.where}", error.what) from None
-    names = [one.name for one in case.load_cases]
+            where = f"load_case[{number}].{key_of_part(error.where)}"
+            raise BoomError(where, error.what) from None
+    names = [load_case.name for load_case in case.load_cases]
     for number, combination in enumerate(case.combinations, start=1):
         selected = names if combination.load_cases is None else combination.load_cases
         _check_names(f"combination[{number}].load_cases", selected, names)
@@ -213,7 +208,7 @@ def _check_names(where: str, selected: Sequence[str], names: Sequence[str]) -> N
 def _check_factors(
     case: Case, number: int, combination: CombinationTable, selected: Sequence[str]
 ) -> None:
-    tables = [one for one in case.load_cases if one.name in selected]
+    tables = [load_case for load_case in case.load_cases if load_case.name in selected]
     for table in tables or [_PLAIN]:
         for group, what in _groups(case, table):
             if combination.factors.of(group) is None:
@@ -226,17 +221,22 @@ def _check_factors(
 
 def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
     """Yield the load group (``dead``, ``payload`` …) and the name of each load of a load case."""
-    if case.gravity is not None or any(one.load or one.lateral_load for one in case.segments):
+    if case.gravity is not None or any(
+        segment.load or segment.lateral_load for segment in case.segments
+    ):
         yield "dead", "the weight of the boom"
     if case.payload is not None:
         yield case.payload.group, "the weight of the payload"
+    wind = case.wind if table.wind is None else table.wind
+    if wind is not None and wind.dynamic_pressure:
+        yield "wind", "the table wind"
     if _hung_mass(case, table):
         yield "payload", f"the payload of {table.name!r}" if table.payload else "the load of hoist"
     parts: dict[str, Sequence[LoadTable | AxialTable | GroundAccelerationTable]] = {
-        "load": load_tables(case, table),
+        "load": case.loads if table.loads is None else table.loads,
         "axial": case.axial if table.axial is None else table.axial,
         "base": case.base if table.base is None else table.base,
     }
     for key, several in parts.items():
-        for number, one in enumerate(several, start=1):
-            yield one.group, f"{key}[{number}]"
+        for number, combination in enumerate(several, start=1):
+            yield combination.group, f"{key}[{number}]"

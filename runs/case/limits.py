@@ -55,7 +55,7 @@ def walk_tables(table: Any, key: str = "") -> Iterator[tuple[str, Any]]:
         value, inner = getattr(table, name), f"{key}.{step}" if key else step
         parts = {inner: value}
         if isinstance(value, dict):
-            parts = {f"{inner}.{one}": part for one, part in value.items()}
+            parts = {f"{inner}.{name}": part for name, part in value.items()}
         elif isinstance(value, tuple):
             parts = {f"{inner}[{i}]": part for i, part in enumerate(value, start=1)}
         for where, part in parts.items():
@@ -73,9 +73,9 @@ def map_tables(table: Any, change: Callable[[str, Any], Mapping[str, Any]], key:
         if is_table(value):
             return map_tables(value, change, key)
         if isinstance(value, dict):
-            return {name: mapped(one, f"{key}.{name}") for name, one in value.items()}
+            return {name: mapped(item, f"{key}.{name}") for name, item in value.items()}
         if isinstance(value, tuple) and any(map(is_table, value)):
-            return tuple(mapped(one, f"{key}[{i}]") for i, one in enumerate(value, start=1))
+            return tuple(mapped(item, f"{key}[{i}]") for i, item in enumerate(value, start=1))
         return value
 
     changed = dict(change(key, table))

@@ -23,7 +23,17 @@ from protractile.geometry.fields import (
     rising,
 )
 from protractile.geometry.place import Place
-from protractile.runs.case.limits import MOST_TIMES, CaseTable, Count, Text, error_at
+from protractile.geometry.typography import choices
+from protractile.geometry.wind import AIR_DENSITY
+from protractile.runs.case.limits import (
+    MOST_TIMES,
+    CaseTable,
+    Count,
+    Text,
+    error_at,
+    superfluous_error,
+    unsuitable,
+)
 
 # Groups of loads with a common factor in a combination.
 Group = Literal["dead", "payload", "wind", "dynamic", "test"]
@@ -126,19 +136,89 @@ class LoadTable(HistoryTable):
         return super().declared_units(key)
 
 
+# Angles of the names of directions in degrees.
+_BLOWS = {"behind": 0.0, "side": 90.0, "front": 180.0}
+
+
+def _blow(value: Any) -> Any:
+    """Return the angle of a direction; other text than its name is an error."""
+    if isinstance(value, str) and value not in _BLOWS:
+        raise unsuitable(f"must be {choices([*_BLOWS])}, or an angle in degrees, got {value!r}")
+    return _BLOWS[value] if isinstance(value, str) else value
+
+
+class WindPressureTable(HistoryTable):
+    """Horizontal wind on the exposed parts of the segments, and on the load at the tip.
+
+    The pressure acts on the outer height and width of the sections; of a wind oblique to the axis,
+    only the flow across the axis counts.
+    """
+
+    pressure: Annotated[NotNegative, In("Pa")] = 1.0
+    """the dynamic pressure in Pa; a factor, 1 unless given, if the heading of its file has such a
+    unit"""
+    speed: Annotated[NotNegative, In("m/s")] | None = None
+    """the wind speed in m/s, instead of the pressure: 0.5 x 1.25 kg/m^3 x speed^2 (EN 13001-2)"""
+    direction: Annotated[
+        float,
+        Field(strict=True, ge=-360.0, le=360.0),
+        In("deg"),
+        BeforeValidator(_blow, json_schema_input_type=Literal["behind", "side", "front"] | float),
+    ] = 0.0
+    """the direction: behind, side (towards +y), front, or an angle in degrees from behind towards
+    +y"""
+    shape_factor: Annotated[
+        tuple[Positive, ...],
+        In("1"),
+        Field(min_length=1),
+        BeforeValidator(
+            lambda value: (value,) if is_number(value) else value,
+            json_schema_input_type=Positive | tuple[Positive, ...],
+        ),
+    ]
+    """the shape factor (force coefficient) of all segments, or one for each segment"""
+    load_area: Annotated[NotNegative, In("m^2")] = 0.0
+    """the area in m^2 of the load at the tip in the wind, times its shape factor"""
+
+    amount: ClassVar[str] = "pressure"
+
+    @property
+    def dynamic_pressure(self) -> float:
+        """The dynamic pressure in Pa at the value 1 of the history."""
+        return self.pressure if self.speed is None else 0.5 * AIR_DENSITY * self.speed**2
+
+    @model_validator(mode="after")
+    def _has_an_amount(self) -> Self:
+        given = "pressure" in self.model_fields_set
+        if self.speed is None and self.file is None and not given:
+            raise error_at(self, "missing", "pressure")
+        if self.speed is not None and given:
+            raise superfluous_error(self, "pressure", "speed")
+        return self
+
+
+class RopeTable(CaseTable):
+    """The hoist rope: all masses at the tip hang on it, and it leads back along the boom.
+
+    The force of the lead is their weight over the falls. It follows the boom: it points from the
+    tip to the winch as the boom deflects.
+    """
+
+    falls: Count | None = None
+    """the number of falls between head and hook; those of the table hoist unless given"""
+    winch: Annotated[NotNegative, In("m")] = 0.0
+    """the distance in m of the winch behind the boom's foot, on its axis"""
+
+
 class AxialTable(CaseTable):
-    """A constant axial force towards the base, such as the force of a hoist rope."""
+    """A constant axial force towards the base that keeps its direction."""
 
     segment: str | None = None
     """the name of the segment on which it acts; the last one unless given"""
     x: Place | None = None
     """the x in m of its point of application; the segment's end unless given"""
-    force: Annotated[Number, In("N")] | None = None
-    """the force in N towards the base; unless given, the force follows from the hoist rope"""
-    falls: Count | None = None
-    """the number of falls of a hoist rope, which share the mass on it"""
-    mass: Annotated[Positive, In("kg")] | None = None
-    """the mass in kg that the rope carries; that of payload and hoist unless given"""
+    force: Annotated[Number, In("N")]
+    """the force in N towards the base"""
     group: Group = "payload"
     """the group of the force, whose factor combinations give"""
 
@@ -169,6 +249,23 @@ class GroundAccelerationTable(HistoryTable):
     amount: ClassVar[str] = "acceleration"
 
 
+# Fraction of the stroke: 0 retracted, 1 extended.
+Telescoped = Annotated[float, Field(strict=True, ge=0.0, le=1.0), In("1")]
+
+
+class TelescopingTable(CaseTable):
+    """How far the boom is telescoped; the extensions of the joints are those of its full length."""
+
+    extension: Telescoped = 1.0
+    """the fraction of the stroke: 0 for the retracted boom, 1 for the extensions of the joints"""
+    order: Literal["in proportion", "from the base", "from the tip"] = "in proportion"
+    """the order in which the segments move: all in proportion, as ropes and chains couple them, or
+    one after the other from the base or from the tip"""
+    retracted: Annotated[NotNegative, In("m")] = 0.0
+    """the least extension in m of each joint in the retracted boom; longer segments stay out by
+    their difference in length"""
+
+
 class LoadCaseTable(CaseTable):
     """A load case of the boom at rest. Its keys replace keys of the case."""
 
@@ -179,6 +276,9 @@ class LoadCaseTable(CaseTable):
     it is on the earth"""
     extension: Annotated[dict[str, NotNegative], In("m")] = Field(default_factory=dict)
     """inner segment = extension in m, in place of the joint's extension"""
+    telescoped: Telescoped | None = None
+    """the fraction of the stroke to which the boom is telescoped, in place of
+    telescoping.extension"""
     payload: Annotated[NotNegative, In("kg")] | None = None
     """a mass in kg at the tip in addition to the table payload; it weighs along and across the
     boom, as a load of the group payload; the mass of the table hoist, if any, unless given"""
@@ -188,6 +288,20 @@ class LoadCaseTable(CaseTable):
     """the forces along the boom in place of all [[axial]] of the case; those unless given"""
     base: Annotated[tuple[GroundAccelerationTable, ...], Few] | None = None
     """the accelerations of the ground in place of all [[base]] of the case; those unless given"""
+    wind: (
+        Annotated[
+            WindPressureTable,
+            BeforeValidator(
+                lambda value: (
+                    {"pressure": float(value), "shape_factor": 1.0} if is_number(value) else value
+                ),
+                json_schema_input_type=NotNegative | WindPressureTable,
+            ),
+        ]
+        | None
+    ) = None
+    """the table of the wind in place of that of the case, or the product of pressure and shape
+    factor in Pa, 0 for none; the wind of the case unless given"""
 
 
 # The numbers whose product is the factor.
@@ -210,7 +324,7 @@ class FactorsTable(CaseTable):
     payload: Factor | None = None
     """the factor of the payload and of loads without another group"""
     wind: Factor | None = None
-    """the factor of loads of the group wind"""
+    """the factor of the table wind and of loads of the group wind"""
     dynamic: Factor | None = None
     """the factor of accelerations of the ground and of loads of the group dynamic"""
     test: Factor | None = None

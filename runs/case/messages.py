@@ -57,7 +57,7 @@ _ADVICE = {
 
 
 @contextmanager
-def refusing(file: str) -> Iterator[None]:
+def translated_errors(file: str) -> Iterator[None]:
     """Raise errors in the tables and in the boom of a case file as :class:`BadInput`.
 
     If a misspelled key causes two errors, the message is on the unknown key, not the missing one.
@@ -67,13 +67,13 @@ def refusing(file: str) -> Iterator[None]:
     except ValidationError as error:
         faults = error.errors(include_url=False)
         first = next((f for f in faults if f["type"] in UNKNOWN), faults[0])
-        told = _explain(first["type"], first["loc"], first["input"], first.get("ctx"))
-        raise BadInput(file, *told) from None
+        explained = _explain(first["type"], first["loc"], first["input"], first.get("ctx"))
+        raise BadInput(file, *explained) from None
     except BoomError as error:
-        raise BadInput(file, _key_of_part(error.where), error.what) from None
+        raise BadInput(file, key_of_part(error.where), error.what) from None
 
 
-def _key_of_part(where: str) -> str:
+def key_of_part(where: str) -> str:
     """Return the key of a boom's part: ``segment[2].span`` for ``segments[1].start``."""
     part = re.split(r"\W", where)[0]
     if part not in _PARTS:
@@ -177,7 +177,7 @@ def _unknown_key(location: Sequence[int | str]) -> str:
         return f"unknown key; use {synonym}"
     if synonym in keys:
         return f"unknown key; use {synonym}, {describe(fields_of(table)[names_of(table)[synonym]])}"
-    near = [one for one in keys if sorted(one.split("_")) == sorted(key.split("_"))]
+    near = [known for known in keys if sorted(known.split("_")) == sorted(key.split("_"))]
     near = near or get_close_matches(shorten(key), keys, n=1)
     if near:
         return f"unknown key; the nearest known one is {near[0]}"

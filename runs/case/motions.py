@@ -7,6 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import pi
 
+from scipy.special import sindg
+
 from protractile.dynamics.contact import Gap
 from protractile.dynamics.excitation import History, is_constant
 from protractile.dynamics.frame_motion import FrameAcceleration, FrameMotion, Spin
@@ -19,6 +21,7 @@ from protractile.geometry.axial import AxialChange, Thrust, lumped_masses, with_
 from protractile.geometry.boom import Boom, BoomError, Direction, Joint, PointMass, Segment
 from protractile.geometry.load import AngularAcceleration, Load
 from protractile.geometry.telescoping import drives_below, drives_of, telescoping_stations
+from protractile.runs.case.actions import lead_of
 from protractile.runs.case.contact import JointTable
 from protractile.runs.case.load_tables import build_history
 from protractile.runs.case.motion_tables import DriveTable
@@ -207,18 +210,22 @@ def hoist_changes(
 ) -> Iterator[AxialChange]:
     """Yield the change of axial forces when the rope lifts a load, or drops it."""
     table = case.hoist
-    if table is None or case.gravity is None or not case.gravity.along:
+    if table is None or case.gravity is None or not (case.gravity.along or case.rope):
         return
     if table.hanging and not table.dropped:
         return
-    weight = table.mass * case.gravity.along
-    rope = Thrust(len(segments) - 1, segments[-1].end, -weight if table.dropped else weight)
-    loaded_segments = with_compression(segments, joints, [rope])
+    weight = (-1.0 if table.dropped else 1.0) * table.mass * case.gravity.acceleration
+    leads = tuple(lead_of(case, segments, weight))
+    last, end, along = len(segments) - 1, segments[-1].end, float(sindg(case.gravity.angle))
+    forces = (weight * along, *(lead.force for lead in leads))
+    thrusts = [Thrust(last, end, force) for force in forces]
+    loaded_segments = with_compression(segments, joints, thrusts)
     force: History = Release()
     if not table.dropped:
         stretch = table.mass * case.gravity.acceleration / table.rope_stiffness
         force = RopeForce(table.history("hoist"), stretch, table.slack)
-    yield AxialChange(force, [segment.compression for segment in loaded_segments])
+    compressions = [segment.compression for segment in loaded_segments]
+    yield AxialChange(force, compressions, leads=leads)
 
 
 def with_hanging_load(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
@@ -277,8 +284,8 @@ def with_elastic_drives(system: GapSystem, case: Case, boom: Boom) -> GapSystem:
     drives = elastic_drives(case, boom)
     suffixes = {group.suffix: drives.get(group.joints[0]) for group in telescoping_stations(boom)}
     travels = [
-        replace(one, elastic=None if one.suffix is None else suffixes[one.suffix])
-        for one in system.travels
+        replace(travel, elastic=None if travel.suffix is None else suffixes[travel.suffix])
+        for travel in system.travels
     ]
     return replace(system, travels=travels)
 

@@ -83,12 +83,12 @@ def check_parts(boom: Boom) -> None:
     """
     for number, segment in enumerate(boom.segments):
         where = f"segments[{number}]"
-        for one in (
+        for usual in (
             *material_ranges({f"{where}.material": segment.material}),
             *section_ranges(where, segment),
         ):
-            if one.impossible:
-                raise BoomError(one.key, one.text(System()))
+            if usual.impossible:
+                raise BoomError(usual.key, usual.text(System()))
 
 
 def material_ranges(tables: Mapping[str, Material]) -> Iterator[UsualRange]:

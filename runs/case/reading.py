@@ -41,7 +41,7 @@ from protractile.runs.case.limits import (
     units_of,
 )
 from protractile.runs.case.load_tables import HistoryTable
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.motion_tables import TravelTable
 from protractile.runs.case.sanity import check_ranges, usual_ranges
 from protractile.runs.case.schema import Case, EnsembleTable, Model, TimeTable
@@ -104,7 +104,7 @@ def check_tables(tables: Mapping[str, object], path: str) -> CheckedCase:
         BadInput: the content is invalid.
     """
     try:
-        with refusing(path):
+        with translated_errors(path):
             means, _ = take_means(tables, path)
             case = convert_to_si(_read_files(Case.model_validate(means), path))
     except OverflowError:
@@ -121,7 +121,7 @@ def check(case: Case, path: str) -> CheckedCase:
     """
     checked = CheckedCase(case)
     try:
-        with refusing(path):
+        with translated_errors(path):
             _check_time(case.time)
             _check_boom(checked)
     except BadInput as fault:
@@ -173,7 +173,7 @@ def select(
             raise BadInput(
                 path, "--mesh-size", f"must be a finite number of m above 0, got {mesh_size:g}"
             )
-        with refusing(path):
+        with translated_errors(path):
             check_mesh_size("--mesh-size", mesh_size, build_boom(case))
         subset = _with_shells(
             subset, path, "--mesh-size", {"mesh_size": mesh_size, "contact_tolerance": "any"}
@@ -196,7 +196,7 @@ def select(
         ensemble = EnsembleTable(**keys | {"members": members}) if members else None
     selected = case.model_copy(update={"models": subset, "ensemble": ensemble})
     if members:
-        with refusing(path):
+        with translated_errors(path):
             check_ensemble_data(selected, build_boom(selected))
     return selected
 
@@ -347,8 +347,8 @@ def _check_boom(checked: CheckedCase) -> None:
             model.check(where, checked.model_boom(model))
         except BoomError as error:
             # A wrong unit is a likely reason, for example of a boom that buckles.
-            unusual = (one for one in usual_ranges(case, boom) if one.unusual)
-            hint = next((one for one in unusual if any(one.likely_units(case.system))), None)
+            unusual = (usual for usual in usual_ranges(case, boom) if usual.unusual)
+            hint = next((usual for usual in unusual if any(usual.likely_units(case.system))), None)
             what = "" if hint is None else f"; {hint.key}: {hint.text(case.system)}"
             raise BoomError(error.where, f"{error.what}{what}") from None
     _check_step("time.step", case.time.step, case.time)
@@ -387,7 +387,7 @@ def take_means(tables: Mapping[str, object], file: str) -> tuple[dict[str, objec
         if item.keys() != {"mean", "sd"}:
             return {key: replace_by_means(value, (*steps, key)) for key, value in item.items()}
         mean, sd = item["mean"], item["sd"]
-        finite = all(is_number(one) and math.isfinite(one) for one in (mean, sd))
+        finite = all(is_number(number) and math.isfinite(number) for number in (mean, sd))
         if not (finite and sd > 0.0):
             what = f"must have a finite mean and an sd above 0, got {mean!r} and {sd!r}"
             raise BadInput(file, key_of(steps), what)
@@ -417,7 +417,11 @@ def convert_to_si(case: Case) -> Case:
         if isinstance(table, CaseTable):
             names = table.model_fields_set
         else:
-            names = {one.name for one in fields(table) if getattr(table, one.name) != one.default}
+            names = {
+                attribute.name
+                for attribute in fields(table)
+                if getattr(table, attribute.name) != attribute.default
+            }
         exponent, converted = exponents.get(key.partition(".")[0], 2.0), {}
         for name in names:
             if sizes := [system.size(unit) for unit in units_of(table, name, exponent)]:

@@ -23,9 +23,9 @@ def check_ranges(case: Case, boom: Boom) -> None:
     Raises:
         BoomError: a number is impossible.
     """
-    for one in usual_ranges(case, boom):
-        if one.impossible:
-            raise BoomError(one.key, one.text(case.system))
+    for usual in usual_ranges(case, boom):
+        if usual.impossible:
+            raise BoomError(usual.key, usual.text(case.system))
 
 
 def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
@@ -34,8 +34,8 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
     The limits are wide: laboratory booms of 1 m and cranes of 60 m are within them.
     """
     yield from material_ranges(materials(case))
-    for one in key_values(case, boom):
-        yield UsualRange(one.key, one.usual.what, one.value, one.unit, *one.usual[1:])
+    for value in key_values(case, boom):
+        yield UsualRange(value.key, value.usual.what, value.value, value.unit, *value.usual[1:])
     for number, segment in enumerate(boom.segments):
         yield from section_ranges(f"segment[{number + 1}]", segment)
     for number in range(len(boom.joints)):
@@ -52,7 +52,9 @@ def usual_ranges(case: Case, boom: Boom) -> Iterator[UsualRange]:
 
 def materials(case: Case) -> dict[str, Material]:
     """Return the materials of a case, by their keys."""
-    tables = {f"segment[{i}].material": one.material for i, one in enumerate(case.segments, 1)}
+    tables = {
+        f"segment[{i}].material": segment.material for i, segment in enumerate(case.segments, 1)
+    }
     tables = {"material": case.material, **tables}
     return {where: table for where, table in tables.items() if table is not None}
 

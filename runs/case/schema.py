@@ -28,6 +28,7 @@ from protractile.geometry.fields import (
     is_number,
     rising,
 )
+from protractile.geometry.head import Head
 from protractile.geometry.joint import BareStop
 from protractile.geometry.material import Material
 from protractile.geometry.observation import Observation, Recorded
@@ -48,6 +49,7 @@ from protractile.runs.case.limits import (
     Exponent,
     Part,
     Text,
+    unsuitable,
     validation_error,
 )
 from protractile.runs.case.load_tables import (
@@ -57,7 +59,10 @@ from protractile.runs.case.load_tables import (
     LoadCaseTable,
     LoadTable,
     PayloadTable,
+    RopeTable,
     SpectrumTable,
+    TelescopingTable,
+    WindPressureTable,
 )
 from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
 from protractile.runs.case.sections import SegmentTable
@@ -277,6 +282,9 @@ class Case(ClientKeys, CaseHeading):
         (), alias="joint"
     )
     """the joints, one [[joint]] each, from the base to the tip"""
+    telescoping: TelescopingTable | None = None
+    """the table of the fraction of the stroke to which the boom is telescoped; the extensions of
+    the joints unless given"""
     stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
         (), alias="stop"
     )
@@ -291,6 +299,13 @@ class Case(ClientKeys, CaseHeading):
     """the forces along the boom, one [[axial]] each"""
     payload: PayloadTable | None = None
     """the table of a mass at the tip"""
+    head: Head | None = None
+    """the table of the boom's head, with the place where payload and load hang; the end of the last
+    segment unless given"""
+    rope: RopeTable | None = None
+    """the table of the hoist rope, whose lead presses the boom; no rope unless given"""
+    wind: WindPressureTable | None = None
+    """the table of the wind on the segments and the load; a load case may have its own"""
     gravity: GravityTable | None = None
     """the table of the weight of all masses, across and along the boom; unless given, only the
     payload has weight"""
@@ -335,6 +350,16 @@ class Case(ClientKeys, CaseHeading):
                     name = getattr(part, key, "")
                     if not isinstance(name, str):
                         raise validation_error(self, "string_type", ((group, number, key), name))
+        return self
+
+    @model_validator(mode="after")
+    def _gravity_once(self) -> Self:
+        if self.gravity and self.payload and self.payload.gravity is not None:
+            error = unsuitable(
+                "the table gravity is given, by which the payload weighs too; leave one of them out"
+            )
+            at = ("payload", "gravity"), self.payload.gravity
+            raise validation_error(self, error, at)
         return self
 
     @model_validator(mode="after")

@@ -13,6 +13,7 @@ from pydantic import BeforeValidator, Discriminator, Field, Tag, model_validator
 from protractile.geometry.box import BoxSection
 from protractile.geometry.fields import (
     Few,
+    Flag,
     In,
     Length,
     Name,
@@ -47,6 +48,9 @@ class ShapeTable(CaseTable):
     # Function that returns the section from all keys except ``shape``.
     make: ClassVar[Callable[..., Section]]
     shape: str
+    outside: Flag = False
+    """whether heights, widths, corners and radii are those of the outer surface, as drawn, instead
+    of mid-lines"""
 
     def section(self) -> Section:
         """Return the section that the keys define.
@@ -60,7 +64,8 @@ class ShapeTable(CaseTable):
 # Load cases and combinations share the sections of a case, which keep their properties.
 @lru_cache(maxsize=256)
 def _section(table: ShapeTable) -> Section:
-    return type(table).make(**table.model_dump(exclude={"shape"}))
+    made = type(table).make(**table.model_dump(exclude={"shape", "outside"}))
+    return made.within_outline() if table.outside else made
 
 
 class SectionTable(ShapeTable):

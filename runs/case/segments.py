@@ -28,8 +28,9 @@ def segment_of(
     mass, second_moment = _beam_properties(case, index)
     rotary, head = table.rotary_inertia, _head_section(table, index)
     payload: tuple[PointMass, ...] = ()
-    if case.payload is not None and index == len(case.segments) - 1:
-        payload = (PointMass(ends[1], case.payload.mass),)
+    if index == len(case.segments) - 1:
+        carried = (case.payload.mass if case.payload else 0.0, case.head.mass if case.head else 0.0)
+        payload = tuple(PointMass(ends[1], mass) for mass in carried if mass)
     return Segment(
         name=table.name,
         start=ends[0],

@@ -31,7 +31,7 @@ def _table(table: Mapping[str, Any], path: str) -> Iterator[str]:
         key: value
         for key, value in table.items()
         if isinstance(value, Mapping)
-        or (value and isinstance(value, tuple) and all(isinstance(one, Mapping) for one in value))
+        or (value and isinstance(value, tuple) and all(isinstance(item, Mapping) for item in value))
     }
     for key, value in table.items():
         if key not in nested:

@@ -11,7 +11,8 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import Chassis
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import names_of
-from protractile.geometry.joint import BareStop, PadSize, SlidePad
+from protractile.geometry.head import Head
+from protractile.geometry.joint import BareStop, Pad, SlidePad
 from protractile.geometry.material import Material
 from protractile.geometry.segment import PointMass
 from protractile.geometry.stiffeners import Collar, Diaphragm
@@ -29,6 +30,9 @@ from protractile.runs.case.load_tables import (
     LoadTable,
     PayloadTable,
     ResistanceTable,
+    RopeTable,
+    TelescopingTable,
+    WindPressureTable,
 )
 from protractile.runs.case.motion_tables import (
     DriveTable,
@@ -90,8 +94,8 @@ def key_values(case: Case, boom: Boom) -> Iterator[KeyValue]:
                 value = getattr(table, names_of(type(table))[key])
                 if not value and value != 0.0:
                     continue
-                one = usual(table, key) if callable(usual) else usual
-                columns = [one] if isinstance(one, Usual) else one
+                expected = usual(table, key) if callable(usual) else usual
+                columns = [expected] if isinstance(expected, Usual) else expected
                 for column, unit, sizes in zip(
                     columns, units_of(table, key), _columns(table, key, value), strict=False
                 ):
@@ -271,6 +275,14 @@ def _of_parts(sizes: _Sizes) -> Ranges:
                 1e7 * weight / length, 1.0e4,
             ),
             "capacity": Usual("the capacity of the cylinder", 0.5 * weight, 1e3 * weight, 1.0e3),
+            **dict.fromkeys(
+                ("closed", "open"), Usual("the length of the cylinder", 0.02 * length, length, 20.0)
+            ),
+            **dict.fromkeys(
+                ("bore", "rod"), Usual("the diameter of the cylinder", 0.02, 0.6, 20.0)
+            ),
+            "pressure": Usual("the pressure of the cylinder", 5e6, 7e7, 50.0),
+            "oil_modulus": Usual("the bulk modulus of the oil", 5e8, 2.2e9, 20.0),
             "depth": Usual("the depth of the lug", 0.0, 0.3 * length, 20.0),
             "dashpot": sizes.dashpot("cylinder"),
             "spread": Usual("the spread of the cylinders", 0.0, 0.3 * length, 20.0),
@@ -303,7 +315,7 @@ def _of_contacts(sizes: _Sizes) -> Ranges:
             "dashpot": sizes.dashpot("joint"),
             "detail_category": _CATEGORY._replace(least=12.0),
         },
-        PadSize: {
+        Pad: {
             "length": Usual("the length of the pad", 0.001, 0.2 * length, 20.0),
             "width": Usual("the width of the pad", 0.001, 0.1 * length, 20.0),
             "offset": Usual("the offset of the pad", 0.0, 0.1 * length, 20.0),
@@ -335,7 +347,22 @@ def _of_actions(sizes: _Sizes) -> Ranges:
         WindTable: {"force": Usual("the force on the load", 0.0, 10.0 * hoisted, 1.0e3)},
         AxialTable: {
             "force": Usual("the size of the force along the boom", 0.0, most_axial, 100.0),
-            "mass": Usual("the mass on the rope", 0.0, 50.0 * bare, 1.0e4),
+        },
+        WindPressureTable: {
+            "pressure": Usual("the wind pressure", 0.0, 3.0e3, 50.0),
+            "speed": Usual("the wind speed", 0.0, 70.0, 20.0),
+            "load_area": Usual("the area of the load in the wind", 0.0, 500.0, 100.0),
+            "shape_factor": Usual("the shape factor", 0.3, 3.0, 10.0),
+        },
+        TelescopingTable: {
+            "retracted": Usual("the extension of a retracted joint", 0.0, length, 50.0)
+        },
+        RopeTable: {"winch": Usual("the distance of the winch behind the foot", 0.0, 20.0, 50.0)},
+        Head: {
+            **dict.fromkeys(
+                ("ahead", "below", "beside"), Usual("the distance of the load", 0.0, 10.0, 100.0)
+            ),
+            "mass": Usual("the mass of the head", 0.0, 10.0 * bare, 1.0e4),
         },
         PayloadTable: {
             "mass": Usual("the mass of the payload", 0.0, 50.0 * bare, 1.0e4),

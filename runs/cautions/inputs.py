@@ -33,9 +33,9 @@ THIN_FLANGE = 0.85
 
 def unusual_numbers(context: Context) -> Iterator[str]:
     """Yield a caution for each number outside its usual range."""
-    for one in usual_ranges(context.case, context.boom):
-        if one.unusual:
-            yield f"{one.key}: {one.text(context.case.system)}"
+    for usual in usual_ranges(context.case, context.boom):
+        if usual.unusual:
+            yield f"{usual.key}: {usual.text(context.case.system)}"
 
 
 def ineffective_inputs(context: Context) -> Iterator[str]:
@@ -241,7 +241,9 @@ def swapped_thicknesses(context: Context) -> Iterator[str]:
             continue
         if section.flange < THIN_FLANGE * section.web:
             system = context.case.system
-            flange, web = (system.text(one, "m") for one in (section.flange, section.web))
+            flange, web = (
+                system.text(thickness, "m") for thickness in (section.flange, section.web)
+            )
             yield (
                 f"segment[{number}].section: the flanges of {flange} are thinner than the webs of "
                 f"{web}; usual is the contrary: check whether they are swapped"

@@ -78,7 +78,7 @@ def sizes(context: Context) -> Iterator[str]:
                 f"load[{number}]: {load.magnitude:g} N/m along the whole of {segment.name!r} makes "
                 f"{force:.4g} N, {force / own:.2g} times its weight; a force at one place needs x"
             )
-        outer = next((one.outer for one in boom.joints if one.inner == load.segment), None)
+        outer = next((joint.outer for joint in boom.joints if joint.inner == load.segment), None)
         if outer is not None and load.x is not None and load.x < boom.segments[outer].end:
             yield (
                 f"load[{number}].x: {load.x:g} m on {segment.name!r} lies "
@@ -141,7 +141,7 @@ def repeated_loads(context: Context) -> Iterator[str]:
                 "which the table gravity adds already; leave it out"
             )
     if payload is not None:
-        tip_masses = [one.mass for one in boom.segments[-1].masses if one.x > end]
+        tip_masses = [mass.mass for mass in boom.segments[-1].masses if mass.x > end]
         if sum(isclose(mass, payload.mass, rel_tol=SAME_LOAD) for mass in tip_masses) > 1:
             yield (
                 f"segment[{len(boom.segments)}].masses: the {payload.mass:g} kg of the payload "
@@ -160,7 +160,9 @@ def repeated_loads(context: Context) -> Iterator[str]:
         if load.x is None or load.x < end:
             continue
         mass = 0.0 if payload is None else payload.mass
-        same = [name for name, one in tip_weights(case).items() if one and weighs(force, one)]
+        same = [
+            name for name, weight in tip_weights(case).items() if weight and weighs(force, weight)
+        ]
         if same:
             yield (
                 f"{where}: if {force:g} N at the tip is the weight of the {same[0]}, it acts "
@@ -206,7 +208,10 @@ def missing_loads(context: Context) -> Iterator[str]:
     """Yield cautions if nothing loads the boom or a combination, or if only the payload weighs."""
     case, boom = context.case, context.boom
     amounts = [load.magnitude for load in boom.loads]
-    amounts += [one.load or (one.lateral.load if one.lateral else 0.0) for one in boom.segments]
+    amounts += [
+        segment.load or (segment.lateral.load if segment.lateral else 0.0)
+        for segment in boom.segments
+    ]
     if not any([*amounts, case.driven_segments, case.hoist, case.slew, case.luff]):
         yield (
             "load: nothing loads the boom across its axis or moves it, so that it stays at rest; "
@@ -238,17 +243,17 @@ def hoisted_loads(context: Context) -> Iterator[str]:
             f"payload.mass: the {case.system.text(payload, 'kg')} at the tip are also the load of "
             "[hoist], so that they weigh twice; leave one of them out"
         )
-    if case.hoist.has_winch and not case.axial:
+    if case.hoist.has_winch and not (case.rope or case.axial):
         yield (
-            "axial: missing, so that the rope of [hoist] does not press the boom on its way to the "
-            "winch; give [[axial]] with falls and the mass on the rope"
+            "rope: missing, so that the rope of [hoist] does not press the boom on its way to the "
+            "winch; give [rope]"
         )
 
 
 def load_cases(context: Context) -> Iterator[str]:
     """Yield cautions on loads of load cases along whole segments that are far from usual."""
     case, boom = context.case, context.boom
-    segments = {one.name: one for one in boom.segments}
+    segments = {segment.name: segment for segment in boom.segments}
     for number, load_case in enumerate(case.load_cases, start=1):
         for i, load in enumerate(load_case.loads or (), start=1):
             segment = segments.get(load.segment)

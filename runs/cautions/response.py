@@ -77,28 +77,32 @@ def wall_shares(context: Context) -> Iterator[str]:
         return
     (what, where), (time, tip) = beam.boom.yielding.split(maxsplit=1), largest_tip(beam)
     how, source = ("distort", "a frame of plates") if what == "sections" else ("bend", "plates")
-    told = (
+    sentence = (
         f"{what} {how} {where}, which moves the tip by {milli(part * tip)} of {milli(tip)} mm, "
         f"{percent(part, 2)}, under the loads at t = {time:.4g} s (estimate from {source})."
     )
-    yield told if abs(part) > GOVERNING_SHARE else Sentence(f"{told[0].upper()}{told[1:]}")
+    yield (
+        sentence
+        if abs(part) > GOVERNING_SHARE
+        else Sentence(f"{sentence[0].upper()}{sentence[1:]}")
+    )
 
 
 def stick_slip(context: Context) -> Iterator[str]:
     """Yield a caution for each drive that sticks and slips even at its largest speed."""
     system = context.case.system
-    for one in context.drives:
-        if one.critical_speed <= one.max_speed:
+    for drive in context.drives:
+        if drive.critical_speed <= drive.max_speed:
             continue
         remedy = "has no damping; give it a dashpot"
-        if one.critical_speed < inf:
+        if drive.critical_speed < inf:
             remedy = (
-                f"moves smoothly from {system.text(one.critical_speed, 'm/s', 3)} on; increase the "
-                "speed, the stiffness or the damping"
+                f"moves smoothly from {system.text(drive.critical_speed, 'm/s', 3)} on; increase "
+                "the speed, the stiffness or the damping"
             )
         yield (
-            f"the drive of {one.inner!r} sticks and slips during its whole travel: it moves at "
-            f"{system.text(one.max_speed, 'm/s', 3)} at most, and {remedy}"
+            f"the drive of {drive.inner!r} sticks and slips during its whole travel: it moves at "
+            f"{system.text(drive.max_speed, 'm/s', 3)} at most, and {remedy}"
         )
 
 
@@ -141,15 +145,15 @@ def deflections(context: Context) -> Iterator[str]:
         part = abs(tip) / context.boom.length
         if not part > TOLD_DEFLECTION:
             continue
-        told = (
+        sentence = (
             f"{where} the tip {what} {tip:.3g} m, {100.0 * part:.2g} % of the boom's length: small "
             f"displacements make it about {100.0 * TIP_ERROR * part**2:.2g} % too large, and "
             f"moments about {100.0 * MOMENT_ERROR * part**2:.2g} %"
         )
         if part > LARGE_DEFLECTION:
-            yield f"{told}; {_advice(context, where)}"
+            yield f"{sentence}; {_advice(context, where)}"
         else:
-            yield Sentence(f"{told[0].upper()}{told[1:]}, on the safe side.")
+            yield Sentence(f"{sentence[0].upper()}{sentence[1:]}, on the safe side.")
 
 
 def _deflections(context: Context) -> Iterator[tuple[str, str, float]]:
@@ -196,7 +200,7 @@ def durations(context: Context) -> Iterator[str]:
 def turning(context: Context) -> Iterator[str]:
     """Yield a caution if slewing or luffing is so fast that Coriolis forces on the boom matter."""
     least = APART * pendulum_frequency(context.case)
-    bending = [one for one in _frequencies(context) if one[0] > least]
+    bending = [frequency for frequency in _frequencies(context) if frequency[0] > least]
     for frequency, where in bending[:1]:
         for key, _, law in motion_laws(context.case):
             part = np.deg2rad(fastest_turn(law)) / (2.0 * np.pi * frequency)
@@ -218,7 +222,7 @@ def axial_stresses(context: Context) -> Iterator[str]:
     boom = context.boom
     numbers = range(len(boom.joints))
     if any(moving_force(boom.segments, boom.joints, number) for number in numbers):
-        for name in (name for name, one in context.models.items() if one.stress is not None):
+        for name in (name for name, model in context.models.items() if model.stress is not None):
             yield (
                 f"the walls of {name} carry the axial forces of the initial extension: their "
                 "stresses and utilisations neglect the change of axial forces by drives, unlike "
@@ -325,9 +329,9 @@ def accuracy(context: Context) -> Iterator[str]:
     """Yield cautions on shells with large errors by their reduction or their mesh."""
     # Shells whose mesh follows from contact_tolerance near contacts.
     refined = {
-        one.name
-        for one in select_kind(Shell, context.case.models)
-        if one.contact_tolerance != "any" and one.contact_line != "surface"
+        shell.name
+        for shell in select_kind(Shell, context.case.models)
+        if shell.contact_tolerance != "any" and shell.contact_line != "surface"
     }
     for name, model in context.models.items():
         if (error := model.reduction_errors.get("contact_compliance") or 0.0) > MAX_RELATIVE_ERROR:

@@ -249,7 +249,9 @@ class Search:
         Raises:
             NoCapacityError: the radius is out of reach.
         """
-        chassis, length = self.case.chassis, self.configuration.length
+        chassis, head, length = self.case.chassis, self.case.head, self.configuration.length
+        if head is not None:
+            length, tip = length + head.ahead, tip - head.below
         ratio = (self.radius - (chassis.foot_ahead if chassis else 0.0)) / hypot(length, tip)
         angle = degrees(acos(ratio) - atan2(tip, length)) if abs(ratio) <= 1.0 else -1.0
         least, most = chart_of(self.case).angles

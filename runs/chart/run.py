@@ -134,12 +134,6 @@ def plan(case: Case, file: str) -> list[Configuration]:
         if name not in inner:
             what = f"{name!r} extends in no joint; give {choices(inner)}"
             raise BadInput(file, f"chart.{place}", what)
-    table = case.load_cases[names.index(chart.load_case)]
-    for number, rope in enumerate(case.axial if table.axial is None else table.axial, start=1):
-        if rope.falls is not None and rope.mass is not None:
-            where = "" if table.axial is None else f"load_case[{1 + names.index(table.name)}]."
-            what = "the rope of a chart carries the payload that is searched; leave it out"
-            raise BadInput(file, f"{where}axial[{number}].mass", what)
     _check_combinations(case, file)
     try:
         planned = [*configurations(case, build_boom(case))]

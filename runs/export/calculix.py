@@ -183,6 +183,7 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         ("mpirun", comm.size > 1),
         ("joint.lateral_play", boom.spatial),
         ("hoist", case.hoist is not None),
+        ("rope", case.rope is not None),
     ):
         if present:
             what = "cannot be exported to CalculiX, for which one process writes a flat boom, with"
@@ -211,11 +212,11 @@ def write(case: Case, file: str, comm: MPI.Intracomm, path: Path, cache: Cache |
         SpringRow(line.force, {line.segment: line.push}, line.stiffness) for line in full.lines
     ]
     loads = [load.copy() for load in full.own_loads]
-    for one, push in full.loads:
-        if isinstance(one.history, ReleasedLoad):
-            loads[one.segment] += push
-        elif not isinstance(one.history, InitialImpulse):
-            loads[one.segment] += float(one.history(np.zeros(1))[0]) * push
+    for action, push in full.loads:
+        if isinstance(action.history, ReleasedLoad):
+            loads[action.segment] += push
+        elif not isinstance(action.history, InitialImpulse):
+            loads[action.segment] += float(action.history(np.zeros(1))[0]) * push
     for n, moment in full.pin_moments:
         loads[n] = loads[n] + moment
     lines = model.lines(boom, built)

@@ -23,12 +23,12 @@ from protractile.dynamics.contact import ContactLaw
 from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, BoomError
-from protractile.geometry.contact_places import Pad, pads
+from protractile.geometry.contact_places import ContactPair, pads
 from protractile.geometry.typography import choices
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import BuildContext, ModelBoom, select_kind
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.schema import Case
 from protractile.runs.folder.cache import Cache
 from protractile.runs.folder.files import write_atomically
@@ -90,13 +90,13 @@ def script(
         "CONTACTS": list(_contacts(model_boom, parts, calibration)),
         "CYLINDERS": [
             {
-                "node": [one.segment, parts[one.segment].node(one.x)],
-                "lug": [one.x, -one.depth],
-                "ground": list(one.ground),
-                "stiffness": one.stiffness,
-                "length": one.length,
+                "node": [cylinder.segment, parts[cylinder.segment].node(cylinder.x)],
+                "lug": [cylinder.x, -cylinder.depth],
+                "ground": list(cylinder.ground),
+                "stiffness": cylinder.axial_stiffness,
+                "length": cylinder.length,
             }
-            for one in boom.cylinders
+            for cylinder in boom.cylinders
         ],
         # Both nodes and the friction force in N of each pad with friction.
         "FRICTIONS": [
@@ -116,10 +116,10 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
     segments = boom.segments
     for key, present in (
         ("joint.lateral_play", boom.spatial),
-        ("cylinder.dashpot", any(one.dashpot > 0.0 for one in boom.cylinders)),
+        ("cylinder.dashpot", any(cylinder.dashpot > 0.0 for cylinder in boom.cylinders)),
         (
             "segment.supports.depth",
-            bool(boom.cylinders) and any(s.depth for one in segments for s in one.supports),
+            bool(boom.cylinders) and any(s.depth for segment in segments for s in segment.supports),
         ),
         ("axial", boom.compressed),
         ("hoist", case.hoist is not None),
@@ -127,7 +127,10 @@ def _check(case: Case, model_boom: ModelBoom) -> None:
         ("joint.bonded", any(joint.bonded for joint in boom.joints)),
         ("joint.drive", any(joint.drive is not None for joint in boom.joints)),
         ("joint.dashpot", any(joint.dashpot > 0.0 for joint in boom.joints)),
-        ("segment.supports", any(s.dashpot > 0.0 for one in segments for s in one.supports)),
+        (
+            "segment.supports",
+            any(s.dashpot > 0.0 for segment in segments for s in segment.supports),
+        ),
         ("segment.viscous_damping", any(segment.viscous_damping > 0.0 for segment in segments)),
         ("damping", any(case.damping.model_dump().values())),
         ("joint.restitution", any(joint.law("z").damping > 0.0 for joint in boom.joints)),
@@ -157,7 +160,7 @@ def _part(
     component = finite_element_segment(
         segment,
         model.element_length,
-        [*boom.stations_of(number), *(x for one, x in touching if one == number)],
+        [*boom.stations_of(number), *(x for touched, x in touching if touched == number)],
         "timoshenko" if sheared else "euler-bernoulli",
         model.rotary_inertia,
     ).components["z"]
@@ -260,7 +263,7 @@ def _loads(case: Case, boom: Boom, parts: Sequence[Part]) -> Iterator[dict[str, 
         }
 
 
-def _ends(pad: Pad, parts: Sequence[Part]) -> list[list[int]]:
+def _ends(pad: ContactPair, parts: Sequence[Part]) -> list[list[int]]:
     """Return segment and node of both segments at a pad, the outer segment first."""
     return [
         [number, parts[number].node(pad.midpoint)] for number in (pad.joint.outer, pad.joint.inner)
@@ -302,6 +305,6 @@ def write(
     if model.needs_shell:
         assert comm is not None
         calibration = build(case, boom, model, BuildContext(comm, cache=cache)).calibration
-    with refusing(file):
+    with translated_errors(file):
         text = script(case, model.model_boom(boom), model, calibration)
     write_atomically(path, text)

@@ -21,7 +21,7 @@ from protractile.runs.case.build import build_boom, hold_ground
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.sanity import usual_ranges
 from protractile.runs.case.schema import Case
@@ -97,12 +97,12 @@ class Draft:
     def _label(self, keys: Sequence[str]) -> str:
         """Return the label of a control for numbers at these keys; the key itself by default."""
         segments, joints = self.boom.segments, self.boom.joints
-        owners = {f"segment[{i}]": one.name for i, one in enumerate(segments, 1)}
-        owners |= {f"joint[{i}]": segments[one.inner].name for i, one in enumerate(joints, 1)}
+        owners = {f"segment[{i}]": segment.name for i, segment in enumerate(segments, 1)}
+        owners |= {f"joint[{i}]": segments[joint.inner].name for i, joint in enumerate(joints, 1)}
         owner = "all joints" if len(keys) > 1 else owners.get(keys[0].partition(".")[0])
         for pattern, label in _FIRST.items():
             if match := re.fullmatch(pattern, keys[0]):
-                words = (one.replace("_", " ") for one in match.groups())
+                words = (group.replace("_", " ") for group in match.groups())
                 return label.format(*words, owner=owner)
         return keys[0]
 
@@ -148,9 +148,9 @@ class Draft:
             raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
         place, value = self._numbers[keys[0]]
         unit, system = unit_of(place, self.case), self.case.system
-        ranges = [self._range(*self._numbers[one]) for one in keys]
-        low, high = max(one[0] for one in ranges), min(one[1] for one in ranges)
-        in_unit = [system.of(one, unit or "1") for one in (value, low, high)]
+        ranges = [self._range(*self._numbers[control]) for control in keys]
+        low, high = max(bounds[0] for bounds in ranges), min(bounds[1] for bounds in ranges)
+        in_unit = [system.of(number, unit or "1") for number in (value, low, high)]
         return Control(
             key,
             keys,
@@ -206,7 +206,7 @@ class Draft:
             if key not in self._numbers or not is_number(value) or not math.isfinite(value):
                 raise BadInput(self.file, key, f"must be a number of the case, got {value!r}")
             self._numbers[key][0].put(tables, float(value))
-        with refusing(self.file):
+        with translated_errors(self.file):
             return hold_ground(Case.model_validate(tables), self.case)
 
     @property

@@ -210,9 +210,9 @@ class LivePage:
         name, number = str(request["tab"]), int(request["number"])
         tab = self._tabs.setdefault(name, _Tab())
         tab.newest = max(number, tab.newest)
-        idle = [one for one, other in self._tabs.items() if not other.computing.locked()]
-        for one in idle[:-_MOST_TABS]:
-            del self._tabs[one]
+        idle = [name for name, other in self._tabs.items() if not other.computing.locked()]
+        for name in idle[:-_MOST_TABS]:
+            del self._tabs[name]
 
         def check_current() -> None:
             if tab.newest != number or closed():

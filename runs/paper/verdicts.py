@@ -112,16 +112,18 @@ def evidence(case: Case) -> Mapping[str, Sequence[str]]:
 def show(judged: Mapping[str, Addition], console: Console) -> int:
     """Print all verdicts and each demand that is not met; return 1 if there is one, else 0."""
     runs: dict[str, Sequence[Verdict]] = {
-        file: one.content["verdicts"] for file, one in judged.items()
+        file: verdict.content["verdicts"] for file, verdict in judged.items()
     }
     print_verdicts({Path(file).stem: verdicts for file, verdicts in runs.items()}, console)
     status = 0
     for file, verdicts in runs.items():
-        for one in verdicts:
-            if one.demanded and one.verdict != "reproduced":
+        for verdict in verdicts:
+            if verdict.demanded and verdict.verdict != "reproduced":
                 status = 1
-                demand = f"{one.id} is {one.verdict}, and the case demands that it is reproduced"
-                say(message(f"{shorten(file)}: demand: {demand}: {one.why}"))
+                demand = (
+                    f"{verdict.id} is {verdict.verdict}, and the case demands that it is reproduced"
+                )
+                say(message(f"{shorten(file)}: demand: {demand}: {verdict.why}"))
     return status
 
 

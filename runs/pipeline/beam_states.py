@@ -44,7 +44,7 @@ def moving_states(case: Case) -> States:
     Raises:
         NumericsError: the motion cannot be computed.
     """
-    beams = [one for one in select_kind(BeamElements, case.models) if not one.bonded]
+    beams = [model for model in select_kind(BeamElements, case.models) if not model.bonded]
     model = beams[0] if beams else BeamElements(name="beam")
     joints = tuple(replace(joint, drive=None) for joint in case.joints)
     case = case.model_copy(update={"joints": joints, "ensemble": None, "models": (model,)})

@@ -80,4 +80,4 @@ def combination_rows(case: Case, progress: Progress = ignore_progress) -> Rows:
     """Return the static results of all combinations; empty without load cases and combinations."""
     if not (case.load_cases or case.combinations):
         return Rows()
-    return Rows(row for one in combination_states(case, False, progress) for row in one.rows)
+    return Rows(row for state in combination_states(case, False, progress) for row in state.rows)

@@ -45,7 +45,10 @@ def shell_states(case: Case, model: Shell, context: BuildContext) -> list[Combin
     state for which panel formulas give the lowest buckling factor.
     """
     combined = list(combined_cases(case))
-    booms = [model.model_boom(build_boom(one.case)).boom.without_drives for one in combined]
+    booms = [
+        model.model_boom(build_boom(combination.case)).boom.without_drives
+        for combination in combined
+    ]
     groups: dict[str, list[int]] = {}
     for number, boom in enumerate(booms):
         places = [segment.ends for segment in boom.segments]
@@ -79,14 +82,19 @@ def _shared(booms: Sequence[Boom]) -> list[Boom]:
     unit = [replace(load, magnitude=1.0) for load in zero.values()]
 
     def largest_compression(boom: Boom) -> float:
-        ends = [force for one in boom.segments for piece in one.compression.ends for force in piece]
+        ends = [
+            force
+            for segment in boom.segments
+            for piece in segment.compression.ends
+            for force in piece
+        ]
         return max(ends, default=0.0)
 
     most = max(booms, key=largest_compression)
     # A segment may have a load in only one of the booms.
     of_segments = (boom.segments for boom in booms)
     heaviest = [
-        max(parts, key=lambda one: abs(one.load)) for parts in zip(*of_segments, strict=True)
+        max(parts, key=lambda part: abs(part.load)) for parts in zip(*of_segments, strict=True)
     ]
     segments = [
         replace(segment, load=loaded.load, lateral=loaded.lateral)
@@ -133,8 +141,10 @@ def _state(
     lines = model.lines(boom, replace(built, shell=shell))
     deflections = [dict(line.deflections) for line in lines]
     forces, largest = (
-        AxialChange(Step(), [one.compression for one in segments]).geometric_stiffness(deflections)
-        for segments in (boom.segments, shared.segments)
+        AxialChange(
+            Step(), [segment.compression for segment in each.segments], leads=each.leads
+        ).geometric_stiffness(deflections)
+        for each in (boom, shared)
     )
     system = replace(shell.system.gather_loads(), geometric_stiffness=forces - largest)
     factor = None
@@ -178,10 +188,10 @@ def _with_buckling(
     states, state, governing = list(states), None, 0
     if context.comm.rank == 0 and built.shell.fields is not None:
         factors = [
-            (float(factor), number, one.states.positions[step])
-            for number, one in enumerate(states)
-            if one.states is not None
-            for step, factor in enumerate(_lowest_factors(one.states))
+            (float(factor), number, state.states.positions[step])
+            for number, state in enumerate(states)
+            if state.states is not None
+            for step, factor in enumerate(_lowest_factors(state.states))
         ]
         if factors:
             _, governing, position = min(factors, key=lambda entry: entry[0])
@@ -198,5 +208,5 @@ def _with_buckling(
 def _lowest_factors(states: States) -> Array:
     """Return the lowest buckling factor (num_states,) by panel formulas; infinite without one."""
     none = np.full(states.time.size, np.inf)
-    lowest = [none, *(one.values.min(axis=1) for one in measure_plates(states))]
+    lowest = [none, *(plate.values.min(axis=1) for plate in measure_plates(states))]
     return np.asarray(np.min(lowest, axis=0))

@@ -122,16 +122,16 @@ def _friction(system: GapSystem, travel: Travel, case: Case) -> float:
 
 def stick_slip_lines(estimates: Iterable[StickSlipEstimate], system: System) -> Iterator[str]:
     """Yield a sentence on the stick-slip of each elastic drive."""
-    for one in estimates:
-        if one.critical_speed == 0.0:
+    for drive in estimates:
+        if drive.critical_speed == 0.0:
             slips = "does not stick again once it slips"
-        elif one.critical_speed == np.inf:
+        elif drive.critical_speed == np.inf:
             slips = "sticks and slips at any speed"
         else:
-            slips = f"sticks and slips below {system.text(one.critical_speed, 'm/s', 3)}"
+            slips = f"sticks and slips below {system.text(drive.critical_speed, 'm/s', 3)}"
         yield (
-            f"The drive of {one.inner!r} moves {system.text(one.elastic.mass, 'kg')}, with a "
-            f"frequency of {one.elastic.frequency:.3g} Hz and a damping ratio of "
-            f"{TO_PERCENT * one.elastic.damping_ratio:.3g} %; against the largest static friction "
-            f"of {one.friction * TO_KILO:.3g} kN it {slips}."
+            f"The drive of {drive.inner!r} moves {system.text(drive.elastic.mass, 'kg')}, with a "
+            f"frequency of {drive.elastic.frequency:.3g} Hz and a damping ratio of "
+            f"{TO_PERCENT * drive.elastic.damping_ratio:.3g} %; against the largest static "
+            f"friction of {drive.friction * TO_KILO:.3g} kN it {slips}."
         )

@@ -137,11 +137,11 @@ def states_cost(case: Case, proofs: bool) -> Cost:
 
 def _combined(case: Case) -> list[CombinationTable | None]:
     """Return the combination of each state; None without combinations."""
-    names = [one.name for one in case.load_cases] or [""]
+    names = [load_case.name for load_case in case.load_cases] or [""]
     combined: list[CombinationTable | None] = []
-    for one in case.combinations:
-        used = names if one.load_cases is None else {*names} & {*one.load_cases}
-        combined += [one] * len(used)
+    for combination in case.combinations:
+        used = names if combination.load_cases is None else {*names} & {*combination.load_cases}
+        combined += [combination] * len(used)
     return combined or [None] * len(names)
 
 
@@ -150,7 +150,9 @@ def _state_time(case: Case, proofs: bool) -> float:
     segments = len(case.segments)
     # An impulse or a released load changes at t = 0 only.
     histories = [load.history for load in build_boom(case).loads]
-    instants = 1 + sum(isinstance(one, History) and not is_constant(one) for one in histories)
+    instants = 1 + sum(
+        isinstance(history, History) and not is_constant(history) for history in histories
+    )
     time = _STATE * segments + _OF_INSTANT * instants + _OF_BOTH * instants * segments
     if proofs:
         time += _PROOF * segments + _OF_BUCKLING * segments**2
@@ -162,7 +164,11 @@ def _combined_time(case: Case, proofs: bool) -> float:
     """Return the time in s of all combinations in their load cases, with their motions."""
     combined = _combined(case)
     time = len(combined) * _state_time(case, proofs)
-    moving = sum(one is not None and one.motion for one in combined) if proofs else 0
+    moving = (
+        sum(combination is not None and combination.motion for combination in combined)
+        if proofs
+        else 0
+    )
     if moving:
         preview, model = Preview(CheckedCase(case)), case.models[0]
         with suppress(*NUMERICAL_ERRORS):

@@ -155,18 +155,20 @@ def evaluate_run(results: Results, evaluations: Mapping[str, Evaluation]) -> Non
     """
     case, boom = results.case, results.boom
     completed = [model for model in case.models if model.name in evaluations]
-    rows = [row for one in evaluations.values() for row in one.rows]
-    results.curves = Curves(curve for one in evaluations.values() for curve in one.curves)
+    rows = [row for evaluation in evaluations.values() for row in evaluation.rows]
+    results.curves = Curves(
+        curve for evaluation in evaluations.values() for curve in evaluation.curves
+    )
     if (static := statics(case, boom)) is not None:
         rows += [*reaction_rows(static.with_play), *reaction_rows(static.bonded, play=False)]
     design = DesignResults(
-        models={name: one.design for name, one in evaluations.items()},
+        models={name: evaluation.design for name, evaluation in evaluations.items()},
         modes=_compare_modes(boom, completed, evaluations),
     )
     if case.load_cases or case.combinations:
         states = combination_states(case)
-        rows += (row for one in states for row in one.rows)
-        design = replace(design, combinations=[one.combined.name for one in states])
+        rows += (row for state in states for row in state.rows)
+        design = replace(design, combinations=[state.combined.name for state in states])
         with suppress(*NUMERICAL_ERRORS):
             # A combination without an equilibrium has no proofs; the table of combinations states
             # this.

@@ -86,7 +86,10 @@ def straight_path_error(case: Case, beam: States) -> float:
     # The elastic stiffness, and the force without the rope's that leads to the state of rest.
     stiffness = mode.stiffness + kappa * weights[-1]
     forces = sum(
-        (one.load @ mode.shape * one.history(marks) for one in system.excitations),
+        (
+            excitation.load @ mode.shape * excitation.history(marks)
+            for excitation in system.excitations
+        ),
         np.zeros_like(marks),
     )
     forces += stiffness * rest + weights[-1] * (load.cosine - kappa * rest) - forces[-1]

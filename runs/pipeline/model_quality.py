@@ -75,12 +75,12 @@ def compare_models(
         return None
     comparisons = Comparisons(reference=reference)
     if ensembles is not None and cutoff is not None:
-        one, *others = (
+        first, *others = (
             ensembles.sel(model=name).astype(float)
             for name in (reference, *_others(ensembles, reference))
         )
         comparisons.ensembles = {
-            str(other["model"].item()): compare(one, other, cutoff) for other in others
+            str(other["model"].item()): compare(first, other, cutoff) for other in others
         }
     if case.regular:
         time, whole = trajectories["time"].values, {}
@@ -121,7 +121,9 @@ def quality_notes(
             f"The estimated error by the time step is at most {_percent(max(errors))} of the range "
             "of a deflection."
         )
-        above = [name for name, one in models.items() if (one.step_error or 0.0) > time.tolerance]
+        above = [
+            name for name, model in models.items() if (model.step_error or 0.0) > time.tolerance
+        ]
         if above and time.step is None:
             line += (
                 f" It is above time.tolerance of {_percent(time.tolerance)} in "

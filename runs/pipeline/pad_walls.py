@@ -10,7 +10,7 @@ from typing import Any
 
 from protractile.analysis.states import States
 from protractile.geometry.boom import Boom, Collar
-from protractile.geometry.joint import PadSize
+from protractile.geometry.joint import Pad
 from protractile.geometry.typography import join_words
 from protractile.runs.case.schema import Case, Model
 from protractile.runs.pipeline.statics import state_at_rest
@@ -70,7 +70,7 @@ def rigid_wall_note(models: Iterable[Model], boom: Boom) -> str:
 def _stiffer_booms(boom: Boom) -> Iterator[tuple[str, Boom]]:
     """Yield changes that may stiffen walls or sections: a description and the changed boom."""
 
-    def longer(pad: PadSize, longest: float) -> dict[str, Any]:
+    def longer(pad: Pad, longest: float) -> dict[str, Any]:
         return {"length": max(min(2.0 * pad.length, longest), pad.length)}
 
     offset = any(
@@ -97,7 +97,7 @@ def _stiffer_booms(boom: Boom) -> Iterator[tuple[str, Boom]]:
     yield collars, _with_collars(boom)
 
 
-def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) -> Boom:
+def _with_pads(boom: Boom, changes: Callable[[Pad, float], dict[str, Any]]) -> Boom:
     """Return the boom with changed pads.
 
     ``changes`` takes a pad and half the overlap in m, and returns changed fields.
@@ -107,7 +107,7 @@ def _with_pads(boom: Boom, changes: Callable[[PadSize, float], dict[str, Any]]) 
         start, end = boom.overlap(joint)
         half = 0.5 * (end - start)
         pad = None if joint.pad is None else replace(joint.pad, **changes(joint.pad, half))
-        pads = tuple(replace(one, **changes(one, half)) for one in joint.pads)
+        pads = tuple(replace(pad, **changes(pad, half)) for pad in joint.pads)
         joints.append(replace(joint, pad=pad, pads=pads))
     return replace(boom, joints=tuple(joints))
 
@@ -124,7 +124,9 @@ def _with_collars(boom: Boom) -> Boom:
             segment, section = segments[index], segments[index].section_at(x)
             reach, thickness = 0.5 * section.size("z"), section.face("z", 1).thickness
             start, end = max(segment.start, x - reach), min(segment.end, x + reach)
-            if not any(one.span[0] < end and one.span[1] > start for one in segment.collars):
+            if not any(
+                collar.span[0] < end and collar.span[1] > start for collar in segment.collars
+            ):
                 collars = (*segment.collars, Collar((start, end), thickness))
                 segments[index] = replace(segment, collars=collars)
     return replace(boom, segments=tuple(segments))

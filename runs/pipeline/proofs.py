@@ -93,9 +93,11 @@ def _fatigue(case: Case) -> Iterator[Row]:
     """
     if not (case.spectra and HAS_RAINFLOW):
         return
-    tables = {one.name: one for one in case.load_cases}
+    tables = {load_case.name: load_case for load_case in case.load_cases}
     states: dict[Hashable, States] = {}
-    for name, moving in {(name, one.motion) for one in case.spectra for name in one.load_cases}:
+    for name, moving in {
+        (name, spectrum.motion) for spectrum in case.spectra for name in spectrum.load_cases
+    }:
         plain = combine(case, tables[name])
         states[name, moving] = (
             moving_states(plain)
@@ -104,8 +106,12 @@ def _fatigue(case: Case) -> Iterator[Row]:
         )
     boom = build_boom(case)
     spectra = [
-        Spectrum(one.name, [(name, one.motion) for name in one.load_cases], one.repeats)
-        for one in case.spectra
+        Spectrum(
+            spectrum.name,
+            [(name, spectrum.motion) for name in spectrum.load_cases],
+            spectrum.repeats,
+        )
+        for spectrum in case.spectra
     ]
     welds = details(boom, case.life.detail_category)
     yield from fatigue_proofs(boom, welds, states, spectra, case.life.partial_factor)
@@ -142,7 +148,7 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     assert first is not None
     boom = first.boom
     requested_proofs = {name for state in states for name in state.combined.combination.proofs}
-    steels = [one.name for one in boom.segments if one.yield_strength is None]
+    steels = [segment.name for segment in boom.segments if segment.yield_strength is None]
     if steels and requested_proofs & {"yield", "plate"}:
         names = ", ".join(steels)
         yield f"Static strength and plate buckling of {names} are not proved: no yield strength."
@@ -151,10 +157,12 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     pads = states[0].rows.where(quantity="pad_pressure")
     if "pad" in requested_proofs and boom.joints and all(row.limit is None for row in pads):
         yield "Pad pressure is not proved: no pad has an `allowable_pressure`."
-    if "cylinder" in requested_proofs and any(one.capacity is None for one in boom.cylinders):
+    if "cylinder" in requested_proofs and any(
+        cylinder.resistance is None for cylinder in boom.cylinders
+    ):
         yield "Cylinder force is not proved: a cylinder has no `capacity`."
-    pins = [one.foot.pin for one in boom.segments if one.foot is not None]
-    pins += [one.pin for one in boom.cylinders]
+    pins = [segment.foot.pin for segment in boom.segments if segment.foot is not None]
+    pins += [cylinder.pin for cylinder in boom.cylinders]
     if "pin" in requested_proofs and not any(pins):
         yield "Pin shear is not proved: the case has no table `pin`."
     if case.chassis is not None and "tipping" not in requested_proofs:

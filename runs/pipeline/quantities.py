@@ -34,11 +34,15 @@ RECORD_CLASSES: list[type] = [*records(ModelDesignResults).values(), ModelSummar
 QUANTITIES = (
     *(
         shown
-        for one in MEASURED.values()
-        if one.swept
+        for measured in MEASURED.values()
+        if measured.swept
         for shown in (
-            *([replace(one, name=f"{one.name}_at_rest", title=one.at_rest)] if one.at_rest else []),
-            one,
+            *(
+                [replace(measured, name=f"{measured.name}_at_rest", title=measured.at_rest)]
+                if measured.at_rest
+                else []
+            ),
+            measured,
         )
     ),
     Quantity("tip_amplitude", "m", "tip amplitude", shown="mm"),
@@ -49,7 +53,12 @@ QUANTITIES = (
     Quantity("settling_time", "s", "settling time"),
     Quantity("drive_force", "N", "largest force of an elastic drive", shown="kN"),
     Quantity("drive_slip", "m", "longest slip on a drive", shown="mm"),
-    *(one for kind in RECORD_CLASSES for one in declared_quantities(kind).values() if one.name),
+    *(
+        quantity
+        for kind in RECORD_CLASSES
+        for quantity in declared_quantities(kind).values()
+        if quantity.name
+    ),
 )
 
 
@@ -125,5 +134,7 @@ def case_limits(table: LimitsTable | None) -> list[Limit]:
     values = {} if table is None else table.model_dump(exclude_none=True)
     least = LimitsTable.LEAST
     return [
-        Limit(one, values[one.name], one.name in least) for one in QUANTITIES if one.name in values
+        Limit(quantity, values[quantity.name], quantity.name in least)
+        for quantity in QUANTITIES
+        if quantity.name in values
     ]

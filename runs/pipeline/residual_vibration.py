@@ -89,7 +89,7 @@ def residual_vibration(
 
     The ``load`` of the system includes all constant loads.
     """
-    travels = [one for one in system.travels if one.telescopes or any(one.shifts)]
+    travels = [travel for travel in system.travels if travel.telescopes or any(travel.shifts)]
     ends = [time for travel in travels for time in travel.history.kinks]
     if not ends or max(ends) > trajectory.time[-1]:
         # The largest vibration may come after the end of the run.

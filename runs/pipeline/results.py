@@ -196,11 +196,11 @@ class Results:
         """A table with a row for each quantity of sweeps: its SI unit and a column per model."""
         import pandas as pd
 
-        columns: dict[str, list[Any]] = {"unit": [one.unit for one in QUANTITIES]}
+        columns: dict[str, list[Any]] = {"unit": [quantity.unit for quantity in QUANTITIES]}
         for name in self.summary.models:
             quantities = self.measure(name)
-            columns[name] = [quantities.get(one.name) for one in QUANTITIES]
-        frame = pd.DataFrame(columns, index=[one.name for one in QUANTITIES])
+            columns[name] = [quantities.get(quantity.name) for quantity in QUANTITIES]
+        frame = pd.DataFrame(columns, index=[quantity.name for quantity in QUANTITIES])
         return frame.dropna(how="all", subset=[*self.summary.models])
 
     def measure(self, model: str) -> Quantities:
@@ -236,8 +236,12 @@ class Results:
                 "first_frequency": frequency,
                 "decay_time": decay_time(self.case.damping.modal, frequency),
                 "mass": self.boom.mass,
-                "drive_force": max((one.peak for one in summary.stick_slip.values()), default=None),
-                "drive_slip": max((one.slip for one in summary.stick_slip.values()), default=None),
+                "drive_force": max(
+                    (drive.peak for drive in summary.stick_slip.values()), default=None
+                ),
+                "drive_slip": max(
+                    (drive.slip for drive in summary.stick_slip.values()), default=None
+                ),
                 "settling_time": settling_time(time, tip),
             }
             | {
@@ -253,17 +257,19 @@ class Results:
         limits = case_limits(self.case.limits)
         quantities = {name: self.measure(name) for name in self.main_models if limits}
         for limit in limits:
-            numbers = {name: one[limit.quantity.name] for name, one in quantities.items()}
-            yield LimitCheck(limit, {name: one for name, one in numbers.items() if one is not None})
+            numbers = {name: quantity[limit.quantity.name] for name, quantity in quantities.items()}
+            yield LimitCheck(
+                limit, {name: value for name, value in numbers.items() if value is not None}
+            )
 
     def __repr__(self) -> str:
         return f"Results of {self.case.title!r}: {', '.join(self.summary.models)}"
 
     def _repr_html_(self) -> str:
         frame = self.quantities.drop(columns="unit").astype(float)
-        shown = [one for one in QUANTITIES if one.name in frame.index]
-        frame = frame.mul([one.factor for one in shown], axis=0)
-        frame.index = [f"{one.title}, {one.shown_unit}" for one in shown]
+        shown = [quantity for quantity in QUANTITIES if quantity.name in frame.index]
+        frame = frame.mul([quantity.factor for quantity in shown], axis=0)
+        frame.index = [f"{quantity.title}, {quantity.shown_unit}" for quantity in shown]
         table = frame.to_html(float_format=lambda value: number(value, 4), na_rep=NONE, border=0)
         return f"<p><b>{escape(self.case.title)}</b></p>{table}"
 

@@ -53,16 +53,16 @@ class Run:
     @property
     def shells(self) -> dict[str, ShellOutput]:
         """The output of each shell, by name."""
-        return {name: one.shell for name, one in self.model_runs.items() if one.shell is not None}
+        return {name: run.shell for name, run in self.model_runs.items() if run.shell is not None}
 
     @cached_property
     def beams(self) -> dict[str, BeamOutput]:
         """The output of each beam, by name."""
         boom = self.results.boom
         return {
-            name: BeamOutput.of(one.model.lines(boom, one.built), one.motion.trajectory)
-            for name, one in self.model_runs.items()
-            if one.shell is None
+            name: BeamOutput.of(run.model.lines(boom, run.built), run.motion.trajectory)
+            for name, run in self.model_runs.items()
+            if run.shell is None
         }
 
     def evaluate(self) -> None:
@@ -79,8 +79,8 @@ class Run:
     def evaluate_with_play(self) -> None:
         """Add rows and design results of the models with play to the results."""
         results, evaluations = self.results, self._evaluate_models(without_play=False)
-        results.rows = Rows(row for one in evaluations.values() for row in one.rows)
-        designs = {name: one.design for name, one in evaluations.items()}
+        results.rows = Rows(row for evaluation in evaluations.values() for row in evaluation.rows)
+        designs = {name: evaluation.design for name, evaluation in evaluations.items()}
         results.summary.design = DesignResults(designs)
         check_finite(results.summary)
 
@@ -149,14 +149,16 @@ def run_case(
     outcomes = _attempt_all(case.models, attempt, context.alone)
     if not context.first_rank:
         return None
-    ran = {name: one for name, one in outcomes.items() if isinstance(one, ModelRun)}
+    ran = {name: outcome for name, outcome in outcomes.items() if isinstance(outcome, ModelRun)}
     failures = {
-        name: failure_reason(one) for name, one in outcomes.items() if isinstance(one, Exception)
+        name: failure_reason(outcome)
+        for name, outcome in outcomes.items()
+        if isinstance(outcome, Exception)
     }
     for number, model in enumerate(case.models, start=1):
         if not ran and model.name in failures:
             raise NumericsError(f"{file}: model[{number}]: {failures[model.name]}")
-    motions = {name: one.motion for name, one in ran.items()}
+    motions = {name: model_run.motion for name, model_run in ran.items()}
     return Run(_results(boom, case, cutoff, motions, failures), ran, found)
 
 
@@ -193,14 +195,14 @@ def _results(
         title=case.title,
         case_hash=toml.digest(case),
         versions=versions(),
-        models={name: one.summary for name, one in motions.items()},
+        models={name: motion.summary for name, motion in motions.items()},
         failures=failures,
     )
     # Every file has the hash of its case, so that files of another run are detected.
-    trajectories = {name: one.trajectory for name, one in motions.items()}
+    trajectories = {name: motion.trajectory for name, motion in motions.items()}
     data = label(boom, trajectories).assign_attrs(case_hash=summary.case_hash)
     ensembles = members.gather_ensembles(
-        {name: one.ensemble for name, one in motions.items() if one.ensemble is not None}
+        {name: motion.ensemble for name, motion in motions.items() if motion.ensemble is not None}
     )
     if case.ensemble is not None and ensembles is not None:
         for name, values in ensembles.data_vars.items():

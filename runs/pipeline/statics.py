@@ -108,20 +108,22 @@ def reaction_rows(state: StaticState, play: bool = True) -> Iterator[Row]:
         kinds |= {(number, support.x): "" for support in segment.supports}
     kinds |= {(stop.segment, stop.x): "" for stop in boom.stops}
     kinds |= {(cylinder.segment, cylinder.x): "lug " for cylinder in boom.cylinders}
-    reactions = [one for one in state.reactions if one[:2] in kinds]
-    most = max(map(abs, [*(one.force for one in reactions), *along.values()]), default=0.0)
-    for one in reactions:
-        at = one[:2]
-        values = {"reaction": one.force if abs(one.force) > _ROUND_OFF * most else 0.0}
-        if abs(one.moment) > _NO_MOMENT * most * boom.length:
-            values["support_moment"] = one.moment
+    reactions = [reaction for reaction in state.reactions if reaction[:2] in kinds]
+    most = max(
+        map(abs, [*(reaction.force for reaction in reactions), *along.values()]), default=0.0
+    )
+    for reaction in reactions:
+        at = reaction[:2]
+        values = {"reaction": reaction.force if abs(reaction.force) > _ROUND_OFF * most else 0.0}
+        if abs(reaction.moment) > _NO_MOMENT * most * boom.length:
+            values["support_moment"] = reaction.moment
         if abs(along[at]) > _ROUND_OFF * most:
             values["axial_reaction"] = along[at]
         if at in depths:
             values["penetration"] = depths[at]
-        part, place = boom.segments[one.segment].name, f"{kinds[at]}at {one.x:g} m"
+        part, place = boom.segments[reaction.segment].name, f"{kinds[at]}at {reaction.x:g} m"
         for name, value in values.items():
-            yield Row(BEAM, INITIAL, play, name, part, place, value, one.x, time=0.0)
+            yield Row(BEAM, INITIAL, play, name, part, place, value, reaction.x, time=0.0)
 
 
 def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:

@@ -12,7 +12,8 @@ from protractile.geometry.axial import lumped_masses
 from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import CraneForce
 from protractile.geometry.load import Load, Moment, PartialLoad
-from protractile.runs.case.combinations import CombinedCase, load_tables, tip_masses
+from protractile.runs.case.actions import loads, tip_thrusts
+from protractile.runs.case.combinations import CombinedCase, tip_masses
 from protractile.runs.case.schema import Case
 
 # Stabilising moment in N·m that counts as none.
@@ -20,7 +21,7 @@ _NO_MOMENT = 1.0e-9
 
 
 def hook_place(case: Case, boom: Boom, angle: float, tip: float) -> tuple[float, float]:
-    """Return radius and height in m of the tip of a boom.
+    """Return radius and height in m of the load at the tip of a boom.
 
     They count from the slewing axis and the ground of the chassis, or from the foot pin without
     chassis.
@@ -31,8 +32,10 @@ def hook_place(case: Case, boom: Boom, angle: float, tip: float) -> tuple[float,
         angle: luffing angle in degrees.
         tip: tip deflection in m.
     """
-    length, turn = boom.tip - foot_of(boom), radians(angle)
-    chassis = case.chassis
+    chassis, turn = case.chassis, radians(angle)
+    length = boom.tip - foot_of(boom)
+    if case.head is not None:
+        length, tip = length + case.head.ahead, tip - case.head.below
     ahead, above = (0.0, 0.0) if chassis is None else (chassis.foot_ahead, chassis.foot_above)
     return (
         ahead + length * cos(turn) - tip * sin(turn),
@@ -50,7 +53,7 @@ def outrigger_rows(combined: CombinedCase, states: States) -> Iterator[Row]:
 
     The factors of the combination apply to the boom and its loads, and not to the masses of the
     chassis. The payload hangs at the deflected tip; the weight of the boom acts at the straight
-    one. Loads across the boom act in its plane.
+    one. Loads and wind act in the plane of the boom.
     """
     case = combined.of
     if case.chassis is None or case.gravity is None:
@@ -88,8 +91,8 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
     along, up = cos(radians(angle)), sin(radians(angle))
     gravity, foot = case.gravity.acceleration, foot_of(boom)
     tip = min(states.observed("tip").tolist())
-    ahead, above = hook_place(case, boom, angle, 0.0)
-    start = ahead - (boom.tip - foot) * along, above - (boom.tip - foot) * up
+    chassis = case.chassis
+    start = (chassis.foot_ahead, chassis.foot_above) if chassis else (0.0, 0.0)
     masses = tip_masses(case, combined.table)
     points = [point for segment in boom.segments for point in lumped_masses(segment)]
     hung = sum(mass for _, mass in masses)
@@ -97,10 +100,15 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
     moment = sum(point.mass * (point.x - foot) for point in points) - hung * (boom.tip - foot)
     weight = factors["dead"] * gravity
     yield CraneForce(weight * mass, start[0] + moment / mass * along)
-    radius, _ = hook_place(case, boom, angle, tip)
+    radius, above = hook_place(case, boom, angle, tip)
     for group, hanging in masses:
         yield CraneForce(factors[group] * gravity * hanging, radius)
-    for load in boom.loads[: len(load_tables(case, combined.table))]:
+    acting = combined.case.gravity.model_copy(update={"acceleration": 0.0})
+    without = {**dict.fromkeys(("payload", "head", "hoist")), "gravity": acting, "base": ()}
+    others = combined.case.model_copy(update=without)
+    for thrust in tip_thrusts(others, boom.segments):
+        yield CraneForce(thrust.force * up, radius, -thrust.force * along, above)
+    for load in loads(others, boom.segments, boom.joints):
         if load.direction != "z":
             continue
         segment = boom.segments[load.segment]

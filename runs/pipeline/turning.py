@@ -177,19 +177,19 @@ def drive_moments(case: Case, boom: Boom, data: xr.Dataset) -> dict[str, tuple[A
     frame, time, last = frame_motion(case, boom.segments), data["time"].values, len(boom.segments)
     total = np.zeros((2, time.size))
     for number, segment in enumerate(boom.segments):
-        extension = HistorySum(tuple(one.history for one in drives_of(boom.joints, number)))
+        extension = HistorySum(tuple(drive.history for drive in drives_of(boom.joints, number)))
         for point in lumped_masses(segment):
             total += frame.drive_moments(time, point.x, point.mass, extension)
     if "rope_force" in data:
-        extension = HistorySum(tuple(one.history for one in drives_of(boom.joints, last - 1)))
+        extension = HistorySum(tuple(drive.history for drive in drives_of(boom.joints, last - 1)))
         out, up = frame.position(time, boom.tip, extension)
         pendulum = case.hoist.pendulum if case.hoist and case.hoist.pendulum else np.inf
         pull = data["rope_force"].attrs["weight"] / pendulum
-        aside, ahead = (
+        lateral, ahead = (
             pull * data[name].values if name in data else 0.0 * time
             for name in ("swing_aside", "swing_out")
         )
-        total += -aside * out, data["rope_force"].values * (out - frame.radius) + ahead * up
+        total += -lateral * out, data["rope_force"].values * (out - frame.radius) + ahead * up
     rates = {"slew": frame.slew_angle(time, 1), "luff": frame.luff_angle(time, 1)}
     return {
         key: (moment, moment * rate)

@@ -285,14 +285,14 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
     if panel.whole:
         panel.line([ground], **marker_style(PINNED, theme.INK, SIGN))
     thick = Line2D([], [], color=theme.INK, linewidth=4.0)
-    panel.meanings[f"cylinder, {abbreviate(cylinder.stiffness, 'N/m')}"] = thick
+    panel.meanings[f"cylinder, {abbreviate(cylinder.axial_stiffness, 'N/m')}"] = thick
 
 
 def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
     """Return the corners (2,) in m of the box around a boom at an angle in degrees."""
     ends = [(x, z) for s in boom.segments for x in s.ends for z in edges(boom, s, x)]
     ends.append((boom.tip + _farthest(boom), 0.0))
-    places = np.array([*ends, *(one.ground for one in boom.cylinders)])
+    places = np.array([*ends, *(cylinder.ground for cylinder in boom.cylinders)])
     turned = Affine2D().rotate_deg(angle).transform(places)
     return turned.min(axis=0), turned.max(axis=0)
 
@@ -365,7 +365,7 @@ def _pads(boom: Boom, number: int, section: Section) -> Iterator[tuple[float, ..
 
     A pad of unknown thickness fills the gap to the outer segment.
     """
-    for joint in (one for one in boom.joints if one.inner == number and one.padded):
+    for joint in (joint for joint in boom.joints if joint.inner == number and joint.padded):
         outer = boom.segments[joint.outer]
         if outer.section is None:
             continue
@@ -393,8 +393,10 @@ def _walls(section: Section) -> str:
     webs = {number for number, _ in section.shear_plates("z")}
     thick = [round(1e3 * plate.thickness, 1) for plate in section.plates]
     web, flange = (
-        ", ".join(f"{t:g}" for t in sorted({t for i, t in enumerate(thick) if (i in webs) == one}))
-        for one in (True, False)
+        ", ".join(
+            f"{t:g}" for t in sorted({t for i, t in enumerate(thick) if (i in webs) == is_web})
+        )
+        for is_web in (True, False)
     )
     if not flange or web == flange:
         return f"walls {web}" if web else ""

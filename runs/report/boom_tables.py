@@ -25,12 +25,15 @@ def segment_table(case: Case, boom: Boom) -> Table:
         inferred = table.section is None and segment.section is not None
         boxes.append(f"{box}, inferred" if inferred else box)
     columns = [
-        Column("segment", [one.name for one in segments]),
-        _spans(case.system, [one.ends for one in segments]),
-        column("mass", "kg/m", [one.mass_per_length for one in segments]),
-        column("I_y", "m^4", [one.second_moment_of_area for one in segments]),
+        Column("segment", [segment.name for segment in segments]),
+        _spans(case.system, [segment.ends for segment in segments]),
+        column("mass", "kg/m", [segment.mass_per_length for segment in segments]),
+        column("I_y", "m^4", [segment.second_moment_of_area for segment in segments]),
         column(
-            "rotary inertia\nper length", "kg m", [one.rotary_inertia for one in segments], ".3g"
+            "rotary inertia\nper length",
+            "kg m",
+            [segment.rotary_inertia for segment in segments],
+            ".3g",
         ),
         Column("h × b of\nmid-lines, t of\nflange / web, mm", boxes),
     ]
@@ -43,22 +46,20 @@ def stiffener_table(boom: Boom, system: System) -> Table:
     for segment in boom.segments:
         if segment.section is None:
             continue
-        for one in segment.collars:
-            area = segment.mean_width(one) * one.length
-            name = ", ".join(("collar", *one.walls))
-            rows.append((name, segment.name, one.span, one.thickness, area))
+        for collar in segment.collars:
+            area = segment.mean_width(collar) * collar.length
+            name = ", ".join(("collar", *collar.walls))
+            rows.append((name, segment.name, collar.span, collar.thickness, area))
         for plate in segment.diaphragms:
             area, ends = segment.section_at(plate.x).enclosed_area, (plate.x, plate.x)
             rows.append(("diaphragm", segment.name, ends, plate.thickness, area))
-    density = {one.name: one.material.density for one in boom.segments}
+    density = {segment.name: segment.material.density for segment in boom.segments}
     columns = [
         Column("stiffener", [row[0] for row in rows]),
         Column("segment", [row[1] for row in rows]),
         _spans(system, [row[2] for row in rows]),
         Column("thickness", [row[3] for row in rows], ".3g", "mm"),
-        column_in_units(
-            system, "mass", "kg", [density[row[1]] * row[3] * row[4] for row in rows], ".3g"
-        ),
+        Column("mass", [density[row[1]] * row[3] * row[4] for row in rows], ".3g", "kg"),
     ]
     return Table("Stiffeners", columns)
 
@@ -92,19 +93,19 @@ def joint_table(case: Case, boom: Boom) -> Table:
 def mass_table(boom: Boom, system: System) -> Table:
     """Return the table of masses of each segment with its attachments, and their sum."""
     segments = boom.segments
-    plain_masses = [one.mass_per_length * one.length for one in segments]
-    masses = [one.mass for one in segments]
+    plain_masses = [segment.mass_per_length * segment.length for segment in segments]
+    masses = [segment.mass for segment in segments]
     moments = [
         mass * segment.mass_centre + sum(point.mass * point.x for point in segment.all_masses)
         for mass, segment in zip(plain_masses, segments, strict=True)
     ]
     whole, moment = sum(masses), sum(moments)
-    centres = [one / mass for one, mass in zip(moments, masses, strict=True)]
+    centres = [moment / mass for moment, mass in zip(moments, masses, strict=True)]
     attached = [mass - part for mass, part in zip(masses, plain_masses, strict=True)]
     columns = [
-        Column("segment", [*(one.name for one in segments), "all"]),
-        column_in_units(system, "own mass", "kg", [*plain_masses, sum(plain_masses)]),
-        column_in_units(system, "attached mass", "kg", [*attached, whole - sum(plain_masses)]),
+        Column("segment", [*(segment.name for segment in segments), "all"]),
+        Column("own mass", [*plain_masses, sum(plain_masses)], ".4g", "kg"),
+        Column("attached mass", [*attached, whole - sum(plain_masses)], ".4g", "kg"),
         column_in_units(system, "centre of mass x", "m", [*centres, moment / whole]),
     ]
     return Table("Masses", columns)
@@ -114,7 +115,7 @@ def column_in_units(
     system: System, title: str, si: str, values: Sequence[float], form: str = ".4g"
 ) -> Column:
     """Return a column in the units of the case, from values in the SI unit ``si``."""
-    return Column(f"{title}\n{system.label(si)}", [system.of(one, si) for one in values], form)
+    return Column(f"{title}\n{system.label(si)}", [system.of(value, si) for value in values], form)
 
 
 def _spans(system: System, ends: Sequence[tuple[float, float]]) -> Column:
@@ -135,7 +136,7 @@ def _clearances(joint: Joint) -> Iterator[str]:
         if direction == "y" and joint.lateral_play is None:
             return
         both = [1e3 * clearance for clearance in joint.clearances(direction)]
-        parts = [f"{one:g} {name}" for one, name in zip(both, names, strict=True)]
+        parts = [f"{number:g} {name}" for number, name in zip(both, names, strict=True)]
         text = ("lateral " if direction == "y" else "") + f"± {both[0]:g}"
         yield text if both[0] == both[1] else ", ".join(parts)
 

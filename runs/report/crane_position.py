@@ -40,7 +40,7 @@ class CranePosition(NamedTuple):
             return None
         time, frame = motion["time"].values, frame_motion(case, boom.segments)
         drives = drives_of(boom.joints, len(boom.segments) - 1)
-        extension = HistorySum(tuple(one.history for one in drives))
+        extension = HistorySum(tuple(drive.history for drive in drives))
         out, up = frame.position(time, boom.tip, extension)
         swing_out, swing_aside, height = (
             motion[name].values if name in motion else np.zeros(time.size)

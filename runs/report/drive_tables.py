@@ -51,7 +51,7 @@ def _effort(results: Results, model: str, suffix: str) -> tuple[float, float, fl
 def luffing_table(results: Results) -> Table | None:
     """Return the table of cylinder lengths and forces in luffing; None without luffing."""
     boom, data = results.boom, results.trajectories
-    foot = next((one.foot for one in boom.segments if one.foot), None)
+    foot = next((segment.foot for segment in boom.segments if segment.foot), None)
     if results.case.luff is None or not boom.cylinders or foot is None:
         return None
     frame = frame_motion(results.case, boom.segments)
@@ -59,8 +59,8 @@ def luffing_table(results: Results) -> Table | None:
     turns = frame.luff_angle(time) - frame.luff_angle(time[0])
     for position, cylinder in enumerate(boom.cylinders, start=1):
         luffed = [cylinder.luffed(turn, foot) for turn in turns.tolist()]
-        lengths = np.array([one.length for one in luffed])
-        arms = cylinder.arm(foot) / np.array([one.arm(foot) for one in luffed])
+        lengths = np.array([raised.length for raised in luffed])
+        arms = cylinder.arm(foot) / np.array([raised.arm(foot) for raised in luffed])
         for model in data["model"].values:
             force = arms * data[force_name(position)].sel(model=model).values
             ends = lengths[0], lengths[-1], np.ptp(lengths)
@@ -86,17 +86,17 @@ def stick_slip_table(results: Results) -> Table:
         for model, model_summary in results.summary.models.items()
         if (name := f"drive_force{suffix}") in model_summary.stick_slip
     ]
-    motions = [one for *_, one in rows]
+    motions = [motion for *_, motion in rows]
     columns = (
         Column("model", [model for model, *_ in rows]),
         Column("drive of", [inner for _, inner, _ in rows]),
-        Column("force:\nmean", [one.mean for one in motions], ".3g", "kN"),
-        Column("at most", [one.peak for one in motions], ".3g", "kN"),
-        Column("sticks", [one.sticks for one in motions], unit="times"),
-        Column("slips by at most", [one.slip for one in motions], ".3g", "mm"),
-        Column("lag at the end", [one.behind for one in motions], ".3g", "mm"),
-        Column("at most", [one.speed for one in motions], ".3g", "m/s"),
-        Column("at most", [one.acceleration for one in motions], ".3g", "m/s²"),
+        Column("force:\nmean", [motion.mean for motion in motions], ".3g", "kN"),
+        Column("at most", [motion.peak for motion in motions], ".3g", "kN"),
+        Column("sticks", [motion.sticks for motion in motions], unit="times"),
+        Column("slips by at most", [motion.slip for motion in motions], ".3g", "mm"),
+        Column("lag at the end", [motion.behind for motion in motions], ".3g", "mm"),
+        Column("at most", [motion.speed for motion in motions], ".3g", "m/s"),
+        Column("at most", [motion.acceleration for motion in motions], ".3g", "m/s²"),
     )
     notes = (
         "Force: against friction, weight and inertia. Sticks: number of stops during telescoping. "

@@ -94,8 +94,8 @@ class FigureContext:
         places = self.data["station"]
         lateral = places["direction"] == "y" if "direction" in places.coords else places.isnull()
         return [
-            f"x = {x:g} m{', lateral' if aside else ''}"
-            for x, aside in zip(places.values, lateral.values, strict=True)
+            f"x = {x:g} m{', lateral' if is_lateral else ''}"
+            for x, is_lateral in zip(places.values, lateral.values, strict=True)
         ]
 
     def line(

@@ -196,7 +196,7 @@ def _stick_slip(run: FigureContext, suffix: str, inner: str) -> Figure:
         for model_summary in run.summary.values()
         if (of := model_summary.stick_slip.get(f"drive_force{suffix}"))
     ]
-    sticks, slip = max(one.sticks for one in records), max(one.slip for one in records)
+    sticks, slip = max(record.sticks for record in records), max(record.slip for record in records)
     caption = (
         f"Above: force of the drive of {inner!r}, including friction and inertia. Below: speed "
         f"of the segment, which is 0 while it sticks."

@@ -10,15 +10,15 @@ import numpy as np
 
 from protractile.dynamics.excitation import resolving_times
 from protractile.geometry.boom import Boom
-from protractile.geometry.load import Load, PartialLoad
+from protractile.geometry.load import Load, Moment, PartialLoad, Torque
 from protractile.geometry.typography import SHOWN, in_shown_unit
 from protractile.geometry.units import System
-from protractile.runs.case.actions import thrusts
+from protractile.runs.case.actions import head_moments, thrusts, wind
 from protractile.runs.case.load_tables import HistoryTable, LoadTable, build_history
 from protractile.runs.case.schema import Case
 from protractile.runs.report.tables import Amount, Cell, Table
 
-# Forces and moments from this number on are in kN and kN m in all systems of units.
+# Forces and moments are in kN and kN m in other systems than SI, in SI from this number on.
 _ENGINEERS, _MANY = {"N", "N m"}, 1.0e5
 _CONSTANT, _ALL = "constant", "all masses"
 # Direction of axial forces, which are positive in compression.
@@ -42,7 +42,7 @@ def load_table(case: Case, boom: Boom) -> Table:
     system, rows = case.system, list[Sequence[Cell]]()
     for *names, largest, unit, time in _rows(case, boom):
         shown, label = system.of(largest, unit), system.label(unit)
-        if unit in _ENGINEERS and abs(shown) >= _MANY:
+        if unit in _ENGINEERS and (system.name != "SI" or abs(shown) >= _MANY):
             label, shown = SHOWN[unit], in_shown_unit(largest, unit)
         rows.append((*names, Amount(shown, label, 4), "" if time is None else time))
     headings = "load", "on", "direction", "history", "maximum", ("maximum\nat", ".4g", "s")
@@ -77,10 +77,33 @@ def _rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
         yield _LoadRow("payload", place, "z", _CONSTANT, weight.magnitude, "N")
     for i, base in enumerate(case.base, start=1):
         yield _history_row(f"base[{i}]", _ALL, base.direction, base, case.time.duration)
+    yield from _tip_rows(case, boom)
     for i, thrust in enumerate(thrusts(case, boom.segments), start=1):
         name = boom.segments[thrust.segment].name
         place = f"{name} at {case.system.text(thrust.x, 'm', 5)}"
         yield _LoadRow(f"axial[{i}]", place, _AXIAL, _CONSTANT, thrust.force, "N")
+
+
+def _tip_rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
+    """Yield the moments of the head, the wind, and the lead of the rope."""
+    last, end, system = len(boom.segments) - 1, boom.tip, case.system
+    if case.head is not None:
+        for load in head_moments(case, case.head, last, end):
+            direction = "torque" if isinstance(load, Torque) else f"{load.direction}, moment"
+            place = _place(boom, load, system)
+            yield _LoadRow("head", place, direction, _CONSTANT, load.magnitude, "N m")
+    if case.wind is not None:
+        for load in wind(case, case.wind, boom.segments, boom.joints):
+            unit = "N/m" if isinstance(load, PartialLoad) else "N"
+            unit = "N m" if isinstance(load, Moment) else unit
+            history = case.wind.description or _CONSTANT
+            largest = load.magnitude * getattr(load.history, "peak", 1.0)
+            yield _LoadRow(
+                "wind", _place(boom, load, system), load.direction, history, largest, unit
+            )
+    for lead in boom.leads:
+        place = f"{boom.segments[lead.segment].name} at {system.text(lead.x, 'm', 5)}"
+        yield _LoadRow("rope", place, "to the winch", _CONSTANT, lead.force, "N")
 
 
 def _hoist_rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:

@@ -85,11 +85,16 @@ def model_table(results: Results) -> Table:
 def metric_columns(kind: type, rows: Sequence[object]) -> list[Column]:
     """Return the columns with values of a kind of record, with a row for each record."""
     columns = [
-        Column(one.heading, [getattr(row, name) for row in rows], one.form, one.unit_of_heading)
-        for name, one in declared_quantities(kind).items()
-        if one.heading
+        Column(
+            quantity.heading,
+            [getattr(row, name) for row in rows],
+            quantity.form,
+            quantity.unit_of_heading,
+        )
+        for name, quantity in declared_quantities(kind).items()
+        if quantity.heading
     ]
-    return [one for one in columns if any(cell is not None for cell in one.cells)]
+    return [column for column in columns if any(cell is not None for cell in column.cells)]
 
 
 def _is_unresolved(model: ModelSummary) -> bool:
@@ -109,7 +114,7 @@ def horizon_column(models: list[ModelSummary], share: float, duration: float) ->
 
     A cell is ``> 10`` if the difference stays smaller during a run of 10 s.
     """
-    times = [None if one.ensemble is None else one.ensemble.horizon(share) for one in models]
+    times = [None if model.ensemble is None else model.ensemble.horizon(share) for model in models]
     cells: list[Cell] = [
         f"> {duration:g}" if model.ensemble and time is None else time
         for model, time in zip(models, times, strict=True)
@@ -219,7 +224,7 @@ def buckling_table(results: Results) -> Table | None:
         "Buckling factor: multiple of the axial forces at which the boom with closed joints "
         "buckles. The static tip deflection includes second-order effects.",
     ]
-    if "shell" in {one.kind for one in models.values()}:
+    if "shell" in {model.kind for model in models.values()}:
         notes.append(
             "Joints of beams count as bonded. Closed contacts of a shell have their stiffness at "
             "rest: at t = 0 and, if axial forces change, under their extremes. The factor of a "
@@ -280,7 +285,7 @@ def _largest(boom: Boom, stress: StressSummary) -> str:
 
 def _yield_utilisation(boom: Boom, stress: StressSummary | LargestPatch) -> str:
     """Return the utilisation of the yield strength as text; empty without a strength."""
-    (segment,) = (one for one in boom.segments if one.name == stress.segment)
+    (segment,) = (segment for segment in boom.segments if segment.name == stress.segment)
     if (strength := segment.yield_strength) is None:
         return ""
     return f" ({percent(stress.von_mises / strength)} of the yield strength)"
@@ -294,7 +299,7 @@ def calibration_tables(results: Results) -> list[Table]:
         if model.calibration is not None
     }
     tables: list[Table] = []
-    for count, (card, models) in enumerate(groupby(cards.items(), lambda one: one[1]), start=1):
+    for count, (card, models) in enumerate(groupby(cards.items(), lambda item: item[1]), start=1):
         names = ", ".join(name for name, _ in models)
         tables += [_segments(card, names, count), _springs(card, names, count)]
     return tables

@@ -153,7 +153,7 @@ def _limit(run: FigureContext, place: str) -> float | None:
 def _largest_deflection(run: FigureContext, place: str) -> str:
     """Return a text on the largest deflection of the models with play, or else of all models."""
     reaches = {name: farthest(run.result(name, place)) for name in run.with_play or run.models}
-    name = max(reaches, key=lambda one: np.nan_to_num(abs(reaches[one]), nan=-1.0))
+    name = max(reaches, key=lambda candidate: np.nan_to_num(abs(reaches[candidate]), nan=-1.0))
     most = fixed(reaches[name], 0, TO_MILLI)
     return f"largest deflection {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
 

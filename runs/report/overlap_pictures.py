@@ -67,7 +67,7 @@ class OverlapView:
     @cached_property
     def motion(self) -> xr.Dataset:
         """The trajectories at the stations of the overlap."""
-        return self.scene.motion.isel(station=[one.index for one in self.overlap.stations])
+        return self.scene.motion.isel(station=[station.index for station in self.overlap.stations])
 
     @property
     def forces(self) -> Array:
@@ -177,7 +177,7 @@ def draw_overlap(scenes: Sequence[Scene], instant: Instant) -> Image.Image | Non
         return None
     outer, inner = (view.scene.boom.segments[number].name for number in view.numbers)
     labels = {theme.OUTER: outer, theme.INNER: inner, theme.FORCE: f"force of {inner} on {outer}"}
-    aside = "seen from above, " if view.scene.from_above else ""
+    view_name = "seen from above, " if view.scene.from_above else ""
     sheet, half = Sheet(PIXELS, floor=90), 0.475 * view.camera.width
     sheet.mark_x(view.camera, view.midpoint - half, view.midpoint + half)
     sheet.figure.legend(
@@ -192,7 +192,7 @@ def draw_overlap(scenes: Sequence[Scene], instant: Instant) -> Image.Image | Non
         sheet.show(view.camera.render(plotter))
     sheet.write(
         instant.heading(scenes[0]),
-        f"{aside}cut open; play and displacements relative to {outer} × {view.scale:g}, "
+        f"{view_name}cut open; play and displacements relative to {outer} × {view.scale:g}, "
         f"walls not to scale\n{view.draw_forces(sheet)}",
     )
     return sheet.image()

@@ -76,7 +76,7 @@ def _horizon_table(
 ) -> Table:
     models = list(sampled.values())
     peaks = [_slow_peaks(model) for model in models]
-    periods = [_spread(one.period, one.period_spread, 3) if one else None for one in peaks]
+    periods = [_spread(peak.period, peak.period_spread, 3) if peak else None for peak in peaks]
     columns = (
         Column("model", list(sampled)),
         *(horizon_column(models, share, duration) for share in SHARES),

@@ -142,13 +142,13 @@ def proof_table(proofs: Proofs, case: Case) -> Table:
     titles = {row.quantity: row.of.title for row in rows}
     formulas = [f"{title.capitalize()}: {KINDS[kind].formula}." for kind, title in titles.items()]
     notes = [DEFINITION, *formulas, *proofs.notes]
-    return Table("Proofs", columns, notes, "proofs", [one for one in used if "✗" in one])
+    return Table("Proofs", columns, notes, "proofs", [line for line in used if "✗" in line])
 
 
 def _numbers(row: Row) -> tuple[str, str]:
     """Return design effect and limit design value as text."""
     assert row.limit is not None
-    effect, limit = (amount_of(row.of, one) for one in (row.value, row.limit))
+    effect, limit = (amount_of(row.of, value) for value in (row.value, row.limit))
     return effect, limit
 
 

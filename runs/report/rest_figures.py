@@ -70,9 +70,9 @@ def at_rest(run: FigureContext) -> list[Figure]:
         + extension_note(run.case, [tip.time for tip in tips.values()])
     )
     far = max(tips.values(), key=lambda tip: abs(tip.value))
-    aside = farthest.where(model=far.model, quantity="tip_lateral").largest
+    lateral = farthest.where(model=far.model, quantity="tip_lateral").largest
     both = [f"{TO_MILLI * far.value:.1f} mm"]
-    both += [f"lateral {TO_MILLI * aside.value:.1f} mm"] if aside and aside.value else []
+    both += [f"lateral {TO_MILLI * lateral.value:.1f} mm"] if lateral and lateral.value else []
     tip_text = with_minus_signs(", ".join(both))
     title = f"Static state under the loads at {far.time:g} s: tip at {tip_text} in {far.model}"
     return _draw_panels(run, curves, "at-rest", title, caption)
@@ -81,10 +81,10 @@ def at_rest(run: FigureContext) -> list[Figure]:
 def envelopes(run: FigureContext) -> list[Figure]:
     """Draw the envelopes of the section forces in motion."""
     curves = [
-        _curve(what, one.model, one.x, one.values[what], run.line_styles[one.model].color)
-        for one in run.curves.where(model=run.main_models, play=True, state=[LOW, HIGH])
+        _curve(what, curve.model, curve.x, curve.values[what], run.line_styles[curve.model].color)
+        for curve in run.curves.where(model=run.main_models, play=True, state=[LOW, HIGH])
         for what in _FORCES
-        if what in one.values
+        if what in curve.values
     ]
     caption = (
         "Minimum and maximum of the section forces over the run, along each segment; signs as in "
@@ -122,9 +122,9 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
 def rest_curves(static: Curves, name: str, color: str) -> list[Curve]:
     """Return the curves of a static state along the boom, with ``name`` in the legend."""
     return [
-        _curve(what, name, one.x, values, color)
-        for one in static
-        for what, values in one.values.items()
+        _curve(what, name, curve.x, values, color)
+        for curve in static
+        for what, values in curve.values.items()
         if what in _PANELS
     ]
 

@@ -112,15 +112,15 @@ def play_table(results: Results) -> Table | None:
     if not pairs:
         return None
     changes = [
-        "negligible" if one.is_negligible else amount_of(one.with_play.of, one.increase)
-        for one in pairs
+        "negligible" if pair.is_negligible else amount_of(pair.with_play.of, pair.increase)
+        for pair in pairs
     ]
     columns = (
-        Column("", [label(one.with_play) for one in pairs]),
-        Column("with play", [_magnitude(one.with_play) for one in pairs]),
-        Column("without play", [_magnitude(one.without) for one in pairs]),
+        Column("", [label(pair.with_play) for pair in pairs]),
+        Column("with play", [_magnitude(pair.with_play) for pair in pairs]),
+        Column("without play", [_magnitude(pair.without) for pair in pairs]),
         Column("play adds", changes),
-        Column("", [None if one.is_negligible else one.share for one in pairs], ".3g", "%"),
+        Column("", [None if pair.is_negligible else pair.share for pair in pairs], ".3g", "%"),
     )
     notes = (
         "Magnitudes, and the difference of the magnitudes. Forces, moments, reactions and stresses "
@@ -142,7 +142,7 @@ def _side_by_side(
     """
     labels = dict.fromkeys(label for label, _ in cells)
     of_models = {name: [cells.get((label, name)) for label in labels] for name in models}
-    return [Column(heading, [*labels]), *(Column(*one, *more) for one in of_models.items())]
+    return [Column(heading, [*labels]), *(Column(*column, *more) for column in of_models.items())]
 
 
 def _models(rows: Rows) -> dict[str, None]:
@@ -250,7 +250,7 @@ def record_tables(results: Results) -> Iterator[Table]:
     """Yield a table for each kind of record, with a row for each model."""
     design = results.summary.design.models
     for name, kind in records(ModelDesignResults).items():
-        found = {model: one for model in design if (one := getattr(design[model], name))}
+        found = {model: rows for model in design if (rows := getattr(design[model], name))}
         if found:
             columns = Column("model", [*found]), *metric_columns(kind, [*found.values()])
             yield Table(kind.title, columns, kind.notes, name)
@@ -320,10 +320,15 @@ def buckling_table(results: Results) -> Table:
     """Return the table of buckling factors of walls, without rows if they are not requested."""
     panels = {at: (row.value, row.place, row.x) for at, row in weakest_panels(results.rows).items()}
     shells = {
-        (name, one.segment): (one.factors[0], one.walls[0], one.x[0], one.mesh_errors[0])
+        (name, buckling.segment): (
+            buckling.factors[0],
+            buckling.walls[0],
+            buckling.x[0],
+            buckling.mesh_errors[0],
+        )
         for name, design in results.summary.design.models.items()
-        for one in design.buckling
-        if one.factors
+        for buckling in design.buckling
+        if buckling.factors
     }
     rows = [
         (name, segment.name, *shells.get(at, (None,) * 4), *panels.get(at, (None,) * 3))
@@ -373,7 +378,9 @@ def life_table(results: Results) -> Table:
     if any(damage is not None for damage in damages):
         columns += [
             Column("damage of a run", damages, ".3g"),
-            Column("runs to failure", [1.0 / one if one else None for one in damages], ".3g"),
+            Column(
+                "runs to failure", [1.0 / damage if damage else None for damage in damages], ".3g"
+            ),
             Column("damage of the life", cells("damage"), ".3g"),
         ]
     notes = [

@@ -73,9 +73,9 @@ class Instant(NamedTuple):
         """Return the line above a picture, with time and tip deflection."""
         title = f"{self.title}:  " if self.title else ""
         tip = float(scene.motion["tip"].sel(time=self.time, method="nearest"))
-        aside = " (lateral)" if scene.from_above else ""
+        lateral = " (lateral)" if scene.from_above else ""
         deflection = with_minus_signs(f"{1.0e3 * tip:+.1f}")
-        return f"{title}t = {self.time:.3f} s,  tip {deflection} mm{aside}"
+        return f"{title}t = {self.time:.3f} s,  tip {deflection} mm{lateral}"
 
 
 @dataclass(frozen=True)

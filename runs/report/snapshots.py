@@ -275,7 +275,7 @@ def describe_one(results: Results, path: Path) -> Figure:
         return Figure(path, f"Buckling of {segment}", caption)
     seen = _NAME.fullmatch(name.removesuffix(path.suffix))
     assert seen is not None, f"{path.name} is not a snapshot's name"
-    above, aside = (", seen from above", "lateral ") if seen["above"] else ("", "")
+    above, lateral = (", seen from above", "lateral ") if seen["above"] else ("", "")
     if above:
         motion = motion.assign(tip=motion["tip_lateral"])
     when, state = _instant(seen["when"], motion, "lateral tip" if above else "tip")
@@ -291,7 +291,7 @@ def describe_one(results: Results, path: Path) -> Figure:
             caption += ON_SURFACES
         return Figure(path, f"Overlap: {when}", caption)
     caption = (
-        f"Boom in {state}. Colour: magnitude of {aside}deflection; grey: undeformed; "
+        f"Boom in {state}. Colour: magnitude of {lateral}deflection; grey: undeformed; "
         "symbols: supports, cylinders, masses and loads. Displacements and play are magnified "
         "by the factor above the picture."
     )

@@ -132,26 +132,28 @@ def combination_tables(rows: Rows, case: Case, shell: str = "") -> Iterator[Tabl
     ``rows`` may include others. ``shell`` is the name of the shell; empty for results of beam
     elements.
     """
-    names = [one.name for one in combined_cases(case)]
+    names = [combined.name for combined in combined_cases(case)]
     shown = shown_rows(rows.where(state=[COMBINATION + name for name in names]))
     if not shown:
         return
     of_names = [shown.where(state=COMBINATION + name) for name in names]
     columns = [Column("combination,\nload case", names)]
     for heading, quantities in _COLUMNS.items():
-        values = [one.where(quantity=quantities).largest for one in of_names]
-        most = max((abs(one.value) for one in values if one), default=0.0)
+        values = [name.where(quantity=quantities).largest for name in of_names]
+        most = max((abs(value.value) for value in values if value), default=0.0)
         if most:
-            cells = [_marked(one, most) if one else None for one in values]
+            cells = [_marked(value, most) if value else None for value in values]
             columns.append(Column(heading, cells))
     notes = [f"{_GOVERNS} is the largest of its column."]
-    limited = [one.name for one in case.combinations if "deflection" in one.proofs]
+    limited = [
+        combination.name for combination in case.combinations if "deflection" in combination.proofs
+    ]
     if limited and case.limits is not None and (limit := case.limits.tip_at_rest) is not None:
         text = amount(limit, "m")
         notes.append(
             f"The limit {text} of the static tip deflection applies to {join_words(limited)} only."
         )
-    moving = [one.name for one in case.combinations if one.motion]
+    moving = [combination.name for combination in case.combinations if combination.motion]
     if moving:
         notes.append(f"In `prove` and reports, {join_words(moving)}: extremes of the motion.")
     if build_boom(case).telescopes:

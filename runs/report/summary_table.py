@@ -78,7 +78,7 @@ def summary_table(results: Results) -> Table | None:
     decay_times = [decay_time(results.case.damping.modal, f) for f in hertz]
     most = [utilisations(rows) for rows in of_models]
     walls, fibres, pads, damages = (
-        [one.get(name) for one in most]
+        [of_model.get(name) for of_model in most]
         for name in ("wall_stress", "stress", "pad_pressure", "damage")
     )
     pad_cells = [
@@ -89,8 +89,8 @@ def summary_table(results: Results) -> Table | None:
     def largest(quantity: str, at: bool = False) -> list[str | None]:
         return [_largest(peaks(rows).where(quantity=quantity), rows, at) for rows in of_models]
 
-    aside = [_value(rows, REST, "tip_lateral") or None for rows in of_models]
-    bending, plates = ([one and _stress(one) for one in several] for several in (fibres, walls))
+    sideways = [_value(rows, REST, "tip_lateral") or None for rows in of_models]
+    bending, plates = ([row and _stress(row) for row in several] for several in (fibres, walls))
     z, lateral = ", vertical (z)" if results.boom.spatial else "", "Static lateral tip deflection"
     rows_of_models = (
         Column("Static tip deflection (t = 0)", at_start, ".1f", "mm"),
@@ -108,7 +108,7 @@ def summary_table(results: Results) -> Table | None:
             [_vibration(design[name]) for name in names],
             unit="mm",
         ),
-        Column(f"{lateral} (maximum load)", aside, ".1f", "mm"),
+        Column(f"{lateral} (maximum load)", sideways, ".1f", "mm"),
         Column("Lateral tip deflection, maximum", largest("tip_lateral"), unit="mm"),
         Column("First natural frequency", hertz, ".3g", "Hz"),
         Column("Period of the motion (time history)", periods, ".3g", "s"),
@@ -126,14 +126,14 @@ def summary_table(results: Results) -> Table | None:
         Column(
             "Plate buckling factor, lowest (segment)", [_buckling(results, name) for name in names]
         ),
-        Column("Fatigue damage (Miner)", [one and one.value for one in damages], ".3g"),
+        Column("Fatigue damage (Miner)", [damage and damage.value for damage in damages], ".3g"),
     )
     rows = {column.heading.replace("\n", ", "): column.text for column in rows_of_models}
     rows = {what: cells for what, cells in rows.items() if any(cell != NONE for cell in cells)}
     columns = [Column("", list(rows))]
     columns += [Column(name, [cells[i] for cells in rows.values()]) for i, name in enumerate(names)]
     loaded = [*walls, *fibres, *pads, *damages]
-    texts = [*plates, *bending, *pad_cells, *(one and number(one.value) for one in damages)]
+    texts = [*plates, *bending, *pad_cells, *(row and number(row.value) for row in damages)]
     strong = [
         text
         for row, text in zip(loaded, texts, strict=True)
@@ -157,8 +157,8 @@ def deviation_note(results: Results) -> str:
     if not deviations:
         return ""
     behind = [name for name in results.summary.models if name not in results.main_models]
-    shown = [one for one in results.completed_models if one.name in behind]
-    others = [f"{one.name!r} ({one.kind}, {one.describe()})" for one in shown]
+    shown = [model for model in results.completed_models if model.name in behind]
+    others = [f"{model.name!r} ({model.kind}, {model.describe()})" for model in shown]
     more = f" Some tables and figures also show {join_words(others)}." if others else ""
     return (
         f"Deviation of the static tip deflection (maximum load) from {reference}: "
@@ -174,16 +174,16 @@ def play_effect(results: Results) -> str:
         if pair.with_play.quantity in ("tip", "stress"):
             kinds.setdefault(f"the {title(pair.with_play)}", []).append(pair)
     most = {
-        what: max(several, key=lambda one: abs(one.with_play.value))
+        what: max(several, key=lambda pair: abs(pair.with_play.value))
         for what, several in kinds.items()
     }
-    changed = {what: one for what, one in most.items() if not one.is_negligible}
-    more = [f"{_change(one)} to {what}" for what, one in changed.items() if one.increase > 0.0]
-    less = [f"{what} by {_change(one)}" for what, one in changed.items() if one.increase <= 0.0]
+    changed = {what: pair for what, pair in most.items() if not pair.is_negligible}
+    more = [f"{_change(pair)} to {what}" for what, pair in changed.items() if pair.increase > 0.0]
+    less = [f"{what} by {_change(pair)}" for what, pair in changed.items() if pair.increase <= 0.0]
     same = [what for what in most if what not in changed]
     parts = [(more, "adds"), (less, "reduces"), (same, "hardly changes")]
     sentences = [f"Play {verb} {join_words(several)}." for several, verb in parts if several]
-    frequency = next((one for one in pairs if one.with_play.quantity == "frequency"), None)
+    frequency = next((pair for pair in pairs if pair.with_play.quantity == "frequency"), None)
     if frequency is not None and not frequency.is_negligible:
         # Play itself, which opens contacts, has no part in this frequency.
         closed, bonded = (amount_of(row.of, row.value) for row in frequency)
@@ -194,11 +194,11 @@ def play_effect(results: Results) -> str:
     return " ".join(sentences)
 
 
-def _change(one: PlayPair) -> str:
+def _change(pair: PlayPair) -> str:
     share = (
-        "" if one.share is None else f" ({with_minus_signs(f'{TO_PERCENT * one.share:+.0f}')} %)"
+        "" if pair.share is None else f" ({with_minus_signs(f'{TO_PERCENT * pair.share:+.0f}')} %)"
     )
-    return f"{amount_of(one.with_play.of, abs(one.increase))}{share}"
+    return f"{amount_of(pair.with_play.of, abs(pair.increase))}{share}"
 
 
 def utilisation_verdict(results: Results, model: str | None = None) -> str:
@@ -208,11 +208,11 @@ def utilisation_verdict(results: Results, model: str | None = None) -> str:
     categories the text is empty.
     """
     rows = results.rows.where(model=model or results.main_models[0], play=True)
-    governing = [one for one in utilisations(rows).values() if one.utilisation is not None]
+    governing = [row for row in utilisations(rows).values() if row.utilisation is not None]
     if not governing:
         return ""
-    governing.sort(key=lambda one: one.utilisation or 0.0, reverse=True)
-    steels = [one.name for one in results.boom.segments if one.yield_strength is None]
+    governing.sort(key=lambda row: row.utilisation or 0.0, reverse=True)
+    steels = [segment.name for segment in results.boom.segments if segment.yield_strength is None]
     loaded = (pad for pad in rows.where(quantity="pad_pressure") if pad.value)
     pads = dict.fromkeys(pad.part for pad in loaded if pad.limit is None)
     missing = {"yield strength is given of": steels, "allowable pressure is given of pads of": pads}
@@ -276,7 +276,9 @@ def _stress(most: Row) -> str:
 def _buckling(results: Results, model: str) -> str | None:
     """Return a text on the lowest buckling factor of walls, by the shell or by panel formulas."""
     design = results.summary.design.models[model]
-    shells = [(one.factors[0], one.segment) for one in design.buckling if one.factors]
+    shells = [
+        (buckling.factors[0], buckling.segment) for buckling in design.buckling if buckling.factors
+    ]
     panels = [
         (row.value, f"{row.part}, panel formulas")
         for row in weakest_panels(results.rows.where(model=model)).values()
@@ -342,7 +344,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
             "Pad: largest force on one pad of a pair during the motion, and its mean pressure"
             f"{bears and f'; %: of the allowable {bears}'}."
         )
-    strengths = _span(one.yield_strength for one in results.boom.segments)
+    strengths = _span(segment.yield_strength for segment in results.boom.segments)
     if strengths:
         yield f"Stresses: % of the yield strength, {strengths}."
     if "Local plate stress, maximum (utilisation), MPa" in rows:
@@ -350,9 +352,11 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
             "Local plate stress: von Mises stress with plate bending, averaged over half the width "
             f"of a wall. Places: within {BAND:g} m along x of stations, supports, lugs and loads."
         )
-    shells = {name: one.stress for name, one in results.summary.models.items() if one.stress}
+    shells = {name: model.stress for name, model in results.summary.models.items() if model.stress}
     if shells:
-        most = [f"{number(TO_MEGA * one.von_mises)} MPa in {name}" for name, one in shells.items()]
+        most = [
+            f"{number(TO_MEGA * shell.von_mises)} MPa in {name}" for name, shell in shells.items()
+        ]
         yield (
             f"Stresses of single elements are larger ({join_words(most)}), but they grow with mesh "
             "refinement and are no design values. A note below the table of section forces of "

@@ -15,6 +15,7 @@ from matplotlib.path import Path
 from matplotlib.transforms import Affine2D
 
 from protractile.geometry.boom import Boom, Segment
+from protractile.geometry.load import PartialLoad
 from protractile.geometry.place import at
 from protractile.geometry.section import Direction
 from protractile.geometry.typography import number
@@ -140,7 +141,7 @@ def edges(
 def abbreviate(value: float, unit: str) -> str:
     """Return a number with its unit as text, with prefix k or M for large numbers."""
     units = (*_LARGER.get(unit, ()), (unit, 1.0))
-    name, factor = next((one for one in units if abs(value) >= one[1]), units[-1])
+    name, factor = next((prefix for prefix in units if abs(value) >= prefix[1]), units[-1])
     return f"{number(value / factor, 4)} {name}"
 
 
@@ -152,8 +153,8 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
         for load, direction in ((segment_table.load, "z"), (segment_table.lateral_load, "y")):
             if load:
                 yield _spread(boom, index, segment.ends, load, direction, "")
-        for one in segment_table.masses:
-            yield _mass(index, at(one.x, *segment.ends), f"mass, {number(one.mass, 4)} kg")
+        for mass in segment_table.masses:
+            yield _mass(index, at(mass.x, *segment.ends), f"mass, {number(mass.mass, 4)} kg")
     if case.payload is not None:
         payload = f"mass at the tip, {number(case.payload.mass, 4)} kg"
         yield _mass(len(boom.segments) - 1, boom.tip, payload)
@@ -163,6 +164,14 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
     names = [segment.name for segment in boom.segments]
     for table in case.loads:
         yield _load(table, boom, names.index(table.segment))
+    if case.wind is not None:
+        for blow in actions.wind(case, case.wind, boom.segments, boom.joints):
+            if isinstance(blow, PartialLoad):
+                force = blow.magnitude * getattr(blow.history, "peak", 1.0)
+                yield _spread(boom, blow.segment, blow.span, force, blow.direction, ", wind")
+    for lead in boom.leads:
+        along = f"{abbreviate(lead.force, 'N')} of the rope's lead"
+        yield Symbol("loads", lead.segment, (lead.x,), 0.0, FORCE_BACK, along)
     for thrust in actions.thrusts(case, boom.segments):
         sign = FORCE_BACK if thrust.force > 0.0 else FORCE_ON
         along = f"{abbreviate(abs(thrust.force), 'N')} along the boom"

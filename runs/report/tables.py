@@ -126,7 +126,7 @@ class Column:
         if cell is None:
             return NONE
         if isinstance(cell, list):
-            return repeated([self.factor * one for one in cell])
+            return repeated([self.factor * value for value in cell])
         if not self.form:
             return count(cell)
         digits = int(self.form[1:-1])
@@ -139,7 +139,7 @@ class Column:
         if isinstance(cell, Amount):
             return cell.value
         if isinstance(cell, list):
-            return [self._plain(part) for part in cell]
+            return [self._plain(value) for value in cell]
         if cell is None or isinstance(cell, str) or (isinstance(cell, int) and self.factor == 1.0):
             return cell
         return float(self.factor * cell) if math.isfinite(cell) else None

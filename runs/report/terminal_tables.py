@@ -157,27 +157,27 @@ def result_table(results: Results) -> Table:
     peaks = [rows.where(quantity="tip").largest for rows in moved]
     modes = [rows.where(state=INITIAL, quantity="frequency") for rows in of_models]
     used = [utilisations(rows) for rows in of_models]
-    padded = any("pad_pressure" in one for one in used)
+    padded = any("pad_pressure" in of_model for of_model in used)
     carried = [rows.where(quantity="pad_force" if padded else "contact_force") for rows in moved]
-    governing = [Rows(one.values()).governing for one in used]
+    governing = [Rows(of_model.values()).governing for of_model in used]
     shares = [row.utilisation if row else None for row in governing]
     columns = [
         Column("model", names),
         Column("static tip\nt = 0", static, ".1f", "mm"),
         Column("static tip\nmax. load", highest, ".1f", "mm"),
         Column("dynamic\ntip", dynamic, ".1f", "mm"),
-        Column("φ", [one and results.rows.dynamic_factor(one) for one in peaks], ".3g"),
-        Column("first\nmode", [one[0].value if one else None for one in modes], ".3g", "Hz"),
+        Column("φ", [peak and results.rows.dynamic_factor(peak) for peak in peaks], ".3g"),
+        Column("first\nmode", [mode[0].value if mode else None for mode in modes], ".3g", "Hz"),
         Column(
             "one pad" if padded else "contact\nforce",
-            [one and abs(one.value) for one in (rows.largest for rows in carried)],
+            [row and abs(row.value) for row in (rows.largest for rows in carried)],
             ".3g",
             "kN",
         ),
         Column("used", shares, ".3g", "%"),
         Column("by", [row.of.short if row and row.utilisation else None for row in governing]),
     ]
-    columns = [one for one in columns if any(cell is not None for cell in one.cells)]
+    columns = [column for column in columns if any(cell is not None for cell in column.cells)]
     models = [model for model in results.completed_models if model.name in names]
     notes = [
         "φ: maximum in motion over the static value under the maximum load."
@@ -196,14 +196,16 @@ def lateral_table(results: Results) -> Table | None:
     of_models = [results.rows.where(model=name, play=True) for name in names]
     headings = "static, t = 0", "static, max. load", "dynamic"
     tips = _tips(of_models, "tip_lateral")
-    columns = [Column(one, cells, ".1f", "mm") for one, cells in zip(headings, tips, strict=True)]
+    columns = [
+        Column(heading, cells, ".1f", "mm") for heading, cells in zip(headings, tips, strict=True)
+    ]
     return Table("Lateral tip deflection", [Column("model", names), *columns])
 
 
 def _tips(of_models: Sequence[Rows], quantity: str) -> list[list[float | None]]:
     """Return the deflections of the tip at t = 0, under extreme loads and in motion."""
     return [
-        [one and one.value for one in (rows.where(**labels).largest for rows in of_models)]
+        [row and row.value for row in (rows.where(**labels).largest for rows in of_models)]
         for labels in ({"state": state, "quantity": quantity} for state in (INITIAL, REST, MOTION))
     ]
 
@@ -233,7 +235,7 @@ def print_proofs(
     proofs = prove(case, states)
     print_text(console, case.title)
     name = "" if shell is None else shell[0].name
-    rows = Rows(row for one in states for row in one.rows)
+    rows = Rows(row for state in states for row in state.rows)
     for table in combination_tables(rows, case, name):
         table.show(console)
     proof_table(proofs, case).show(console)

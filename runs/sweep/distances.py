@@ -84,7 +84,8 @@ class Features:
             if getattr(reference, name)
         } | {"tip": tip_difference}
         distances = {
-            one.name: differences.get(one.name.removesuffix("_off"), np.nan) for one in DISTANCES
+            distance.name: differences.get(distance.name.removesuffix("_off"), np.nan)
+            for distance in DISTANCES
         }
         return {name: part if np.isfinite(part) else None for name, part in distances.items()}
 

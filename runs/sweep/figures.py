@@ -102,15 +102,15 @@ def _at_ends(data: xr.Dataset, keys: Sequence[str]) -> Iterator[dict[str, float]
 
 def _varying_quantities(data: xr.Dataset) -> list[Quantity]:
     """Return the quantities that change over the keys, or all with values if none changes."""
-    available = [one for one in CHARTED if np.isfinite(data[one.name].values).any()]
+    available = [charted for charted in CHARTED if np.isfinite(data[charted.name].values).any()]
 
-    def changes(one: Quantity) -> bool:
-        values = data[one.name]
+    def changes(charted: Quantity) -> bool:
+        values = data[charted.name]
         keys = [dim for dim in values.dims if dim != "model"]
         spans = (values.max(keys) - values.min(keys)).values
         return bool(np.nanmax(spans) > SAME * np.nanmax(np.abs(values.values)))
 
-    return [one for one in available if changes(one)] or available
+    return [charted for charted in available if changes(charted)] or available
 
 
 def in_display_units(data: xr.Dataset) -> xr.Dataset:
@@ -135,13 +135,18 @@ def draw_distances(data: xr.Dataset, reference: str, folder: Path) -> None:
     """
     data = in_display_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
-    available = [one for one in DISTANCES if np.isfinite(data[one.name].values).any()]
+    available = [
+        distance for distance in DISTANCES if np.isfinite(data[distance.name].values).any()
+    ]
     with matplotlib.rc_context(theme.RC):
         if len(keys) > 1:
             for quantity in available:
                 _distance_maps(data, quantity, keys, reference, folder)
         elif available:
-            floor = {one.name: np.maximum(data[one.name], _LEAST / one.factor) for one in available}
+            floor = {
+                distance.name: np.maximum(data[distance.name], _LEAST / distance.factor)
+                for distance in available
+            }
             shown = data.assign(floor)
             sheet, panels = _lines(shown, keys[0], available, _line_styles(data, ()))
             for axes in panels:
@@ -165,12 +170,12 @@ def _lines(
 ) -> tuple[Sheet, list[Axes]]:
     """Return a figure and its panels, one for each quantity over a key, with a line per model."""
     sheet, panels = new_sheet(len(quantities), 1.2 + 1.8 * len(quantities))
-    for axes, one in zip(panels, quantities, strict=True):
+    for axes, shown in zip(panels, quantities, strict=True):
         for name, style in line_styles.items():
-            values = one.factor * data[one.name].sel(model=name)
+            values = shown.factor * data[shown.name].sel(model=name)
             (line,) = axes.plot(data[key], values, marker="o", markersize=4.0, label=name)
             line.set(color=style.color, linestyle=style.linestyle)
-        axes.set_title(f"{one.title} ({one.shown_unit})")
+        axes.set_title(f"{shown.title} ({shown.shown_unit})")
     _scale_axis(panels[-1], "x", data[key])
     handles, labels = panels[0].get_legend_handles_labels()
     sheet.legend(handles, labels, loc="outside lower left", ncols=2)

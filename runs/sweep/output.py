@@ -46,21 +46,23 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
     dims, models = list(plan.coordinates), plan.coordinates["model"]
     quantities = QUANTITIES if plan.reference is None else (*QUANTITIES, *DISTANCES)
     rows = [
-        one.models.get(name, {}) | one.differences.get(name, {}) | {"failed": name in one.failures}
-        for one in outcomes
+        outcome.models.get(name, {})
+        | outcome.differences.get(name, {})
+        | {"failed": name in outcome.failures}
+        for outcome in outcomes
         for name in models
     ]
     shape = *plan.shape, len(models)
     variables: dict[str, Any] = {}
     permitted = {limit.quantity.name: {PERMITTED: limit.permitted} for limit in plan.limits}
-    for one in quantities:
-        values = np.array([row.get(one.name) for row in rows], dtype=float).reshape(shape)
-        attributes = {"units": one.unit, "long_name": one.title}
-        variables[one.name] = dims, values, attributes | permitted.get(one.name, {})
+    for quantity in quantities:
+        values = np.array([row.get(quantity.name) for row in rows], dtype=float).reshape(shape)
+        attributes = {"units": quantity.unit, "long_name": quantity.title}
+        variables[quantity.name] = dims, values, attributes | permitted.get(quantity.name, {})
     failed = np.array([row["failed"] for row in rows], dtype=np.int8).reshape(shape)
     variables["failed"] = dims, failed, {"long_name": "the computation failed"}
     if plan.reference is not None:
-        ends = np.array([one.until for one in outcomes], dtype=float).reshape(plan.shape)
+        ends = np.array([outcome.until for outcome in outcomes], dtype=float).reshape(plan.shape)
         until = {"units": "s", "long_name": "tips compared until"}
         variables = {UNTIL: (dims[:-1], ends, until), **variables}
     about = {"Conventions": CONVENTIONS, "title": plan.title}
@@ -85,7 +87,7 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         # As text, values are not rounded.
         rows[keys] = rows[keys].astype(str)
         names = data[model].values
-        rows["failure"] = [one.failures.get(name, "") for one in outcomes for name in names]
+        rows["failure"] = [outcome.failures.get(name, "") for outcome in outcomes for name in names]
         rows.to_csv(table, index=False, float_format="%.9g", lineterminator="\r\n")
         draw(data, plan.bonded, figures)
         if plan.reference is not None:
@@ -135,10 +137,18 @@ def print_ranges(data: xr.Dataset, plan: Plan, console: Console) -> None:
 def _print_distances(data: xr.Dataset, reference: str, console: Console) -> None:
     others = [str(name) for name in data["model"].values if name != reference]
     rows = [
-        (name, *(_range(data[one.name].sel(model=name).round(DIGITS), one) for one in DISTANCES))
+        (
+            name,
+            *(
+                _range(data[distance.name].sel(model=name).round(DIGITS), distance)
+                for distance in DISTANCES
+            ),
+        )
         for name in others
     ]
-    headings = [f"{one.title} {one.shown_unit}".replace(" ", "\n") for one in DISTANCES]
+    headings = [
+        f"{distance.title} {distance.shown_unit}".replace(" ", "\n") for distance in DISTANCES
+    ]
     title = f"Distances from {reference}"
     Table.of_rows("distances", title, ("model", *headings), rows).show(console)
     until = _range(data[UNTIL], Quantity(UNTIL, "s", ""))

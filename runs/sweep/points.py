@@ -23,7 +23,7 @@ from protractile.geometry.typography import choices
 from protractile.runs.case import reading as case_file
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom, hold_ground
-from protractile.runs.case.messages import refusing
+from protractile.runs.case.messages import translated_errors
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SectionTable
 from protractile.runs.pipeline.quantities import Limit, case_limits
@@ -102,8 +102,8 @@ def plan(
     first = _set_numbers(file, whole, tables, tuple((v, v.values[0]) for v in variations))
     units = [whole.system.unit(unit_of(variation.places[0], first)) for variation in variations]
     variations = [
-        replace(one, places=tuple(with_size(place, first) for place in one.places))
-        for one in variations
+        replace(variation, places=tuple(with_size(place, first) for place in variation.places))
+        for variation in variations
     ]
     combinations = (
         tuple(zip(variations, values, strict=True))
@@ -180,7 +180,7 @@ def _set_numbers(file: str, whole: Case, tables: Tables, settings: Sequence[Sett
         for variation, value in settings:
             for place in variation.places:
                 place.put(changed, value)
-        with refusing(file):
+        with translated_errors(file):
             return hold_ground(Case.model_validate(changed), whole)
     except OverflowError:
         what = "a value is too large for SI units; give smaller ones"

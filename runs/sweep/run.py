@@ -133,7 +133,9 @@ def run_point(case: Case, cache: Cache | None = None, reference: str | None = No
         for name, results in runs.items()
     }
     reference_features = features.pop(reference)
-    differences = {name: one.distances_from(reference_features) for name, one in features.items()}
+    differences = {
+        name: feature.distances_from(reference_features) for name, feature in features.items()
+    }
     return Outcome(models, failures, differences, until)
 
 

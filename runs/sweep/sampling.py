@@ -98,8 +98,8 @@ def plan_samples(
         )
         raise BadInput(file, OPTION, what)
     places = [Place(spread.steps) for spread in spreads]
-    values = normal_points(len(spreads), count) * [one.sd for one in spreads]
-    values += [one.mean for one in spreads]
+    values = normal_points(len(spreads), count) * [spread.sd for spread in spreads]
+    values += [spread.mean for spread in spreads]
     samples = pd.DataFrame(values, columns=[place.name for place in places])
     variations = [
         Variation(place.name, tuple(column), (with_size(place, case),))
@@ -133,10 +133,10 @@ def normal_points(dimensions: int, count: int) -> Array:
 
 def results_of(plan: Plan, outcomes: Sequence[Outcome]) -> dict[str, pd.DataFrame]:
     """Return a table of results in SI units by model, with a row per point, a column per result."""
-    names = [one.name for one in QUANTITIES if one.charted]
+    names = [quantity.name for quantity in QUANTITIES if quantity.charted]
     return {
         model: pd.DataFrame(
-            [one.models.get(model, {}) for one in outcomes], columns=names, dtype=float
+            [outcome.models.get(model, {}) for outcome in outcomes], columns=names, dtype=float
         ).dropna(axis=1, how="all")
         for model in plan.coordinates["model"]
     }
@@ -174,8 +174,8 @@ def conclude_samples(
     print(printable(str(folder / CSV)))
     for model, frame in results.items():
         rows = [
-            (f"{one.title} ({one.shown_unit})", *(one.factor * row).tolist())
-            for one, row in _main_statistics(frame)
+            (f"{metric.title} ({metric.shown_unit})", *(metric.factor * row).tolist())
+            for metric, row in _main_statistics(frame)
         ]
         forms = {"": ""} | dict.fromkeys(("mean", "sd"), ".4g")
         forms |= {f"{100.0 * part:g} %": ".4g" for part in QUANTILES}
@@ -186,28 +186,30 @@ def conclude_samples(
 def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Quantity, pd.Series[float]]]:
     """Yield the main results that vary, with their statistics."""
     table = scatter(results)
-    for one in QUANTITIES:
-        if one.name in SHOWN and one.name in table.index:
-            yield one, table.loc[one.name]
+    for quantity in QUANTITIES:
+        if quantity.name in SHOWN and quantity.name in table.index:
+            yield quantity, table.loc[quantity.name]
 
 
 def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
     """Draw the cumulative distribution of each main result."""
-    metrics = {one: None for frame in results.values() for one, _ in _main_statistics(frame)}
+    metrics = {metric: None for frame in results.values() for metric, _ in _main_statistics(frame)}
     line_styles = theme.line_styles(list(results), [])
     with matplotlib.rc_context(theme.RC):
         sheet, _ = new_sheet(1, 0.9 + 1.7 * max(1, len(metrics)))
         sheet.clear()
         panels = sheet.subplots(max(1, len(metrics)), 1, squeeze=False)[:, 0]
-        for axes, one in zip(panels, metrics, strict=False):
+        for axes, metric in zip(panels, metrics, strict=False):
             for model, frame in results.items():
-                if one.name in frame:
+                if metric.name in frame:
                     axes.ecdf(
-                        one.factor * frame[one.name].dropna(),
+                        metric.factor * frame[metric.name].dropna(),
                         color=line_styles[model].color,
                         label=model,
                     )
-            axes.set(xlabel=f"{one.title} ({one.shown_unit})", ylabel="share", ylim=(0.0, 1.0))
+            axes.set(
+                xlabel=f"{metric.title} ({metric.shown_unit})", ylabel="share", ylim=(0.0, 1.0)
+            )
         panels[0].legend()
         sheet.savefig(path)
 
@@ -231,9 +233,9 @@ class Change(NamedTuple):
             for side in SIDES
         )
         differences = 0.5 * (above - below), above - base, base - below
-        first, *others = (one / base.abs() for one in differences)
-        for one in others:
-            first = first.fillna(one)
+        first, *others = (difference / base.abs() for difference in differences)
+        for share in others:
+            first = first.fillna(share)
         return first
 
 
@@ -280,8 +282,8 @@ def changes(
     of the largest effect on the main results.
     """
     (results,) = results_of(plan, outcomes).values()
-    parts = [one.relative(results) for one in changed_numbers if one.points]
-    keys = [one.key for one in changed_numbers if one.points]
+    parts = [number.relative(results) for number in changed_numbers if number.points]
+    keys = [number.key for number in changed_numbers if number.points]
     table = pd.DataFrame(parts, columns=results.columns).set_axis(keys)
     table = table.replace([np.inf, -np.inf], np.nan)
     table = table.mask(table.abs() < ROUND_OFF, 0.0)
@@ -310,13 +312,13 @@ def conclude_changes(
     top = data.head(MOST_ROWS)
     columns = [Column("1 % more of", list(top.index))]
     columns += [
-        Column(one.title.replace(" ", "\n"), (TO_PERCENT * top[one.name]).tolist(), ".2f")
-        for one in QUANTITIES
-        if one.name in SHOWN and one.name in top
+        Column(quantity.title.replace(" ", "\n"), (TO_PERCENT * top[quantity.name]).tolist(), ".2f")
+        for quantity in QUANTITIES
+        if quantity.name in SHOWN and quantity.name in top
     ]
     notes = []
     for valid, words in _REFUSED.items():
-        if keys := [one.key for one in changed_numbers if (*one.points,) == valid]:
+        if keys := [number.key for number in changed_numbers if (*number.points,) == valid]:
             notes.append(words.format(join_words(keys)))
     if len(data) > len(top):
         notes.append(f"{len(data) - len(top)} more numbers are in {CHANGES_CSV}.")

@@ -39,7 +39,7 @@ def parse_bound(text: str, plan: Plan) -> Limit:
     Raises:
         BadInput: the text is invalid, or the plan has several keys or models.
     """
-    quantities = {one.name: one for one in QUANTITIES}
+    quantities = {quantity.name: quantity for quantity in QUANTITIES}
     match = _BOUND.fullmatch(text)
     if match is None:
         what = f"{text!r} is not understood; give QUANTITY<NUMBER or QUANTITY>NUMBER"
@@ -155,10 +155,10 @@ def print_bracket(plan: Plan, outcomes: Sequence[Outcome], bound: Limit, console
 
 def rigid_wall_cautions(case: Case, name: str) -> list[str]:
     """Return a caution if a beam ignores walls under pads that change the tip considerably."""
-    model = next(one for one in case.models if one.name == name)
+    model = next(model for model in case.models if model.name == name)
     context = Context(case, build_boom(case))
     return [
-        f"caution: {one} {name} has rigid walls: the bound is unsafe; take a shell"
-        for one in (() if model.needs_shell else wall_shares(context))
-        if not isinstance(one, Sentence)
+        f"caution: {share} {name} has rigid walls: the bound is unsafe; take a shell"
+        for share in (() if model.needs_shell else wall_shares(context))
+        if not isinstance(share, Sentence)
     ]

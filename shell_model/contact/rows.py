@@ -17,7 +17,7 @@ import numpy as np
 
 from protractile.dynamics.gap_builder import GapBuilder, LawRow
 from protractile.geometry.boom import Boom, BoomError, Direction
-from protractile.geometry.contact_places import ContactLine, Pad, Patch, pads, stop_patches
+from protractile.geometry.contact_places import ContactLine, ContactPair, Patch, pads, stop_patches
 from protractile.geometry.section import EACH_SIDE, Offset, Section, Side
 from protractile.geometry.telescoping import drives_below
 from protractile.shell_model.contact.surface import SurfaceOptions, SurfacePoint, surface_points
@@ -37,7 +37,7 @@ _Point = tuple[Side, float, Operator]
 class _PadOperators:
     """Operators of the relative displacements u − w at a pad."""
 
-    pad: Pad  #: the pad
+    pad: ContactPair  #: the pad
     corners: Sequence[CornerLines]  #: corner lines of all segments
     walls: Sequence[WallPoints]  #: walls of all segments; empty if no contact is on a wall
 

@@ -20,7 +20,7 @@ from protractile.dynamics.contact import ContactLaw
 from protractile.dynamics.reduction import independent_columns
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
-from protractile.geometry.contact_places import Pad
+from protractile.geometry.contact_places import ContactPair
 from protractile.shell_model.contact.wall_rows import Wall, WallPoints, gauss
 from protractile.shell_model.reduction.segment import ReducedSegment
 from protractile.shell_model.segment.cross_section import Operator
@@ -64,7 +64,7 @@ class SurfacePoint(NamedTuple):
     side: int  #: side of the inner segment in contact, 1 or −1
     half: int  #: half of the wall with the point, 1 or −1; 0 for a pair
 
-    def presses(self, pad: Pad) -> bool:
+    def presses(self, pad: ContactPair) -> bool:
         """Return whether the force of the point is a normal force of a pad."""
         if self.station != pad.station.index:
             return False

@@ -68,14 +68,17 @@ def reduce_segments(
             tolerance is not met.
     """
     comm = segments[0].symmetry.shell.comm
-    jobs = [one.symmetry.jobs(one.inputs, one.outputs, one.probes) for one in segments]
+    jobs = [
+        segment.symmetry.jobs(segment.inputs, segment.outputs, segment.probes)
+        for segment in segments
+    ]
     classes = comm.bcast([[job.symmetry_class for job in some] for some in jobs])
     counts = comm.bcast(
         [[int(np.count_nonzero(job.forces.any(axis=0))) for job in some] for some in jobs]
     )
     if not all(any(some) for some in counts):
         raise NumericsError("nothing acts on a segment, and it has no motion: give it a load")
-    owners = [one for one, some in zip(segments, counts, strict=True) for _ in some]
+    owners = [segment for segment, some in zip(segments, counts, strict=True) for _ in some]
     # The maximum number of coordinates of a symmetry class is proportional to the number of its
     # forces.
     most = options.most
@@ -102,8 +105,8 @@ def reduce_segments(
     every = [job for some in jobs for job in some]
     results = share_jobs(comm, every, reduce_here, reduce_there if helper else None)
     return [
-        _join(one.symmetry, some, list(islice(results, len(some))))
-        for one, some in zip(segments, classes, strict=True)
+        _join(segment.symmetry, some, list(islice(results, len(some))))
+        for segment, some in zip(segments, classes, strict=True)
     ]
 
 
@@ -118,8 +121,8 @@ def _join(
     """
     comm = symmetry.shell.comm
     parts = [
-        comm.bcast(None if one is None else replace(one, shapes=np.empty(0)), root)
-        for root, one in results
+        comm.bcast(None if result is None else replace(result, shapes=np.empty(0)), root)
+        for root, result in results
     ]
     omega2 = np.concatenate([part.omega2 for part in parts])
     accurate = np.concatenate([part.accurate for part in parts])
@@ -127,8 +130,8 @@ def _join(
     # The shapes of a class are inserted at once, since a second array of all shapes would be large.
     shapes = np.empty((symmetry.shell.free.size, omega2.size), order="F")
     places = np.split(np.argsort(order), np.cumsum([part.omega2.size for part in parts])[:-1])
-    for symmetry_class, (root, one), columns in zip(classes, results, places, strict=True):
-        on_cell = None if one is None else one.shapes
+    for symmetry_class, (root, result), columns in zip(classes, results, places, strict=True):
+        on_cell = None if result is None else result.shapes
         shapes[:, columns] = symmetry.expand(on_cell, symmetry_class, root)
     # The limit is the last frequency before the first inaccurate one.
     accurate = accurate[order]

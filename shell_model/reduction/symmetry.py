@@ -220,7 +220,7 @@ class SymmetryReduction:
         jobs = []
         for symmetry_class in symmetry_classes(self._mirrors):
             signs = symmetry_class.signs[:, self.cell.component]
-            forces, rows, loads, springs, masses = (_sum_of_class(one, signs) for one in images)
+            forces, rows, loads, springs, masses = (_sum_of_class(image, signs) for image in images)
             if forces.any() or loads.any():
                 attached_springs = Attachments(springs, shell.springs.factors)
                 attached = attached_springs, Attachments(masses, shell.masses.factors)
@@ -250,7 +250,7 @@ class SymmetryReduction:
         rows = comm.gather(self._row, root)
         every = sizes = None
         if rows is not None:
-            every, sizes = np.concatenate(rows), [one.size for one in rows]
+            every, sizes = np.concatenate(rows), [row.size for row in rows]
         signs = symmetry_class.signs[self._image_of_row, self._component]
         expanded = np.empty((self._row.size, count), order="F")
         for column in range(count):
@@ -310,7 +310,8 @@ def share_jobs(
     def work() -> dict[int, _Result]:
         here = {n: compute(n, job) for n, job in mine.items() if n not in futures}
         there = {
-            n: result_or_compute(one, partial(compute, n, mine[n])) for n, one in futures.items()
+            n: result_or_compute(future, partial(compute, n, mine[n]))
+            for n, future in futures.items()
         }
         return here | there
 

@@ -120,8 +120,8 @@ class SectionNodes:
             for level in (levels.max(), levels.min())
         )
         rows = (
-            sum((1.0 / len(one) * self._mean(plates[n], "z") for n in one), Row())
-            for one in (top, bottom)
+            sum((1.0 / len(face) * self._mean(plates[n], "z") for n in face), Row())
+            for face in (top, bottom)
         )
         return next(rows) - next(rows)
 

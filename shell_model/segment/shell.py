@@ -277,7 +277,7 @@ def assemble_plates(
     )
     space = compat.shell_space(domain)
     forms = ShellForms(space, thickness, segment.material, compression=compression)
-    supports = [dirichlet_condition(space, *one) for one in _rigid_supports(segment)]
+    supports = [dirichlet_condition(space, *support) for support in _rigid_supports(segment)]
     return Plates(space, forms, supports, bool(segment.compression), copies)
 
 

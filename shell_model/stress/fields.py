@@ -177,15 +177,17 @@ def gather_fields(
         ``stress_k`` is the stress in Pa. ``plate_k`` has the plate names to which ``wall`` refers.
     """
     displacements = [
-        vertex_displacements(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)
+        vertex_displacements(shell, segment.shapes)
+        for shell, segment in zip(shells, reduced, strict=True)
     ]
     stresses = [
-        gather_stress_modes(shell, one.shapes) for shell, one in zip(shells, reduced, strict=True)
+        gather_stress_modes(shell, segment.shapes)
+        for shell, segment in zip(shells, reduced, strict=True)
     ]
     meshes = [shell.mesh for shell in shells if shell.mesh is not None]
     if not meshes:
         return None
-    shapes = [one for one in displacements if one is not None]
+    shapes = [displacement for displacement in displacements if displacement is not None]
     begins = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])
     triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, begins[:-1], strict=True)]
     numbers = np.repeat(np.arange(len(meshes)), [len(mesh.triangles) for mesh in meshes])
@@ -258,8 +260,8 @@ def _segment_stresses(
     system: GapSystem,
 ) -> dict[str, _Variable]:
     """Return ``coordinates_k`` and ``stress_k`` of each segment, see :func:`gather_fields`."""
-    modes = [one for one in stresses if one is not None]
-    sizes = [len(one) for one in modes]
+    modes = [stress for stress in stresses if stress is not None]
+    sizes = [len(mode) for mode in modes]
     every = coordinates.of_rows(np.eye(sum(sizes)))
     every = np.pad(every, ((0, 0), (0, system.num_modes - every.shape[1])))
     variables: dict[str, _Variable] = {}

@@ -18,7 +18,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import AdaptiveStep
 from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, BoomError, Cylinder, Joint, Material, PadSize, Support
+from protractile.geometry.boom import Boom, BoomError, Cylinder, Joint, Material, Pad, Support
 from tests.beam_model.exact import beam, beam_elements
 from tests.touching import touching
 
@@ -131,7 +131,7 @@ def test_dashpots_and_pads_take_no_part_in_a_bonded_boom(
 ) -> None:
     """Reference: the same boom without them, to the last bit."""
     (joint,) = paper_boom.joints
-    there = replace(joint, dashpot=DASHPOT, pad=PadSize(0.2, 0.06))
+    there = replace(joint, dashpot=DASHPOT, pad=Pad(0.2, 0.06))
     dragged = replace(paper_boom, joints=(there,))
     models = beam_elements(paper_boom, 1.0)
     bare, bonded = (gap_system(boom.bonded, models) for boom in (paper_boom, dragged))

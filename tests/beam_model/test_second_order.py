@@ -22,7 +22,7 @@ from protractile.geometry.boom import (
     Boom,
     Joint,
     Material,
-    PadSize,
+    Pad,
     PointMass,
     Segment,
     Support,
@@ -104,7 +104,7 @@ def mast(thrust: float, *loads: Load, lateral_play: float | None = None) -> Boom
         Segment.of_section("outer", 0.0, 7.5, STEEL, MAST[0], supports=CLAMP),
         Segment.of_section("inner", 6.2, 13.7, STEEL, MAST[1]),
     )
-    pad, contact = PadSize(0.2, 0.06, bears="corner"), PowerContact(1e9, 1.0)
+    pad, contact = Pad(0.2, 0.06, bears="corner"), PowerContact(1e9, 1.0)
     joint = Joint(0, 1, (6.2, 7.5), 0.003, contact=contact, pad=pad, lateral_play=lateral_play)
     compressed = with_compression(segments, (joint,), [Thrust(1, 13.7, thrust)])
     return Boom(compressed, (joint,), loads)

@@ -19,7 +19,7 @@ from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.stability import closing_loads
 from protractile.geometry.axial import Thrust, with_compression
-from protractile.geometry.boom import Boom, Cylinder, Joint, Material, PadSize, PointMass, Segment
+from protractile.geometry.boom import Boom, Cylinder, Joint, Material, Pad, PointMass, Segment
 from protractile.geometry.box import BoxSection
 from protractile.geometry.compression import NO_COMPRESSION
 from protractile.geometry.load import Load
@@ -43,7 +43,7 @@ def crane(
     )
     if lateral is None:
         segments = tuple(replace(one, lateral=None) for one in segments)
-    pad = PadSize(length=0.1, width=0.08, thickness=0.02, modulus=2e9)
+    pad = Pad(length=0.1, width=0.08, thickness=0.02, modulus=2e9)
     joint = Joint(0, 1, (6.0, 8.0), 0.010, pad=pad, lateral_play=lateral)
     jack = Cylinder(0, 3.0, 0.4, ground=(1.0, -2.0), stiffness=5e7)
     jack = jack.on_earth(0.0, FOOT).in_boom_axes(radians(angle), FOOT)

@@ -80,9 +80,15 @@ angle = <0 70>
 [[axial]]
 force = <1 5000>
 ---
-[[axial]]
+[rope]
 falls = 2
+winch = <0 3>
+[payload]
 mass = <10 500>
+---
+[wind]
+pressure = <0 500>
+shape_factor = <0.5 2>
 ---
 [[axial]]
 force = <1 5000>

@@ -22,7 +22,7 @@ from protractile.geometry.boom import (
     Load,
     Material,
     Observation,
-    PadSize,
+    Pad,
     PointMass,
     Segment,
     SlidePad,
@@ -340,7 +340,7 @@ JACK: dict[str, Any] = {"segment": 0, "x": 4.0, "ground": (1.0, -2.0), "stiffnes
         (Collar, {"span": (1.0, 2.0), "thickness": 0.0}, "thickness", POSITIVE),
         (Cylinder, JACK | {"dashpot": -1.0}, "dashpot", "not less than 0, got -1.0"),
         (Cylinder, JACK | {"stiffness": 0.0}, "stiffness", POSITIVE),
-        (PadSize, {"length": 0.0, "width": 0.1}, "length", POSITIVE),
+        (Pad, {"length": 0.0, "width": 0.1}, "length", POSITIVE),
         (Segment, BEAM | {"mass_per_length": 0.0}, "mass_per_length", POSITIVE),
     ],
 )
@@ -360,7 +360,9 @@ SLIPS: dict[str, Callable[[], object]] = {
     "[x, height above the axis] in the axes of the boom at the luffing angle gravity.angle of the "
     "case": lambda: Cylinder(0, 4.0, 0.3, (1.0, -4.3), 5e7),  # type: ignore[call-arg,misc,arg-type]
     "Cylinder.stiff: unknown; known are segment, x, depth, ground, stiffness, dashpot, spread, "
-    "capacity, pin": lambda: Cylinder(**JACK, stiff=1.0),
+    "capacity, closed, open, bore, rod, pressure, oil_modulus, pin": lambda: Cylinder(
+        **JACK, stiff=1.0
+    ),
     "Cylinder.ground: must be two numbers, x and z in m, got 3.0": lambda: Cylinder(
         **JACK | {"ground": 3.0}
     ),

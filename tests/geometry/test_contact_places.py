@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from protractile.dynamics.contact import PowerContact
-from protractile.geometry.boom import Boom, PadSize, Stop
-from protractile.geometry.contact_places import ContactInterval, Pad, Patch, pads
+from protractile.geometry.boom import Boom, Pad, Stop
+from protractile.geometry.contact_places import ContactInterval, ContactPair, Patch, pads
 
 
 def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
@@ -23,15 +23,15 @@ def test_a_flat_boom_touches_on_its_axis(paper_boom: Boom) -> None:
         for x in joint.stations
     )
     assert pads(boom) == [
-        Pad(boom.stations[0], joint, 0, axis, axis, 1.0, "z", 4500.0, tail, None),
-        Pad(boom.stations[1], joint, 0, axis, axis, 1.0, "z", 5000.0, head, None),
+        ContactPair(boom.stations[0], joint, 0, axis, axis, 1.0, "z", 4500.0, tail, None),
+        ContactPair(boom.stations[1], joint, 0, axis, axis, 1.0, "z", 5000.0, head, None),
     ]
 
 
 def test_a_pad_keeps_its_distance_from_the_corner(paper_boom: Boom) -> None:
     """Reference: by hand, 30 mm inwards from half the width, then 60 mm wide."""
     (joint,) = paper_boom.joints
-    padded = replace(joint, pad=PadSize(length=0.1, width=0.06, offset=0.03))
+    padded = replace(joint, pad=Pad(length=0.1, width=0.06, offset=0.03))
     tail, _ = pads(replace(paper_boom, joints=(padded,)))
     assert tail.patch == Patch(9.0, 9.1, 0.03, 0.06)
 
@@ -39,7 +39,7 @@ def test_a_pad_keeps_its_distance_from_the_corner(paper_boom: Boom) -> None:
 def test_the_centre_of_a_pad_lies_inwards_of_its_corner(spatial_boom: Boom) -> None:
     """Reference: by hand, 30 mm and half of 60 mm, towards the middle of each wall."""
     (joint,) = spatial_boom.joints
-    padded = replace(joint, pad=PadSize(length=0.1, width=0.06, offset=0.03))
+    padded = replace(joint, pad=Pad(length=0.1, width=0.06, offset=0.03))
     found = pads(replace(spatial_boom, joints=(padded,)))
     assert {pad.half for pad in found} == {-1, 1}
     for pad in found:

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from scipy.spatial import cKDTree
 
 from protractile.geometry.arrays import Array, Indices
-from protractile.geometry.boom import Boom, Collar, Diaphragm, PadSize
+from protractile.geometry.boom import Boom, Collar, Diaphragm, Pad
 from protractile.geometry.box import BoxSection
 from protractile.geometry.grading import graded_mesh
 from protractile.geometry.mesh import (
@@ -385,7 +385,7 @@ def test_refinement_zones_are_at_loads_supports_and_stiffeners(paper_boom: Boom)
     loose = refinement_zones(boom, 0, 0.04, "near webs")
     assert [zone.size for zone in loose] == pytest.approx([2.0 * zone.size for zone in found])
     (joint,) = boom.joints
-    padded = replace(boom, joints=(replace(joint, pad=PadSize(0.1, 0.06)),))
+    padded = replace(boom, joints=(replace(joint, pad=Pad(0.1, 0.06)),))
     near = 0.5 * inner.section.width
     of_pads = refinement_zones(padded, 0, 0.01, "near webs")[-2:]
     for zone, start in zip(of_pads, (9.0, 9.9), strict=True):

@@ -13,7 +13,7 @@ from protractile.geometry.boom import (
     Diaphragm,
     Joint,
     Material,
-    PadSize,
+    Pad,
     Segment,
     SlidePad,
     Support,
@@ -104,7 +104,7 @@ def test_tapered_segments_fit_all_of_the_way(steel: Material) -> None:
 
 
 LEFT = "must not be above the overlap of 0.1 m that is left where 'fly' extends by 1.1 m, got "
-PAD = PadSize(0.12, 0.05)
+PAD = Pad(0.12, 0.05)
 PADS = (
     SlidePad(0.08, 0.05, side="above", thickness=0.02),
     SlidePad(0.11, 0.05, side="below", thickness=0.02),

@@ -99,7 +99,7 @@ def test_a_model_has_its_own_contact(boom: pt.Boom) -> None:
 
 def test_pads_with_a_thickness_need_no_contact(boom: pt.Boom) -> None:
     """Reference: by hand, k = 2 E A/t of both pads of a side."""
-    pad = pt.PadSize(0.2, 0.06, thickness=0.02, modulus=2.0e9)
+    pad = pt.Pad(0.2, 0.06, thickness=0.02, modulus=2.0e9)
     below = pt.SlidePad(0.2, 0.04, side="below", thickness=0.02, modulus=2.0e9)
     above = pt.SlidePad(0.1, 0.04, side="above", thickness=0.01, modulus=1.0e9)
     for pads, stiffness in (

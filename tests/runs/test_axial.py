@@ -69,9 +69,8 @@ def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
     ("text", "force"),
     [
         ("[[axial]]\nforce = 5e3\n", 5e3),
-        ("[[axial]]\nfalls = 4\nmass = 2e3\n", 2e3 * 9.80665 / 4),
-        ("[[axial]]\nfalls = 2\n[payload]\nmass = 600.0\ngravity = 5.0\n", 600.0 * 5.0 / 2),
-        ("[[axial]]\nfalls = 2\n[payload]\nmass = 600.0\n[gravity]\n", 300.0 * 9.80665),
+        ("[rope]\nfalls = 2\n[payload]\nmass = 600.0\ngravity = 5.0\n", 600.0 * 5.0 / 2),
+        ("[rope]\nfalls = 2\n[payload]\nmass = 600.0\n[gravity]\n", 300.0 * 9.80665),
     ],
 )  # fmt: skip
 def test_a_rope_presses_the_boom_from_tip_to_base(tmp_path: Path, text: str, force: float) -> None:
@@ -152,17 +151,14 @@ def test_cautions_in_check_and_report(tmp_path: Path, text: str, caution: str | 
          "model[1]: the boom of 'beam' buckles under 0.622 times its axial forces, and has no "
          "motion; it must bear more than all of them: make these smaller, or the sections "
          "larger"),
-        ("[[axial]]\nmass = 100.0\n",
-         "axial[1].force: missing; it is the force in N towards the base, or give the falls of "
-         "a hoist rope"),
-        ("[[axial]]\nforce = 1e3\nfalls = 2\n",
-         "axial[1].falls: force is given; leave one of them out"),
+        ("[[axial]]\nx = 3.0\n",
+         "axial[1].force: missing; it is the force in N towards the base"),
+        ("[rope]\n[payload]\nmass = 100.0\n",
+         "rope.falls: missing; it is the number of falls between head and hook; those of the table "
+         "hoist unless given"),
         ("[payload]\nmass = 5.0\ngravity = 4.9\n[gravity]\nangle = 60.0\n",
          "payload.gravity: the table gravity is given, by which the payload weighs too; leave "
          "one of them out"),
-        ("[[axial]]\nfalls = 2\n",
-         "axial[1].mass: missing, and there is no payload; it is the mass in kg that the rope "
-         "carries"),
     ],
 )  # fmt: skip
 def test_bad_axial_forces_are_refused(tmp_path: Path, text: str, line: str) -> None:

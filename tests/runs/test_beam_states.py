@@ -284,7 +284,7 @@ def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
     )
     boom = boom_with_play(case, build_boom(case))
     assert load_table(case, boom).rows == [
-        ("load[1]", "fly at 14000 mm", "z", "ramp of 0.1 s", "−2000 N", "0.1")
+        ("load[1]", "fly at 14000 mm", "z", "ramp of 0.1 s", "−2 kN", "0.1")
     ]
     table = static_table(case, boom, Rows(static_rows(static_states(case, boom), "beam")))
     rows = {row[0]: row for row in table.rows}

@@ -308,8 +308,6 @@ def test_configurations() -> None:
         ({"combination": []},
          "chart.combinations: no combination has the payload of 'lift'; "
          "its proofs limit the chart"),
-        ({"axial": [{"falls": 4, "mass": 100.0}]},
-         "axial[1].mass: the rope of a chart carries the payload that is searched; leave it out"),
         ({"gravity": None}, "gravity: missing; the payload of a chart weighs by it"),
         ({"chart": None}, "chart: missing; give its load_case and radii"),
     ],

@@ -111,7 +111,7 @@ def test_level_boom_has_no_error_by_its_path() -> None:
     ("name", "expected"),
     [
         # A bar with the same stiffness, mass and load has 0.053 by large rotations.
-        ("hoist", 0.07737),
+        ("hoist", 0.08323),
         # The boom slews; its tip hardly moves up and down.
         ("slew", 0.0),
     ],

@@ -133,8 +133,8 @@ def test_governing_pad_at_rest_is_named(tmp_path: Path, shim: float) -> None:
     parts = []
     for k, force in enumerate(forces):
         pad = max(one.values.item() for one in pads if one.place.startswith(force.place))
-        hardest = max(f for f, at in zip(of_rows, system.station_of_row, strict=True) if at == k)
-        assert pad == pytest.approx(0.5 * hardest, rel=1e-9)
+        largest = max(f for f, at in zip(of_rows, system.station_of_row, strict=True) if at == k)
+        assert pad == pytest.approx(0.5 * largest, rel=1e-9)
         parts.append(pad / abs(force.values.item()))
     expected = {0.0: 0.5 * 0.6, 1.0e-3: 0.5}.get(shim)
     assert expected is None or min(parts) == pytest.approx(expected)

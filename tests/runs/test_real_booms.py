@@ -11,6 +11,7 @@ from protractile.beam_model.boom_modes import BoomModes
 from protractile.beam_model.statics import Elements, StaticState, static_state
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Segment
+from protractile.geometry.load import PartialLoad
 from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
@@ -124,7 +125,9 @@ def second_order(boom: Boom, rest: StaticState) -> float:
         x = np.linspace(segment.start, segment.end, 401)
         deflections = [modes.displacement(number, each, "z") @ rest.position for each in x.tolist()]
         found += float(segment.compression(0.5 * (x[1:] + x[:-1])) @ np.diff(deflections))
-    return found
+    # The lead of a rope points to its winch at the foot.
+    tip = float(modes.displacement(len(boom.segments) - 1, boom.tip, "z") @ rest.position)
+    return found - sum(lead.force for lead in boom.leads) * tip
 
 
 AXIAL = "axial_reaction"
@@ -160,8 +163,10 @@ def test_moments_about_the_pin_are_in_balance(name: str, lowered: float) -> None
     turning = sum(mass * (x - foot.x) for mass, x in masses) * GRAVITY * np.cos(angle)
     # At t = 0 a load that ramps is none yet.
     turning -= sum(load.magnitude for load in case.loads if load.ramp is None) * boom.tip
+    for wind in (load for load in boom.loads if isinstance(load, PartialLoad)):
+        turning -= wind.resultant(0.0) * (0.5 * sum(wind.span) - foot.x)
     along = sum(mass for mass, _ in masses) * GRAVITY * np.sin(angle)
-    along += sum(axial.force or 0.0 for axial in case.axial)
+    along += sum(axial.force for axial in (*case.axial, *boom.leads))
     turning -= along * foot.depth + second_order(boom, rest)
     force = cylinder_force(rest, 1)
     assert force * jack.arm(foot) == pytest.approx(turning, rel=1e-3)

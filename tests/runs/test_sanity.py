@@ -277,7 +277,7 @@ time = {{ duration = 20.0 }}
 start = {{ state = "equilibrium" }}
 gravity = {{ angle = 70.0 }}
 payload = {{ mass = 5000.0 }}
-axial = [{{ falls = 4 }}]
+rope = {{ falls = 4 }}
 load = [{{ segment = "e", x = "head", magnitude = 1000.0, ramp = 2.0 }}]
 cylinder = [{{ segment = "a", x = 4.0, depth = 0.6, ground = [2.0, -3.5], stiffness = 2e8 }}]
 life = {{ detail_category = 71.0 }}

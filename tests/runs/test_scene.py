@@ -302,10 +302,9 @@ def test_drawings_label_every_part() -> None:
         "1.595 kN perpendicular to the boom, towards its lower side, ramp of 0.1 s", "play 3 mm",
         "self-weight, g = 9.807 m/s²",
     ]  # fmt: skip
-    # The largest factor of the gust of the arm is 1.
     found = legend(drawn("inspection-arm"))
     assert "lateral play 4 mm" in found
-    assert any("N/m lateral at most, root" in text for text in found)
+    assert "350 N/m lateral, wind, root" in found
 
 
 @pytest.mark.parametrize("name", ["paper", "crane", "three-segments"])

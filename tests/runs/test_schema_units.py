@@ -185,7 +185,7 @@ def test_check_shows_the_units_of_the_case() -> None:
     lines = [" ".join(line.split()) for line in text.splitlines()]
     assert "segment mm t/mm mm⁴ t mm flange / web, mm" in lines
     assert "joint mm mm mm mm friction" in lines
-    assert "segment t t mm" in lines
+    assert "segment kg kg mm" in lines
     for part in ("8500–18200", "5.507 × 10⁻⁵", "2.183 × 10⁸", "8500, 9700"):
         assert part in text
 

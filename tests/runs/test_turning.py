@@ -78,7 +78,7 @@ def test_bar_turned_with_a_constant_acceleration() -> None:
 
 
 def slewing_arm(tmp_path: Path, *tables: str, arm: str = ARM) -> Case:
-    gust, models = arm.index("[[load]]"), arm.index("[[model]]")
+    gust, models = arm.index("[wind]"), arm.index("[[model]]")
     case = read_case(tmp_path, arm[:gust] + "\n".join(tables) + "\n" + arm[models:])
     return case.model_copy(update={"models": case.models[1:2]})
 

@@ -10,7 +10,7 @@ import pytest
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator
 from protractile.dynamics.motion import Motion
-from protractile.geometry.joint import PadSize
+from protractile.geometry.joint import Pad
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.kinds.model import BuildContext
@@ -77,10 +77,10 @@ def test_steps_by_tolerance_do_not_know_the_units() -> None:
 
 @pytest.mark.parametrize(
     ("line", "pad"),
-    [("near webs", None), ("near webs", PadSize(0.1, 0.06)), ("surface", None)],
+    [("near webs", None), ("near webs", Pad(0.1, 0.06)), ("surface", None)],
     ids=["near webs", "pads", "surface"],
 )
-def test_shells_do_not_know_the_units(line: str, pad: PadSize | None) -> None:
+def test_shells_do_not_know_the_units(line: str, pad: Pad | None) -> None:
     """Reference: the model in SI units within 1e-9, a coarse mesh with friction."""
     points = {"surface_points": (4, 2)} if line == "surface" else {}
     model = SHELL | {"contact_line": line} | points

@@ -61,7 +61,7 @@ factors = {{ dead = [1.2, 1.0], payload = 1.3, wind = 1.1 }}
 resistance = {{ material = 1.1 }}
 {elements("beam", theory="timoshenko")}
 """
-HOIST = re.sub(r"(?ms)^\[\[axial\]\].*?(?=^\[)", "", (CASES / "hoist.toml").read_text("utf-8"))
+HOIST = re.sub(r"(?ms)^\[rope\].*?(?=^\[)", "", (CASES / "hoist.toml").read_text("utf-8"))
 
 
 def cautions(folder: Path, text: str) -> list[str]:
@@ -161,7 +161,7 @@ def test_a_hoist_needs_its_rope_and_its_load_once(tmp_path: Path) -> None:
     text = re.sub(r"(?ms)^\[payload\].*?mass = [0-9.]+", "[payload]\nmass = 5000.0", HOIST)
     assert [line.partition(",")[0] for line in cautions(tmp_path, text)] == [
         "payload.mass: the 5000 kg at the tip are also the load of [hoist]",
-        "axial: missing",
+        "rope: missing",
     ]
 
 

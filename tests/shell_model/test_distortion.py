@@ -18,7 +18,7 @@ from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.gap_system import GapSystem
-from protractile.geometry.boom import Boom, Collar, Joint, PadSize, Segment, Support
+from protractile.geometry.boom import Boom, Collar, Joint, Pad, Segment, Support
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import hexagon, octagon, u_section
 from protractile.geometry.section import EACH_SIDE
@@ -54,7 +54,7 @@ def test_a_boom_of_hexagons_with_pads_on_corners_is_as_soft_as_its_shell() -> No
     inner = Segment.of_section(
         "inner", 7.1, 15.8, STEEL, HEXAGONS.inner, load=-weights[1], masses=(PointMass(15.8, 6e3),)
     )
-    pad = PadSize(0.25, 0.07, bears="corner")
+    pad = Pad(0.25, 0.07, bears="corner")
     law = PowerContact(stiffness=1.9e9 * 0.25 * 0.07 / 0.02, exponent=1.0)
     joint = Joint(0, 1, (7.1, 8.7), 0.004, contact=law, pad=pad)
     boom = Boom((outer, inner), (joint,), (Load(1, "z", -9.81 * 6e3, 15.8, Step()),))
@@ -84,7 +84,7 @@ def test_an_octagonal_mast_distorts_in_both_planes(bears: str) -> None:
     )
     inner = Segment.of_section("inner", 4.9, 10.9, STEEL, sections[1], load=-weights[1])
     law = PowerContact(stiffness=1.9e9 * 0.15 * 0.05 / 0.02, exponent=1.0)
-    pad = PadSize(0.15, 0.05, bears="corner" if bears == "corner" else "wall")
+    pad = Pad(0.15, 0.05, bears="corner" if bears == "corner" else "wall")
     joint = Joint(
         0, 1, (4.9, 6.0), 0.004, lateral_play=0.004, contact=law, lateral_contact=law, pad=pad
     )
@@ -123,7 +123,7 @@ def with_collar_at_head(boom: Boom) -> Boom:
             Case(
                 u_section(0.50, 0.34, 0.15, 3, top=0.008, bottom=0.006, web=0.006),
                 u_section(0.44, 0.28, 0.12, 3, top=0.006, bottom=0.005, web=0.005),
-                PadSize(0.2, 0.04, bears="corner"),
+                Pad(0.2, 0.04, bears="corner"),
             ),
             lambda boom: boom,
         ),

@@ -12,7 +12,7 @@ from mpi4py import MPI
 from protractile.beam_model.calibration import Stiffness, effective_stiffness
 from protractile.beam_model.wall_compliance import contact_compliance
 from protractile.dynamics.contact import PowerContact
-from protractile.geometry.boom import Boom, Collar, PadSize, Stop, Support
+from protractile.geometry.boom import Boom, Collar, Pad, Stop, Support
 from protractile.geometry.probe_responses import PROBE_FREQUENCY
 from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
 from protractile.shell_model.contact.local_compliance import (
@@ -128,7 +128,7 @@ def test_graded_mesh_equals_a_uniform_mesh() -> None:
 SUPPORTS = (Support(7.0), Support(8.0))
 
 
-def short_boom(pad: PadSize | None) -> Boom:
+def short_boom(pad: Pad | None) -> Boom:
     """Return the paper's sections with 3 m of each segment at the overlap, and pads, if any."""
     boom = touching(flat_boom(), LAW)
     spans = (7.0, 10.0), (9.0, 12.0)
@@ -169,13 +169,13 @@ def with_strips(boom: Boom) -> Boom:
 @pytest.mark.parametrize(
     ("pad", "change"),
     [
-        (PadSize(0.2, 0.04, offset=0.03), lambda boom: boom),
-        (PadSize(0.1, 0.06), with_collar),
-        (PadSize(0.1, 0.06), with_strips),
+        (Pad(0.2, 0.04, offset=0.03), lambda boom: boom),
+        (Pad(0.1, 0.06), with_collar),
+        (Pad(0.1, 0.06), with_strips),
     ],
     ids=["away from the webs", "under a collar", "under strips"],
 )
-def test_estimated_compliance_follows_shell(pad: PadSize, change: Callable[[Boom], Boom]) -> None:
+def test_estimated_compliance_follows_shell(pad: Pad, change: Callable[[Boom], Boom]) -> None:
     """Reference: other code, the shell, whose own error of the local compliance is 2 %."""
     boom = change(short_boom(pad))
     shell = reduced(boom, 0.2, contact_tolerance=0.02)
@@ -192,12 +192,12 @@ def test_a_pad_on_the_corners_bends_no_wall() -> None:
     def local(boom: Boom) -> float:
         return float(reduced(boom, 0.2, contact_tolerance=0.05).local_compliance.max())
 
-    boom = short_boom(PadSize(0.1, 0.06, bears="corner"))
+    boom = short_boom(Pad(0.1, 0.06, bears="corner"))
     stations = replace(boom.joints[0], stations=(9.05, 9.95), pad=None, contact_length=0.1)
     on_corners = local(boom)
     of_stations = local(replace(boom, joints=(stations,)))
     assert on_corners == pytest.approx(of_stations, rel=5.0e-4, abs=0.0)
-    wide, narrow = (local(short_boom(PadSize(0.1, width))) for width in (0.06, 0.01))
+    wide, narrow = (local(short_boom(Pad(0.1, width))) for width in (0.06, 0.01))
     assert on_corners < narrow < wide
     assert on_corners < 0.1 * wide
     assert not contact_compliance(boom).any()

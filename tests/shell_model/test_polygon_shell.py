@@ -14,7 +14,7 @@ from protractile.geometry.boom import (
     Collar,
     Diaphragm,
     Direction,
-    PadSize,
+    Pad,
     PointMass,
     Stop,
     Support,
@@ -216,7 +216,7 @@ def _laden(boom: Boom, line: ContactLine) -> Boom:
         masses=(PointMass(19.0, 50.0),),
         diaphragms=(Diaphragm(18.5, 0.005),),
     )
-    pads = PadSize(0.1, 0.03, 0.01) if line == "near webs" else None
+    pads = Pad(0.1, 0.03, 0.01) if line == "near webs" else None
     joints = (replace(boom.joints[0], pad=pads),)
     stops = (Stop(1, 18.0, 0.02, PowerContact(1.0e8, 1.0, stiffness_below=1.0e8)),)
     return replace(boom, segments=(outer, inner), joints=joints, stops=stops)

@@ -10,7 +10,7 @@ import xarray as xr
 from mpi4py import MPI
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Collar, Diaphragm, PadSize, Support
+from protractile.geometry.boom import Boom, Collar, Diaphragm, Pad, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import diaphragm_breaks, mesh_segment
 from protractile.geometry.plating import PlatedMesh, add_thickness
@@ -200,7 +200,7 @@ def test_row_includes_all_walls_of_a_graded_mesh() -> None:
     boom = flat_boom()
     outer, inner = boom.segments
     short = replace(outer, end=2.0), replace(inner, start=1.0, end=3.0)
-    joint = replace(boom.joints[0], stations=(1.0, 2.0), pad=PadSize(0.1, 0.06))
+    joint = replace(boom.joints[0], stations=(1.0, 2.0), pad=Pad(0.1, 0.06))
     _, shell = at_rest(replace(boom, segments=short, joints=(joint,)), 0.25, tolerance=0.1)
     for x in (0.5, 0.99, 1.0, 1.04, 1.5):
         row = shell.row(0, x)

@@ -10,7 +10,7 @@ from mpi4py import MPI
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, BoomError, PadSize, SlidePad
+from protractile.geometry.boom import Boom, BoomError, Pad, SlidePad
 from protractile.geometry.contact_places import ContactLine
 from protractile.geometry.contact_places import pads as places_of_pads
 from protractile.geometry.joint import POLYAMIDE, PadSide
@@ -25,7 +25,7 @@ from tests.shell_model.booms import LAW, boom_in_space, flat_boom, reduced
 from tests.shell_model.conftest import BOX, box_shell
 from tests.touching import touching
 
-PAD = PadSize(length=0.1, width=0.06)
+PAD = Pad(length=0.1, width=0.06)
 FEW = SurfaceOptions(points=(4, 2))
 
 
@@ -38,7 +38,7 @@ def _system(
     return reduced(boom, 0.5, line, law=law, surface=surface).system
 
 
-def _with_pads(boom: Boom, pad: PadSize = PAD) -> Boom:
+def _with_pads(boom: Boom, pad: Pad = PAD) -> Boom:
     return replace(boom, joints=(replace(boom.joints[0], pad=pad),))
 
 
@@ -210,7 +210,7 @@ def test_larger_pads_are_softer() -> None:
     slow = (2.0 * np.pi * 10.0) ** 2
 
     def give(width: float, offset: float = 0.0) -> float:
-        system = _system(_with_pads(flat_boom(), PadSize(0.1, width, offset)), "near webs")
+        system = _system(_with_pads(flat_boom(), Pad(0.1, width, offset)), "near webs")
         return float((system.rows[0] ** 2 / (system.omega2 + slow)).sum())
 
     assert give(0.02) < give(0.06) < give(0.06, 0.06)

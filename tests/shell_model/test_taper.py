@@ -12,7 +12,7 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.integrator import AdaptiveStep
 from protractile.dynamics.motion import Motion
-from protractile.geometry.boom import Boom, BoomError, Diaphragm, Joint, PadSize, Segment, Support
+from protractile.geometry.boom import Boom, BoomError, Diaphragm, Joint, Pad, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import hexagon, u_section
@@ -105,7 +105,7 @@ def test_walls_of_a_taper_are_on_the_local_section(shape: str) -> None:
     assert felt == pytest.approx(weight, rel=2e-2)
 
 
-def tapered_boom(pad: PadSize | None, lateral: float | None) -> Boom:
+def tapered_boom(pad: Pad | None, lateral: float | None) -> Boom:
     outer, inner = ENDS["box"][0], BoxSection(0.30, 0.22, 0.006, 0.005)
     loads = [STEEL.density * one.area for one in (outer, inner)]
     return Boom(
@@ -157,8 +157,8 @@ def test_its_section_forces_are_those_of_statics() -> None:
 
 
 @pytest.mark.parametrize("lateral", [None, 5e-3])
-@pytest.mark.parametrize("pad", [None, PadSize(0.12, 0.05)])
-def test_pads_lie_on_tapered_walls(pad: PadSize | None, lateral: float | None) -> None:
+@pytest.mark.parametrize("pad", [None, Pad(0.12, 0.05)])
+def test_pads_lie_on_tapered_walls(pad: Pad | None, lateral: float | None) -> None:
     """Reference: by hand. A translation of 1 m gives 1 m, a rotation of 1 rad the pad's x."""
     boom = tapered_boom(pad, lateral)
     shells = assemble_segments(boom, ShellOptions(mesh_size=0.3), MPI.COMM_SELF)

@@ -65,7 +65,7 @@ OWN = {
     "hanging": (
         50.0,
         table("[hoist]", **_ROPE, hanging=True)
-        + table("[[axial]]", falls=4)
+        + table("[rope]", falls=4)
         + table("[limits]", tip_at_rest=0.2)
         + _CYLINDER,
         "",

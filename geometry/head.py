@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""The head of a boom, with the place where the load hangs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import Annotated
+
+from protractile.geometry.arrays import Array
+from protractile.geometry.fields import HistoryRef, In, NotNegative, Number, part
+from protractile.geometry.load import Load, Moment, Torque
+
+
+@part
+class Head:
+    """Head or fork beyond the end of the last segment, with the place of the load.
+
+    >>> fork = pt.Head(ahead=0.8, below=0.5)
+    >>> [load.magnitude for load in fork.moments(1, 14.0, [0.0, 0.0, -1000.0], pt.Step())]
+    [-800.0]
+    """
+
+    ahead: Annotated[Number, In("m")] = 0.0
+    """the distance in m of the load beyond the end of the last segment, along the axis"""
+    below: Annotated[Number, In("m")] = 0.0
+    """the distance in m of the load below the axis, negative above it"""
+    beside: Annotated[Number, In("m")] = 0.0
+    """the distance in m of the load beside the axis, towards +y; only in space"""
+    mass: Annotated[NotNegative, In("kg")] = 0.0
+    """the mass in kg of the head itself, halfway between the segment's end and the load; its weight
+    is of the group dead"""
+
+    def moments(
+        self, segment: int, x: float, force: Array, history: HistoryRef, part: float = 1.0
+    ) -> Iterator[Load]:
+        """Yield the moments and the torque about the segment's end of a force at the load's place.
+
+        The force F acts at (x, y, z) = (ahead, beside, −below) from the end. By the work on the
+        slopes w′ and v′ and on the twist, the moments are x F_z − z F_x and x F_y − y F_x, and the
+        torque is y F_z − z F_y.
+
+        Args:
+            segment: index of the last segment.
+            x: x of its end in m.
+            force: force (3,) in N along x, y and z.
+            history: factor of the force over time.
+            part: fraction of the distances at which the force acts.
+        """
+        along, aside, up = (float(component) for component in force)
+        ahead, beside, above = part * self.ahead, part * self.beside, -part * self.below
+        for load in (
+            Moment(segment, "z", ahead * up - above * along, x, history),
+            Moment(segment, "y", ahead * aside - beside * along, x, history),
+            Torque(segment, "z", beside * up - above * aside, x, history),
+        ):
+            if load.magnitude:
+                yield load
