@@ -92,7 +92,7 @@ class StaticModel:
         self._lines = [line_without_compression(shape, n, self._modes) for n in numbers]
         self._places = [force_places(shape, number) for number in numbers]
         lines = ground_lines(shape, self._modes.beams)
-        self._cylinders = [line.push for line in lines if line.stiffness]
+        self._cylinders = [line.push for line in lines if line.force]
         self._slopes = [*self._all_slopes()]
 
     def _all_slopes(self) -> Iterator[_Slopes]:
@@ -172,18 +172,21 @@ class StaticModel:
         )
 
     def _softening(self, boom: Boom) -> Array:
-        """Return K_G (num_modes, num_modes) of the axial forces of a boom."""
+        """Return K_G (num_modes, num_modes) of the axial forces and leads of a boom."""
         total = np.zeros((self._modes.omega2.size,) * 2)
         for number, (x, weights), own, slopes in self._slopes:
             compression = boom.segments[number].compression
             if compression:
                 total[own] += products(slopes.T, weights * compression(x))
+        for line in ground_lines(boom, self._modes.beams) if boom.leads else ():
+            if not line.force:
+                total -= line.stiffness * np.outer(line.push, line.push)
         return total
 
     def _stiffening(self, boom: Boom) -> Array:
         """Return the change of the stiffness by cylinders that have turned with the boom."""
         total = np.zeros((self._modes.omega2.size,) * 2)
-        lines = [line for line in ground_lines(boom, self._modes.beams) if line.stiffness]
+        lines = [line for line in ground_lines(boom, self._modes.beams) if line.force]
         for line, before in zip(lines, self._cylinders, strict=True):
             total += line.stiffness * (np.outer(line.push, line.push) - np.outer(before, before))
         return total
@@ -265,7 +268,9 @@ def _of_shape(boom: Boom) -> Boom:
     places = {(load.segment, x) for load in boom.loads for x in load.places.values()}
     loads = [Load(segment, "z", 0.0, x, Step()) for segment, x in sorted(places)]
     cylinders = [_square(one, segments[one.segment]) for one in boom.cylinders]
-    return replace(boom, segments=segments, loads=loads, cylinders=cylinders, axial_changes=())
+    return replace(
+        boom, segments=segments, loads=loads, cylinders=cylinders, leads=(), axial_changes=()
+    )
 
 
 def _square(cylinder: Cylinder, segment: Segment) -> Cylinder:
