@@ -139,6 +139,10 @@ def report(
         bool,
         typer.Option("--excel", help="Also write results.xlsx, a workbook of design results."),
     ] = False,
+    figures: Annotated[
+        bool,
+        typer.Option("--figures", help="Also write all figures as PNG, and show them on paper."),
+    ] = False,
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
     from protractile.runs.report.output import rerender_report
@@ -146,7 +150,8 @@ def report(
 
     runs, judged = {}, {}
     for folder in folders:
-        with rerender_report(folder, "--excel" if excel else None) as (results, addition, _):
+        option = "--excel" if excel else None
+        with rerender_report(folder, option, figures) as (results, addition, _):
             runs[folder], judged[folder] = results, addition
     return print_runs(runs, judged)
 

@@ -165,7 +165,7 @@ def _tip_chart(trajectory: Trajectory) -> Any:
         for k, name in enumerate(("tip", "tip_lateral"))
         if name in trajectory.data
     ]
-    return _plotly_figure(Chart(trajectory.time, "tip deflection (mm)", curves))
+    return _plotly_figure(Chart(trajectory.time, curves, ["tip deflection (mm)"]))
 
 
 def _check_cost(cost: Cost, case: Case, file: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +30,8 @@ from protractile.runs.case.schema import Case
 from protractile.runs.folder.files import atomic_path
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import theme
-from protractile.runs.report.figure_context import LEGEND_CHARACTERS, Figure, FigureContext
+from protractile.runs.report.figure_context import Figure, FigureContext
+from protractile.runs.report.static_charts import LEGEND_CHARACTERS
 from protractile.runs.report.symbols import (
     PINNED,
     Symbol,
@@ -96,11 +98,9 @@ class Panel:
 
 
 def boom(run: FigureContext) -> list[Figure]:
-    """Draw the boom of a run."""
-    path = run.folder / "boom.png"
-    if not path.exists():
-        draw_boom_of(run.case, path)
-    return [Figure(path, "The boom", CAPTION, part="case")]
+    """Return the drawing of the boom of a run."""
+    drawing = partial(boom_sheet, run.case, build_boom(run.case))
+    return [Figure("boom", "The boom", CAPTION, "case", drawing=drawing, main=True)]
 
 
 def draw_boom_of(case: Case, path: Path) -> None:
@@ -147,7 +147,6 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
         rows.append(["sections", "sections"])
         heights.append(SECTIONS)
     sheet = Sheet(figsize=(theme.WIDTH, 1.0))
-    theme.Canvas(sheet)
     panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)
     symbols = list(boom_symbols(case, boom))
     _draw_whole(Panel(panels["whole"], boom, angle, 1.0, whole=True), symbols)
@@ -243,7 +242,7 @@ def _draw_segment(panel: Panel, number: int) -> None:
     (bottom, top), (last_bottom, last_top) = (edges(boom, segment, x) for x in segment.ends)
     tail, head = segment.ends
     box = [(tail, bottom), (head, last_bottom), (head, last_top), (tail, top)]
-    panel.outline(box, facecolor=(*theme.tint(color, 0.25), 0.75), edgecolor=color, linewidth=1.0)
+    panel.outline(box, facecolor=f"{theme.tint(color, 0.25)}bf", edgecolor=color, linewidth=1.0)
     if travel := farthest_travel(boom, number):
         dashed: dict[str, Any] = {"linewidth": 0.9, "linestyle": "--"}
         panel.outline(np.add(box, [travel, 0.0]), facecolor="none", edgecolor=color, **dashed)

@@ -10,6 +10,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -28,7 +29,6 @@ from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import opengl, theme
 from protractile.runs.report.boom_pictures import BoomView, draw_boom, render_buckling
 from protractile.runs.report.crane_position import CranePosition
-from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.overlap_pictures import draw_overlap
 from protractile.runs.report.scene import Instant, Scene
 
@@ -51,6 +51,26 @@ _NAME = re.compile(r"(?P<view>boom|overlap)(?P<above>-above)?-(?P<when>.+)")
 _BUCKLING = re.compile(r"buckling-(?P<segment>\d+)\.png")
 
 Times = Sequence[float] | None
+
+
+class Snapshot(NamedTuple):
+    """Picture of a shell in the folder of a run."""
+
+    path: Path  #: path of the PNG or GIF file
+    title: str  #: title of one line
+    caption: str  #: caption in sentences
+
+    @property
+    def name(self) -> str:
+        """The file name without suffix."""
+        return self.path.stem
+
+    @property
+    def anchor(self) -> str:
+        """The target of links in the report."""
+        return f"figure-{self.name}"
+
+
 Render = Callable[[Sequence[Scene], Path, Times], list[Path]]
 
 
@@ -240,7 +260,7 @@ def _collect_pictures(
         raise
 
 
-def describe(results: Results, folder: Path) -> list[Figure]:
+def describe(results: Results, folder: Path) -> list[Snapshot]:
     """Return the snapshots in the folder of a run, with titles and captions."""
     return [
         describe_one(results, folder / SNAPSHOTS / name)
@@ -248,7 +268,7 @@ def describe(results: Results, folder: Path) -> list[Figure]:
     ]
 
 
-def describe_one(results: Results, path: Path) -> Figure:
+def describe_one(results: Results, path: Path) -> Snapshot:
     """Return a snapshot with a title and a caption.
 
     The file name of the picture tells shell, kind and time.
@@ -265,14 +285,14 @@ def describe_one(results: Results, path: Path) -> Figure:
             f"Animation of the first {last:g} s of {model!r}, shown in {SHOWN:g} s. "
             "Colours and magnification as in the pictures of the boom."
         )
-        return Figure(path, f"Boom in motion, first {last:g} s", caption)
+        return Snapshot(path, f"Boom in motion, first {last:g} s", caption)
     if mode := _BUCKLING.fullmatch(name):
         segment = results.boom.segments[int(mode["segment"]) - 1].name
         caption = (
             f"The first buckling mode of the walls of {segment!r} in {model!r}, where they move "
             "most, in the static state with the largest tip deflection. The amplitude is arbitrary."
         )
-        return Figure(path, f"Buckling of {segment}", caption)
+        return Snapshot(path, f"Buckling of {segment}", caption)
     seen = _NAME.fullmatch(name.removesuffix(path.suffix))
     assert seen is not None, f"{path.name} is not a snapshot's name"
     above, aside = (", seen from above", "lateral ") if seen["above"] else ("", "")
@@ -289,13 +309,13 @@ def describe_one(results: Results, path: Path) -> Figure:
         )
         if lines[model] == "surface":
             caption += ON_SURFACES
-        return Figure(path, f"Overlap: {when}", caption)
+        return Snapshot(path, f"Overlap: {when}", caption)
     caption = (
         f"Boom in {state}. Colour: magnitude of {aside}deflection; grey: undeformed; "
         "symbols: supports, cylinders, masses and loads. Displacements and play are magnified "
         "by the factor above the picture."
     )
-    return Figure(path, f"Boom{above}: {when}", caption)
+    return Snapshot(path, f"Boom{above}: {when}", caption)
 
 
 def _instant(name: str, motion: xr.Dataset, tip_name: str) -> tuple[str, str]:
