@@ -15,6 +15,7 @@ from PIL import Image
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import join_words, number
 from protractile.runs.report import theme
+from protractile.runs.report.marks import marks_of
 from protractile.runs.report.scene import (
     SAME_PLACE,
     SECTION_DRAWN,
@@ -32,12 +33,8 @@ from protractile.runs.report.sheet import (
     stage,
     surface,
 )
-from protractile.runs.report.symbols import marker_style
 
 PIXELS = (SHEET[0], 470)
-
-# Size of symbols in pt, and length of a cylinder in the picture in pixels.
-SIGN, CYLINDER = 30.0, 70.0
 
 # Pictures of buckling modes: size in pixels; length of the picture, and largest displacement in it,
 # over the height of the section.
@@ -95,29 +92,12 @@ class BoomView:
         return edges
 
     def draw_marks(self, sheet: Sheet, places: Array) -> str:
-        """Draw the symbols of supports and loads on a sheet, and return their legend."""
-        scene, axes = self.scene, sheet.picture
-        symbols = [symbol for symbol in scene.symbols if len(symbol.places) == 1]
-        for symbol in symbols:
-            (x,) = symbol.places
-            around = self.rest.points if symbol.grounded else places
-            place, _ = scene.at(around, symbol.segment, x, symbol.z(scene.boom, x))
-            place[2] += (1.0 if symbol.edge == "top" else -1.0) * self.scale * symbol.clearance
-            sign = marker_style(symbol.path, symbol.color, SIGN)
-            sheet.show_once(*axes.plot(*self.camera.project(place), clip_on=False, **sign))
-        cylinders = () if scene.from_above else scene.boom.cylinders
-        for cylinder in cylinders:
-            side = 0 if cylinder.direction[1] > 0.0 else 1
-            edge = scene.edges(cylinder.segment, cylinder.x)[side]
-            lug, _ = scene.at(places, cylinder.segment, cylinder.x, edge)
-            start = self.camera.project(lug)
-            rod = np.array([start, start - CYLINDER * np.array(cylinder.direction)])
-            black: dict[str, Any] = {"color": theme.INK, "clip_on": False}
-            sheet.show_once(*axes.plot(*rod.T, linewidth=4.0, **black))
-            rod[0] = rod.mean(axis=0)
-            sheet.show_once(*axes.plot(*rod.T, linewidth=9.0, **black))
-        kinds = [str(symbol.kind) for symbol in symbols]
-        return join_words(dict.fromkeys(kinds + ["cylinders"] * bool(cylinders))) if kinds else ""
+        """Draw symbols and cylinders on a sheet, and return their legend."""
+        marks = marks_of(self.scene, self.rest.points, self.scale, 0.0)
+        for mark in marks:
+            line = self.camera.project(mark.at(places))
+            sheet.show_once(*sheet.picture.plot(*line.T, color=mark.color, linewidth=mark.width))
+        return join_words(dict.fromkeys(mark.kind for mark in marks)) if marks else ""
 
 
 def draw_boom(

@@ -47,6 +47,7 @@ class Curve:
     at: Array | None = None  #: abscissa (num_times,); the abscissa of the chart unless given
     width: float = 1.8  #: width of the line in pixels
     marker: str = ""  #: marker of matplotlib: ``o``, ``v`` or ``s``
+    filled: bool = False  #: True for a filled polygon
     stacked: bool = False  #: True for an area above the stacked curves before it
     #: half the lengths (num_times,) of error bars along the abscissa and the ordinate
     spread: tuple[Array, Array] | None = None
@@ -94,6 +95,7 @@ class Chart:
     along: str = "time (s)"  #: heading of the abscissa
     logarithmic: Sequence[int] = ()  #: indices of the panels with a logarithmic ordinate
     decades: bool = False  #: True for a logarithmic abscissa
+    equal: bool = False  #: True for equal scales of both axes
     common: int = 0  #: number of the first panels that have the same scale
     verticals: Sequence[Vertical] = ()  #: vertical lines
     maps: Sequence[Map] = ()  #: a map for each panel, in place of curves
@@ -154,6 +156,8 @@ class Chart:
                 "exponentformat": "none",
                 "gridcolor": theme.RULE,
             }
+            if self.equal:
+                layout[_axis("yaxis", number)]["scaleanchor"] = "x"
             if 0 < number < self.common:
                 layout[_axis("yaxis", number)]["matches"] = "y"
             if self.keys is not None:
@@ -216,6 +220,8 @@ class Chart:
                 "color": curve.color,
                 "size": 4 if curve.linestyle else 8,
             }
+        if curve.filled:
+            line |= {"fill": "toself", "fillcolor": f"{curve.color}40", "hoveron": "fills"}
         if curve.stacked:
             line |= {"stackgroup": "areas", "fillcolor": curve.color}
         for name, sizes in zip(("error_x", "error_y"), curve.spread or (), strict=False):

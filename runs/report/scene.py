@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise, repeat
+from itertools import chain, pairwise, repeat
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -20,6 +20,7 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from protractile.analysis.curves import Curves
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.contact_places import pads
@@ -132,6 +133,20 @@ class Scene:
             from_above=True,
         )
         return [side, above]
+
+    @classmethod
+    def at_rest(cls, case: Case, boom: Boom, curves: Curves | None = None) -> Scene:
+        """Return the scene of a boom in one state, as at t = 0 without ``curves`` of segments."""
+        symbols, shapes = list(boom_symbols(case, boom)), []
+        for number, segment in enumerate(boom.segments):
+            marked = [symbol.places for symbol in symbols if symbol.segment == number]
+            lugs = [cylinder.x for cylinder in boom.cylinders if cylinder.segment == number]
+            x = np.unique([*segment.ends, *chain(*marked), *lugs])
+            shapes.append(SegmentMotion(x, {"deflection": np.zeros((1, x.size))}))
+        for number, curve in enumerate(curves or []):
+            deflection = curve.values.get("deflection", np.zeros(curve.x.size))
+            shapes[number] = SegmentMotion(curve.x, {"deflection": deflection[None]})
+        return cls.of_beam(case, boom, BeamOutput(np.zeros(1), shapes), xr.Dataset())[0]
 
     @classmethod
     def of_beam(

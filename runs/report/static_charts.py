@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Sequence
 from io import BytesIO
 from typing import Any
 
@@ -45,9 +46,7 @@ def draw_chart(chart: Chart, title: str) -> Sheet:
         for vertical in chart.verticals:
             look: dict[str, Any] = {"color": vertical.color, "linestyle": vertical.linestyle}
             axes.axvline(vertical.at, linewidth=0.9, **look)
-    stacked = np.zeros(chart.time.size)
-    for curve in chart.curves:
-        _draw_curve(panels[curve.panel], chart, curve, stacked)
+    draw_curves([*panels], chart)
     for number in chart.logarithmic:
         panels[number].set_yscale("log")
         for formatter in (panels[number].yaxis.set_major_formatter,
@@ -76,6 +75,13 @@ def draw_chart(chart: Chart, title: str) -> Sheet:
     return sheet
 
 
+def draw_curves(panels: Sequence[Axes], chart: Chart) -> None:
+    """Draw the curves of a chart in its panels."""
+    stacked = np.zeros(chart.time.size)
+    for curve in chart.curves:
+        _draw_curve(panels[curve.panel], chart, curve, stacked)
+
+
 def _label(value: float, _: int | None) -> str:
     """Return the label of a logarithmic axis, at one to three numbers of each decade."""
     return f"{value:g}" if f"{value:e}"[0] in "125" else ""
@@ -86,6 +92,9 @@ def _draw_curve(axes: Axes, chart: Chart, curve: Curve, stacked: Any) -> None:
     x = chart.time if curve.at is None else curve.at
     kept = chart.kept(curve, INTERVALS) if x.size > 2 * INTERVALS else np.arange(x.size)
     look: dict[str, Any] = {"color": curve.color, "label": curve.name or None}
+    if curve.filled:
+        axes.fill(x, curve.values, facecolor=theme.tint(curve.color, 0.25), edgecolor=curve.color)
+        return
     if curve.stacked:
         below = stacked.copy()
         stacked += np.nan_to_num(curve.values)
