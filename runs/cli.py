@@ -178,7 +178,10 @@ def snapshot(
         try:
             times = sorted(set(time)) if time else None
             motion = Path(folder) / TRAJECTORIES
-            with snapshots.start_rendering(results, shells, motion, part, times) as gather:
+            more = snapshots.ON_REQUEST
+            with snapshots.start_rendering(
+                results, shells, motion, part, times, more=more
+            ) as gather:
                 names_of_pictures = gather()
         except RenderingUnavailable as reason:
             raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None

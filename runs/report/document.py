@@ -22,7 +22,7 @@ from protractile.runs.report.pages import file_uris, page
 from protractile.runs.report.predictability import comparison_tables, predictability_tables
 from protractile.runs.report.proof_tables import governing_proof
 from protractile.runs.report.result_tables import result_tables
-from protractile.runs.report.snapshots import Snapshot
+from protractile.runs.report.sheet import Snapshot
 from protractile.runs.report.static_charts import svg_uri
 from protractile.runs.report.summary_table import (
     deviation_note,

@@ -78,7 +78,7 @@ def write_in_two_steps(
         run.shells[name].fields.to_netcdf(path, engine="scipy")
     picture_files = [*files.values()] if snapshots_now else []
     later = LATER if files and not picture_files else None
-    results.summary.snapshots = Snapshots(written=[], skipped=later)
+    results.summary.snapshots = Snapshots(written={}, skipped=later)
     motion = folder / TRAJECTORIES
     with snapshots.start_rendering(results, picture_files, motion, folder, helper=helper) as gather:
 
@@ -92,7 +92,7 @@ def write_in_two_steps(
             try:
                 gather()
             except RenderingUnavailable as reason:
-                results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
+                results.summary.snapshots = Snapshots(written={}, skipped=str(reason))
             write_report(results, addition, folder)
 
         yield write_others

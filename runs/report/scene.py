@@ -27,8 +27,10 @@ from protractile.geometry.contact_places import pads
 from protractile.geometry.section import Direction
 from protractile.geometry.station import Station
 from protractile.geometry.telescoping import drives_below
-from protractile.geometry.typography import with_minus_signs
+from protractile.geometry.typography import TO_MEGA, with_minus_signs
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion
 from protractile.runs.report.crane_position import CranePosition
@@ -98,6 +100,8 @@ class Scene:
     #: first buckling modes of a shell, see :class:`.analysis.wall_buckling.BuckledShell`; None
     #: without any
     buckling: xr.Dataset | None = None
+    model: str = ""  #: name of the model
+    surface_contact: bool = False  #: True if the contact of the model is over surfaces
     crane: CranePosition | None = None  #: positions of the crane and its load; None for other booms
 
     @classmethod
@@ -108,7 +112,8 @@ class Scene:
         those of :mod:`.stress.fields`, with ``state`` (time, mode); ``motion`` has the
         trajectories of the shell.
         """
-        boom = build_boom(case)
+        boom, model = build_boom(case), str(motion["model"].item())
+        lines = {shell.name: shell.contact_line for shell in select_kind(Shell, case.models)}
         side = cls(
             boom=boom,
             symbols=list(boom_symbols(case, boom)),
@@ -121,6 +126,8 @@ class Scene:
             stress=ShellStress.from_fields(fields),
             buckling=fields if "buckled" in fields else None,
             crane=CranePosition.of(case, boom, motion),
+            model=model,
+            surface_contact=lines.get(model) == "surface",
         )
         if not boom.spatial:
             return [side]
@@ -144,8 +151,10 @@ class Scene:
             x = np.unique([*segment.ends, *chain(*marked), *lugs])
             shapes.append(SegmentMotion(x, {"deflection": np.zeros((1, x.size))}))
         for number, curve in enumerate(curves or []):
-            deflection = curve.values.get("deflection", np.zeros(curve.x.size))
-            shapes[number] = SegmentMotion(curve.x, {"deflection": deflection[None]})
+            # Where a section force jumps, a curve has two values.
+            x, first = np.unique(curve.x, return_index=True)
+            deflection = curve.values.get("deflection", np.zeros(curve.x.size))[first]
+            shapes[number] = SegmentMotion(x, {"deflection": deflection[None]})
         return cls.of_beam(case, boom, BeamOutput(np.zeros(1), shapes), xr.Dataset())[0]
 
     @classmethod
@@ -213,6 +222,18 @@ class Scene:
         for begin in range(0, len(states), BATCH):
             displacement = np.tensordot(states[begin : begin + BATCH], self.modes, axes=1)
             yield from displacement.astype(np.float64)
+
+    def point_stresses(self, times: Sequence[float]) -> Iterator[Array]:
+        """Yield the von Mises stress (num_points,) of a shell in MPa at output times in s.
+
+        It is the larger stress of both faces, averaged over the triangles around a point.
+        """
+        assert self.stress is not None
+        weights, around = np.repeat(self.stress.areas, 3), self.triangles.ravel()
+        total = np.maximum(np.bincount(around, weights, len(self.points)), 1e-300)
+        for stress in self.stress.instants(times):
+            sums = weights * np.repeat(stress.largest(), 3)
+            yield TO_MEGA * np.bincount(around, sums, len(self.points)) / total
 
     def travel(self, segment: int) -> Array:
         """Return the travel (num_times,) of a segment by drives in m, at the output times."""

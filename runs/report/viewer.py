@@ -24,6 +24,7 @@ from protractile.runs.pipeline.model_output import frame_indices
 from protractile.runs.pipeline.model_quality import main_models
 from protractile.runs.pipeline.run import Run
 from protractile.runs.report import theme
+from protractile.runs.report.boom_pictures import PERCENTILE
 from protractile.runs.report.charts import compress, pack_plotly
 from protractile.runs.report.marks import Mark, marks_of
 from protractile.runs.report.pages import page
@@ -35,8 +36,6 @@ VIEWER = "viewer.html"
 TRUNCATION = 2.0e-3
 # Maximum number of points in a page; finer meshes need other programs.
 MOST_POINTS = 60_000
-# Percentile of the stresses at the end of the colour scale.
-PERCENTILE = 99.0
 # Margin around the boom as a fraction of its length.
 MARGIN = 0.02
 # Largest integers of 16 and of 8 bits.
@@ -59,17 +58,9 @@ class View(NamedTuple):
 
     @classmethod
     def of_shell(cls, model: str, scene: Scene, time: Array) -> View:
-        """Return the view of a shell, with the larger stress of both faces, averaged at points."""
-        stress = scene.stress
-        assert stress is not None
-        # Means over the triangles around a point, weighted by their areas.
-        weights, around = np.repeat(stress.areas, 3), scene.triangles.ravel()
-        total = np.maximum(np.bincount(around, weights), 1e-300)
-        means = [
-            np.bincount(around, weights * np.repeat(stress_field.largest(), 3)) / total
-            for stress_field in stress.instants(time.tolist())
-        ]
-        return cls(model, scene, time, TO_MEGA * np.array(means), "von Mises stress (MPa)")
+        """Return the view of a shell."""
+        stress = np.array([*scene.point_stresses(time.tolist())])
+        return cls(model, scene, time, stress, "von Mises stress (MPa)")
 
 
 def viewer(run: Run) -> str | None:

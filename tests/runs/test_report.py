@@ -73,7 +73,7 @@ def tables(results: Results, width: int = 100) -> str:
 
 
 def skipping(results: Results, why: str) -> Summary:
-    return results.summary.model_copy(update={"snapshots": Snapshots(written=[], skipped=why)})
+    return results.summary.model_copy(update={"snapshots": Snapshots(written={}, skipped=why)})
 
 
 def test_shows_every_verdict_first(results: Results, page: Page) -> None:
