@@ -10,8 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Hashable, Iterator, Sequence
-from itertools import product
-from typing import Any
+from itertools import chain, product
 
 import numpy as np
 import numpy.typing as npt
@@ -55,7 +54,7 @@ def sweep_figures(data: xr.Dataset, bonded: Sequence[str]) -> list[Figure]:
     data = in_display_units(data)
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
     if len(keys) == 2:
-        return [_map(data, quantity, keys) for quantity in _varying_quantities(data)]
+        return [*chain(*(_maps(data, one, keys) for one in _varying_quantities(data)))]
     figures = []
     for count, selection in enumerate(_at_ends(data, keys[1:]), start=1):
         part = data.sel(selection)
@@ -118,7 +117,7 @@ def distance_figures(data: xr.Dataset, reference: str) -> list[Figure]:
     keys = [str(dim) for dim in data["failed"].dims if dim != "model"]
     available = [one for one in DISTANCES if np.isfinite(data[one.name].values).any()]
     if len(keys) > 1:
-        return [_distance_maps(data, quantity, keys, reference) for quantity in available]
+        return [*chain(*(_maps(data, one, keys, reference, LEVELS) for one in available))]
     if not available:
         return []
     shown = data.assign(
@@ -157,65 +156,65 @@ def _lines(
     return Figure(name, title, "", chart=chart, main=True)
 
 
-def _map(data: xr.Dataset, quantity: Quantity, keys: Sequence[str]) -> Figure:
-    """Return maps of a quantity over two keys, one for each model, on a common scale."""
-    x, y = keys
-    values = quantity.factor * data[quantity.name].transpose("model", y, x)
-    permitted = _permitted(data, quantity)
-    failed = data["failed"].transpose("model", y, x)
-    has_values = values.notnull().any([y, x])
-    low, high = float(values.min()), float(values.max())
-    panels, maps = [], []
-    for name in values["model"].values[has_values.values]:
-        cells = values.sel(model=name).values
-        crosses = np.where(failed.sel(model=name).values > 0, "×", "")
-        known = permitted is not None and np.nanmin(cells) < permitted < np.nanmax(cells)
-        maps.append(Map(cells, _texts(cells, crosses), permitted if known else None))
-        panels.append(str(name))
-    without_values = [str(name) for name in values["model"].values[~has_values.values]]
-    remarks = [
-        *([f"grey: no {quantity.title}"] if values[has_values.values].isnull().any() else []),
-        *([] if permitted is None else [f"red, dotted: limit of {permitted:.4g}"]),
-        *(["×: the computation failed"] if failed[has_values.values].any() else []),
-        *([f"no values: {', '.join(without_values)}"] if without_values else []),
-    ]
-    title = f"{quantity.title[0].upper()}{quantity.title[1:]}: {low:.3g} to {high:.3g} "
-    scale = f"{quantity.title} ({quantity.shown_unit})", low, high
-    chart = _chart_of_maps(data, keys, panels, maps, scale)
-    return Figure(
-        _name(quantity), title + quantity.shown_unit, "; ".join(remarks), chart=chart, main=True
-    )
+def _maps(
+    data: xr.Dataset,
+    quantity: Quantity,
+    keys: Sequence[str],
+    reference: str = "",
+    levels: Sequence[float] = (),
+) -> list[Figure]:
+    """Return maps of a quantity over the last two keys, for each model with values.
 
-
-def _distance_maps(
-    data: xr.Dataset, quantity: Quantity, keys: Sequence[str], reference: str
-) -> Figure:
-    """Return maps of a difference over the last two keys, for each model with values.
-
-    There is a map for each combination of the first and last values of the other keys.
+    There is a map for each combination of the first and last values of the other keys. With
+    ``levels`` in percent the values are clipped at 100 %. There is no figure without maps.
     """
     *outer_keys, x, y = keys
-    longest = float(data[UNTIL].max())
-    panels, maps = [], []
+    permitted, unit = _permitted(data, quantity), quantity.shown_unit
+    longest = float(data[UNTIL].max()) if quantity.name == TIP_DEVIATION else 0.0
+    panels, maps, empty = [], [], []
     for selection in _at_ends(data, outer_keys):
         part = data.sel(selection)
-        until = part[UNTIL].transpose(y, x).values
         where = "".join(f", {_quantity(key)} {value:g}" for key, value in selection.items())
         for name in part["model"].values:
-            cells = quantity.factor * part[quantity.name].sel(model=name).transpose(y, x).values
+            of_model = part.sel(model=name).transpose(y, x, ...)
+            cells = quantity.factor * of_model[quantity.name].values
             if not np.isfinite(cells).any():
+                empty.append(f"{name}{where}")
                 continue
-            shorter = (until < longest) & (quantity.name == TIP_DEVIATION)
-            ends = np.where(shorter, [[f"{time:.1f} s" for time in row] for row in until], "")
-            maps.append(Map(np.clip(cells, 0.0, _MOST), _texts(cells, ends)))
-            ranges = f"{np.nanmin(cells):.2g} to {np.nanmax(cells):.2g} %"
-            panels.append(f"{name}{where}: {ranges}")
-    shortened = quantity.name == TIP_DEVIATION and data[UNTIL].min() < longest
-    caption = f"In the maps: time up to which tips are compared; elsewhere {longest:g} s."
-    title = f"{quantity.title[0].upper()}{quantity.title[1:]} from {reference}"
-    scale = f"{quantity.title} (%)", 0.0, _MOST, LEVELS
-    chart = _chart_of_maps(data, [x, y], panels, maps, scale)
-    return Figure(_name(quantity), title, caption * bool(shortened), chart=chart, main=True)
+            least, most = np.nanmin(cells), np.nanmax(cells)
+            marks = np.where(of_model["failed"].values > 0, "×", "")
+            if longest:
+                until = of_model[UNTIL].values
+                times = np.array([[f"{time:.1f} s" for time in row] for row in until])
+                marks = np.where(until < longest, times, marks)
+            known = permitted is not None and least < permitted < most
+            shown = np.clip(cells, 0.0, _MOST) if levels else cells
+            maps.append(Map(shown, _texts(cells, marks), permitted if known else None))
+            panels.append(f"{name}{where}: {least:.3g} to {most:.3g} {unit}")
+    texts = [text for cells in maps for text in cells.texts.ravel()]
+    remarks = [
+        *([f"grey: no {quantity.title}"] if any(np.isnan(m.values).any() for m in maps) else []),
+        *([] if permitted is None else [f"red, dotted: limit of {permitted:.4g} {unit}"]),
+        *(["×: the computation failed"] if any("×" in text for text in texts) else []),
+        *([f"no values: {', '.join(empty)}"] if empty else []),
+        *([f"s: time up to which tips are compared; elsewhere {longest:g} s"] if longest else []),
+    ]
+    if not maps:
+        return []
+    low, high = 0.0, _MOST
+    if not levels:
+        low = float(min(np.nanmin(cells.values) for cells in maps))
+        high = float(max(np.nanmax(cells.values) for cells in maps))
+    columns, rows = ([f"{value:g}" for value in data[key].values] for key in (x, y))
+    scale = f"{quantity.title} ({unit})"
+    keys_of_maps = Keys(_heading(data[y]), columns, rows, scale, low, high, levels)
+    chart = Chart(data[x].values, panels=panels, along=_heading(data[x]), maps=maps,
+                  keys=keys_of_maps)  # fmt: skip
+    title = (
+        f"{quantity.title[0].upper()}{quantity.title[1:]}{f' from {reference}' * bool(reference)}"
+    )
+    name = f"sweep-{quantity.name.replace('_', '-')}"
+    return [Figure(name, title, "; ".join(remarks), chart=chart, main=True)]
 
 
 def _texts(cells: Array, marks: npt.NDArray[np.str_]) -> npt.NDArray[np.str_]:
@@ -228,20 +227,6 @@ def _texts(cells: Array, marks: npt.NDArray[np.str_]) -> npt.NDArray[np.str_]:
             for row, row_of_marks in zip(cells.tolist(), marks.tolist(), strict=True)
         ]
     )  # fmt: skip
-
-
-def _chart_of_maps(
-    data: xr.Dataset,
-    keys: Sequence[str],
-    panels: Sequence[str],
-    maps: Sequence[Map],
-    scale: tuple[Any, ...],
-) -> Chart:
-    """Return the chart of maps over two keys; ``scale`` has the last fields of :class:`Keys`."""
-    x, y = (data[key] for key in keys)
-    columns, rows = ([f"{value:g}" for value in along.values] for along in (x, y))
-    headings = Keys(_heading(y), columns, rows, *scale)
-    return Chart(x.values, panels=panels, along=_heading(x), maps=maps, keys=headings)
 
 
 def _spans_decades(values: Array) -> bool:
@@ -263,7 +248,3 @@ def _heading(values: xr.DataArray) -> str:
     """Return the heading of an axis: a key in words with its unit."""
     unit = values.attrs["units"]
     return _quantity(values.name) + ("" if unit == "1" else f" ({unit.translate(_SUPERSCRIPT)})")
-
-
-def _name(quantity: Quantity) -> str:
-    return f"sweep-{quantity.name.replace('_', '-')}"
