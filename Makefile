@@ -59,7 +59,7 @@ NEEDS_pip := .[shell,report,test]
 CONSTRAINTS_debian := .ci/constraints-$(RELEASE).txt
 CONSTRAINTS_pip := .ci/constraints-pip.txt
 
-.PHONY: help install verify snapshots gallery bench convergence validation validity other-codes test imitate fuzz torture quick lint docs matrix clean distclean packages-debian packages-pip
+.PHONY: help install verify report snapshots gallery bench convergence validation validity other-codes test imitate fuzz torture quick lint docs matrix clean distclean packages-debian packages-pip
 .DELETE_ON_ERROR:
 
 help: ## list these targets
@@ -69,8 +69,11 @@ help: ## list these targets
 install: $(READY) ## install what runs need, into .venv or the active conda environment
 
 # As many cases at a time as there are cores, of which nproc tells no more than OMP_NUM_THREADS.
-verify: $(READY) ## run the cases where they are not up to date, print the verdicts
+verify: $(READY) ## run the cases where they are not up to date, print verdicts and where the reports are
 	@$(MAKE) --no-print-directory --jobs=$$(OMP_NUM_THREADS= nproc) $(REPORTS)
+	@$(BIN)/protractile report --brief $(VERIFY_CASES:%=runs/out/%)
+
+report: $(REPORTS) ## render the reports of the verify cases again, and print all their tables
 	@$(BIN)/protractile report $(VERIFY_CASES:%=runs/out/%)
 
 snapshots: $(REPORTS) ## pictures of the verify cases with a shell

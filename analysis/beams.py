@@ -18,10 +18,10 @@ from protractile.analysis.rows import BEAM, COMBINATION, REST, Row, Rows, extrem
 from protractile.analysis.states import States
 from protractile.beam_model.boom_modes import BoomModes
 from protractile.beam_model.lines import lines_of_modes
+from protractile.beam_model.static_model import StaticModel, estimate_critical_factor
 from protractile.beam_model.statics import (
     Completion,
     Elements,
-    estimate_critical_factor,
     loaded_system,
 )
 from protractile.dynamics.failure import NumericsError
@@ -52,6 +52,15 @@ def beam_of(boom: Boom, complete: Completion | None = None) -> AnalysisModel:
     return AnalysisModel.of(boom, system, along)
 
 
+def static_beam(boom: Boom, complete: Completion | None = None) -> AnalysisModel:
+    """Return the model of :func:`beam_of` for static states only, whose masses do not act.
+
+    Booms of one shape share its elements, so that a state takes milliseconds.
+    """
+    boom = boom.without_drives
+    return AnalysisModel.of(boom, *StaticModel.of(boom).loaded(boom, complete))
+
+
 def statics(boom: Boom, duration: float = 10.0) -> Findings:
     """Return deflections, forces, stresses and pads at rest at t = 0 and under extreme loads.
 
@@ -67,7 +76,7 @@ def statics(boom: Boom, duration: float = 10.0) -> Findings:
     Raises:
         NumericsError: there is no equilibrium at t = 0.
     """
-    states = States.at_rest(beam_of(boom), duration)
+    states = States.at_rest(static_beam(boom), duration)
     return Findings.of(static_rows(states, BEAM), diagrams(states, BEAM, REST))
 
 
@@ -125,7 +134,7 @@ def prove(
     for name, loads in combinations.items():
         loaded = replace(boom, loads=(*boom.loads, *loads))
         try:
-            states = States.at_rest(beam_of(loaded), duration)
+            states = States.at_rest(static_beam(loaded), duration)
         except NumericsError as error:
             raise NumericsError(f"{name}: {error}") from error
         rows = Rows(extremes(measure(states), BEAM, COMBINATION + name))

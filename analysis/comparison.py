@@ -4,15 +4,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
-import xarray as xr
 
 from protractile.analysis.low_pass import Number, Numbers, SlowPeaks
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.predictability import ensemble_horizons
 from protractile.dynamics.trajectory import PointwiseDifferences
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, slots=True)

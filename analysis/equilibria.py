@@ -86,8 +86,8 @@ def equilibria(system: GapSystem, times: Sequence[float] = (0.0,)) -> dict[float
     Times without an equilibrium are left out. The result is empty if the first has none. The
     ``load`` of the system includes all constant loads.
     """
-    first = _equilibria(system, times[:1])
-    return first | _equilibria(system, times[1:]) if first else {}
+    first, later = _equilibria(system, times[:1]), times[1:]
+    return first | _equilibria(system, later) if first and later else first
 
 
 def vibrating_state(system: GapSystem, rests: Mapping[float, Array]) -> tuple[GapSystem, Array]:

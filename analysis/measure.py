@@ -8,7 +8,7 @@ moment causes tension at the top, a positive lateral moment tension at larger y.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -30,6 +30,7 @@ from protractile.geometry.telescoping import station_positions, travel
 
 if TYPE_CHECKING:
     import xarray as xr
+    from scipy.interpolate import CubicSpline
 
 
 class Measured(NamedTuple):
@@ -209,19 +210,20 @@ def _rotations(states: States) -> Iterator[Measured]:
     Play, the compression of contacts and walls that bend cause it. It is positive for a larger
     slope. The deflection of the tip by it follows.
     """
-    boom = states.boom
+    boom, axes = states.boom, states.model.axes(states.positions)
     for joint in (joint for joint in boom.joints if not joint.bonded and len(joint.stations) > 1):
         inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
         both = np.array(
-            [_rotation(states, joint, float(at), k) for k, at in enumerate(states.time)]
+            [_rotation(boom, joint, axes, float(at), k) for k, at in enumerate(states.time)]
         )
         for name, values in zip(("rotation", "rotation_tip"), both.T, strict=True):
             yield _single(name, inner, values, states.time, place=f"in {outer}")
 
 
-def _rotation(states: States, joint: Joint, time: float, step: int) -> tuple[float, float]:
+def _rotation(
+    boom: Boom, joint: Joint, axes: Sequence[CubicSpline], time: float, step: int
+) -> tuple[float, float]:
     """Return the rotation of a joint in rad, and the deflection of the tip by it in m."""
-    boom, axes, position = states.boom, states.model.axes, states.positions[step]
     before = travel(boom, joint.outer, time)
     extension = travel(boom, joint.inner, time) - before
     places = [(x, x) for x in joint.stations]
@@ -234,7 +236,7 @@ def _rotation(states: States, joint: Joint, time: float, step: int) -> tuple[flo
     for (x_outer, x_inner), offset in zip(places, offsets, strict=True):
         on_outer.append(x_outer + offset)
         relative = axes[joint.inner](x_inner + offset) - axes[joint.outer](x_outer + offset)
-        displacements.append(float(position[: relative.size] @ relative))
+        displacements.append(float(relative[step]))
     tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
     angle = (displacements[-1] - displacements[0]) / (on_outer[-1] - on_outer[0])
     return angle, displacements[0] + angle * (tip - on_outer[0])

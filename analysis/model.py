@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
 from typing import Self
 
 import numpy as np
@@ -53,10 +52,13 @@ class AnalysisModel:
             extended[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
         return cls(boom, system.gather_loads(), extended, smooth)
 
-    @cached_property
-    def axes(self) -> list[CubicSpline]:
-        """The rows (num_modes,) of the deflections along z of each segment, by x in m."""
-        return [CubicSpline(*dict(line.deflections)["z"]) for line in self.lines]
+    def axes(self, states: Array) -> list[CubicSpline]:
+        """Return the deflections (num_states,) along z of each segment, as functions of x in m.
+
+        ``states`` (num_states, num_modes) are modal coordinates.
+        """
+        along = (dict(line.deflections)["z"] for line in self.lines)
+        return [CubicSpline(x, rows @ states[:, : rows.shape[1]].T) for x, rows in along]
 
     def section_forces(self, number: int, states: Array, time: Array) -> dict[LineQuantity, Array]:
         """Return deflections and section forces of a segment as :func:`section_forces`."""

@@ -45,6 +45,7 @@ class Resistance(NamedTuple):
     pad: float = 1.0  #: factor on allowable pressures of pads
     cylinder: float = 1.0  #: factor on capacities of cylinders
     pin: float = 1.0  #: factor on shear resistances of pins
+    tipping: float = 1.0  #: factor on the stabilising moment
 
 
 def proofs(
@@ -71,7 +72,7 @@ def proofs(
         buckling: buckling of the segments of a shell.
     """
     proved = [
-        *_of_plates(states, resistance, curve),
+        *(_of_plates(states, resistance, curve) if {"yield", "plate"} & {*requested} else ()),
         *_of_shells(states, rows, resistance, curve, buckling),
         *_of_forces(states, rows, resistance),
         *_of_column(states, resistance, critical_factor),

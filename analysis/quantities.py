@@ -88,6 +88,7 @@ MEASURED: Mapping[str, Quantity] = {
         _unswept("support_torque", "N m", "torque at the support", shown="kN m"),
         _unswept("axial_reaction", "N", "axial reaction", shown="kN"),
         _unswept("foot_reaction", "N", "foot reaction", shown="kN"),
+        _unswept("outrigger_force", "N", "largest outrigger force", shown="kN"),
         _unswept("rotation", "rad", "rotation of the joint", shown="mrad"),
         _unswept("rotation_tip", "m", "tip deflection by the rotation of the joint", shown="mm"),
         Quantity(
@@ -130,6 +131,7 @@ PROVED: Mapping[str, Quantity] = {
         Quantity("cylinder", "N", "cylinder force", shown="kN"),
         Quantity("pin", "N", "pin shear", shown="kN"),
         Quantity("deflection", "m", "static tip deflection", shown="mm"),
+        Quantity("tipping", "N m", "tipping", shown="kN m"),
         Quantity("fatigue", "1", "fatigue strength"),
     )
 }

@@ -95,6 +95,11 @@ class BoomModes:
         self.omega2, self.load, self.damping = map(np.concatenate, zip(*of_groups, strict=True))
         self.beams = [self._beam(number) for number in range(len(boom.segments))]
 
+    def add_coordinates(self, omega2: Array) -> None:
+        """Add coordinates with ω² (num_added,) that move no segment."""
+        self.omega2 = np.append(self.omega2, omega2)
+        self.load, self.damping = (np.pad(a, (0, omega2.size)) for a in (self.load, self.damping))
+
     def displacement(
         self, segment: int, x: float, direction: Direction, offset: tuple[float, float] = (0.0, 0.0)
     ) -> Array:

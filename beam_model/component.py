@@ -44,6 +44,8 @@ class Component:
         rigid_modes: number of rigid modes.
         geometric_stiffness: K_G (num_dofs, num_dofs) of the axial force, which reduces the
             stiffness.
+        slopes: w′ (num_points, num_dofs) at the Gauss points of elements; empty without elements.
+        points: x and weights (2, num_points) in m of the Gauss points.
         rotation_load: load vector (num_dofs,) of an angular acceleration of 1 rad/s² about
             x = 0; empty for twist.
         inertia_load: inertia load (num_dofs,) of a uniform acceleration that causes a mean load of
@@ -63,6 +65,8 @@ class Component:
     rotation_load: Array = field(default_factory=lambda: np.zeros(0))
     inertia_load: Array = field(default_factory=lambda: np.zeros(0))
     breaks: Array = field(default_factory=lambda: np.zeros(0))
+    slopes: Array = field(default_factory=lambda: np.zeros((0, 0)))
+    points: Array = field(default_factory=lambda: np.zeros((2, 0)))
     bends: bool = True
 
     @property

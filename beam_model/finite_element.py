@@ -25,6 +25,8 @@ from protractile.geometry.segment_checks import APART
 # the shortest element length. Such a mass acts through shape functions.
 _MASS_APART = 5.0e-3
 
+_NUM_GAUSS = GAUSS[0].size
+
 # Shape functions of an element by their order in rows of a component.
 _SHAPES = "deflection", "rotation", "curvature"
 
@@ -91,10 +93,11 @@ def finite_element_segment(
 def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: bool) -> Component:
     """Return the component of deflection along z, with the unknowns w and β at each node."""
     num_dofs = 2 * nodes.size
-    stiffness, mass, damping, geometric = (np.zeros((num_dofs, num_dofs)) for _ in range(4))
+    stiffness, mass, damping = (np.zeros((num_dofs, num_dofs)) for _ in range(3))
     unit_load, rotation_load, inertia_load = np.zeros((3, num_dofs))
     lengths = np.diff(nodes).tolist()
     elements = [element(segment, theory, *one) for one in zip(nodes, lengths, strict=False)]
+    slopes, points = np.zeros((len(elements), _NUM_GAUSS, num_dofs)), list[Array]()
     for k, (here, h) in enumerate(zip(elements, lengths, strict=True)):
         dofs = slice(2 * k, 2 * k + 4)
         weight, w, slope, beta, stiff = quadrature(here)
@@ -107,7 +110,8 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
             mass[dofs, dofs] += segment.rotary_inertia * products(beta, inertias)
             rotation_load[dofs] += segment.rotary_inertia * beta @ inertias
         damping[dofs, dofs] += segment.viscous_damping * products(w, weight)
-        geometric[dofs, dofs] += products(slope, weight * segment.compression(x))
+        slopes[k, :, dofs] = slope.T
+        points.append(np.array([x, weight]))
         unit_load[dofs] += w @ weight
         inertia_load[dofs] += w @ masses
 
@@ -132,6 +136,7 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
             rotation_load[dofs] += point.mass * point.x * w[:, 0]
             inertia_load[dofs] += point.mass / segment.mass_per_length * w[:, 0]
     free = np.setdiff1d(np.arange(num_dofs), fixed)
+    gauss, slope_rows = np.hstack(points), slopes.reshape(-1, num_dofs)[:, free]
 
     def read(x: float, order: int = 0) -> Array:
         k, h = _element(nodes, x)
@@ -148,10 +153,12 @@ def _bending(segment: Segment, nodes: Array, theory: Theory, rotary_inertia: boo
         unit_load=unit_load[free],
         at=read,
         rigid_modes=segment.rigid_modes,
-        geometric_stiffness=geometric[block],
+        geometric_stiffness=products(slope_rows.T, gauss[1] * segment.compression(gauss[0])),
         rotation_load=rotation_load[free],
         inertia_load=inertia_load[free],
         breaks=nodes,
+        slopes=slope_rows,
+        points=gauss,
     )
 
 

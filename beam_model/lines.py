@@ -10,18 +10,18 @@ its mean slope has none. Between point forces, V is linear between the centres o
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from operator import attrgetter
 
 import numpy as np
-from scipy.interpolate import interp1d
 
 from protractile.beam_model.boom_modes import BoomModes
 from protractile.beam_model.component import SegmentModel
 from protractile.dynamics.line import Line, LineQuantity
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Direction
+from protractile.geometry.boom import Boom, Direction, Segment
 from protractile.geometry.contact_places import load_places
 
 # Number of pieces of a segment without elements.
@@ -43,14 +43,18 @@ def lines(boom: Boom, models: Sequence[SegmentModel]) -> list[Line]:
 
 def lines_of_modes(boom: Boom, modes: BoomModes) -> list[Line]:
     """Return the line of each segment, as :func:`lines`, from the modes of the boom."""
-    return [_line(boom, number, modes) for number in range(len(boom.segments))]
+    return [
+        with_compression(
+            segment, line_without_compression(boom, number, modes), force_places(boom, number)
+        )
+        for number, segment in enumerate(boom.segments)
+    ]
 
 
-def _line(boom: Boom, number: int, modes: BoomModes) -> Line:
+def line_without_compression(boom: Boom, number: int, modes: BoomModes) -> Line:
+    """Return the line of a segment as without its axial force."""
     segment, model = boom.segments[number], modes.models[number]
-    # Ends of the segment, and positions of forces.
-    places = {*segment.ends, *load_places(boom, number), *segment.compression.places}
-    places |= {one.x for one in segment.supports} | {one.x for one in segment.all_masses}
+    places = force_places(boom, number)
     # Ends of elements, or of equal pieces between forces.
     breaks = model.components["z"].breaks
     if not breaks.size:
@@ -77,9 +81,7 @@ def _line(boom: Boom, number: int, modes: BoomModes) -> Line:
             )
             ends = [1.5 * early - 0.5 * late, 1.5 * late - 0.5 * early]
             rows[moment] = np.stack(ends, axis=1).reshape(2 * starts.size, -1)
-            compression = segment.compression(midpoints)[:, None]
-            across = _slope(breaks, rows[moment]) - compression * _slope(breaks, rows[deflection])
-            rows[shear] = _to_ends(breaks, across, places)
+            rows[shear] = _to_ends(breaks, _slope(breaks, rows[moment]), places)
     if boom.spatial:
         lateral = segment.lateral
         assert lateral is not None
@@ -90,6 +92,29 @@ def _line(boom: Boom, number: int, modes: BoomModes) -> Line:
             torque = stiffness * local[:, None] * _slope(breaks, rows["twist"])
             rows["torque"] = _to_ends(breaks, torque, places)
     return Line(np.repeat(breaks, 2)[1:-1], rows, paired=True)
+
+
+def with_compression(segment: Segment, line: Line, places: set[float]) -> Line:
+    """Return the line of a segment with its axial force, which changes the shear force.
+
+    ``places`` are those of :func:`force_places`.
+    """
+    breaks = np.append(line.x[::2], line.x[-1])
+    compression = segment.compression(0.5 * (breaks[1:] + breaks[:-1]))[:, None]
+    rows = dict(line.rows)
+    for deflection, _, shear in _NAMES.values():
+        if shear in rows:
+            across = compression * _slope(breaks, rows[deflection])
+            rows[shear] = rows[shear] - _to_ends(breaks, across, places)
+    return replace(line, rows=rows)
+
+
+def force_places(boom: Boom, number: int) -> set[float]:
+    """Return the x in m of the ends of a segment and of the forces on it."""
+    segment = boom.segments[number]
+    places = {*segment.ends, *load_places(boom, number), *segment.compression.places}
+    places |= {one.x for one in segment.supports} | {one.x for one in segment.all_masses}
+    return places
 
 
 def _both_ends(breaks: Array, read: Callable[[float], Array]) -> Array:
@@ -110,6 +135,9 @@ def _to_ends(breaks: Array, means: Array, places: set[float]) -> Array:
         if last - first > 1:
             nodes = breaks[first : last + 1]
             midpoints = 0.5 * (nodes[1:] + nodes[:-1])
-            on = interp1d(midpoints, means[first:last], axis=0, fill_value="extrapolate")
-            ends[2 * first : 2 * last] = np.repeat(on(nodes), 2, axis=0)[1:-1]
+            # Linear between midpoints, and beyond the outer ones.
+            k = np.clip(np.arange(-1, midpoints.size), 0, midpoints.size - 2)
+            part = ((nodes - midpoints[k]) / (midpoints[k + 1] - midpoints[k]))[:, None]
+            on = means[first + k] + part * (means[first + k + 1] - means[first + k])
+            ends[2 * first : 2 * last] = np.repeat(on, 2, axis=0)[1:-1]
     return ends

@@ -36,7 +36,7 @@ def gap_system(
     """
     modes = BoomModes(boom, models)
     system = system_without_drives(boom, modes, sides)
-    rows_at = partial(_rows, boom, modes, sides)
+    rows_at = partial(contact_rows, boom, modes, sides)
     groups = telescoping_stations(boom)
     moved = [travel(boom, models, rows_at, modes.beams, group) for group in groups]
     return replace(system, travels=moved)
@@ -51,12 +51,22 @@ def system_without_drives(
         boom, sides: as in :func:`gap_system`.
         modes: modes of the boom's segments.
     """
+    return system_of_rows(contact_rows(boom, modes, sides, {}), boom, modes, modes.load)
+
+
+def system_of_rows(
+    rows: GapBuilder[Array], boom: Boom, modes: BoomModes, uniform: Array
+) -> GapSystem:
+    """Return the gap system of :func:`system_without_drives` from its rows.
+
+    ``uniform`` (num_modes,) in N/√kg are the uniform loads of the segments.
+    """
     beams = modes.beams
     ends: tuple[Quantity, ...] = ("deflection", "lateral") if boom.spatial else ("deflection",)
-    return _rows(boom, modes, sides, {}).system(
+    return rows.system(
         lambda row: row,
         modes.omega2,
-        sum((push for _, push in pin_moments(boom, beams)), modes.load),
+        sum((push for _, push in pin_moments(boom, beams)), uniform),
         [(station.x, station.direction) for station in boom.stations],
         {
             place.name: OutputOperator(_row(place, modes), place.kind.unit, place.kind.derivative)
@@ -71,7 +81,7 @@ def system_without_drives(
     )
 
 
-def _rows(
+def contact_rows(
     boom: Boom,
     modes: BoomModes,
     sides: Sequence[Side],

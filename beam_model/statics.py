@@ -7,7 +7,7 @@ supports, f the load, and w the static deflection.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import chain
@@ -15,23 +15,19 @@ from typing import NamedTuple
 
 import numpy as np
 
-from protractile.beam_model.boom_modes import BoomModes, critical_factor
+from protractile.beam_model.boom_modes import BoomModes
 from protractile.beam_model.component import Component, SegmentModel
 from protractile.beam_model.elements import Theory
 from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
 from protractile.beam_model.lines import lines_of_modes
 from protractile.beam_model.segment_model import gap_system, system_without_drives
-from protractile.beam_model.wall_compliance import station_compliance, with_wall_springs
-from protractile.dynamics.damping import closed_stiffness
-from protractile.dynamics.equilibrium import equilibrium, equilibrium_at
+from protractile.beam_model.wall_compliance import with_wall_springs
+from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
-from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.line import Line
-from protractile.dynamics.stability import closing_loads
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
-from protractile.geometry.compression import NO_COMPRESSION
 from protractile.geometry.contact_places import contact_centres, pad_places
 from protractile.geometry.load import Load
 from protractile.geometry.section import EACH_SIDE
@@ -173,40 +169,6 @@ def loaded_system(
         along = lines_of_modes(boom, modes) if boom.axial_changes else ()
         system = complete(system, [line.extend(system.num_modes) for line in along])
     return system.gather_loads()
-
-
-def estimate_critical_factor(boom: Boom) -> float | None:
-    """Return the buckling factor of the boom by beam elements, with walls that bend under pads.
-
-    Contacts that are closed at t = 0 have their stiffness at rest, in an equilibrium without axial
-    forces, which exists for booms that buckle, too. The factor is infinite without axial forces,
-    and None for a mechanism or if numbers overflow.
-    """
-    if not boom.compressed:
-        return float("inf")
-    try:
-        with np.errstate(all="ignore"):
-            segments = Elements(boom).segments
-            factors = [
-                critical_factor(boom, segments, station_compliance(boom, stiffness))
-                for stiffness in _closed_stiffness(boom)
-            ]
-            return min((factor for factor in factors if factor is not None), default=None)
-    except NUMERICAL_ERRORS:
-        return None
-
-
-def _closed_stiffness(boom: Boom) -> Iterator[Array]:
-    """Yield the stiffness (num_rows,) in N/m of contacts at rest, 0 where they are open.
-
-    In space, contacts that no load presses are closed in one direction at a time.
-    """
-    segments = [replace(segment, compression=NO_COMPRESSION) for segment in boom.segments]
-    unloaded = replace(boom, segments=segments, axial_changes=())
-    modes = BoomModes(unloaded, Elements(unloaded).segments)
-    system = loaded_system(unloaded, modes).at_time(0.0)
-    for load in closing_loads(system, system.load_at(0.0)):
-        yield closed_stiffness(system, equilibrium(system, load))
 
 
 def telescoping_system(boom: Boom) -> GapSystem:

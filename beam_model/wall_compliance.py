@@ -62,7 +62,11 @@ def with_wall_springs(system: GapSystem, boom: Boom, factor: float = 1.0) -> Gap
         system: gap system with a contact row for each side.
         factor: factor of the compliance, 0 for rigid walls.
     """
-    walls = factor * contact_compliance(boom) if factor else np.zeros(0)
+    return with_compliance(system, factor * contact_compliance(boom)) if factor else system
+
+
+def with_compliance(system: GapSystem, walls: Array) -> GapSystem:
+    """Return the system with springs for a compliance (num_rows, num_rows) in m/N of contacts."""
     if not walls.any():
         return system
     rest = len(system.frictions) + len(system.dashpots)
@@ -112,7 +116,9 @@ def contact_compliance(boom: Boom) -> Array:
     return compliance
 
 
-def station_compliance(boom: Boom, stiffness: Array) -> StationCompliance:
+def station_compliance(
+    boom: Boom, stiffness: Array, walls: Array | None = None
+) -> StationCompliance:
     """Return the compliance of closed contacts, and of the walls and sections under them.
 
     Forces of one station distort the section at others, too.
@@ -120,6 +126,7 @@ def station_compliance(boom: Boom, stiffness: Array) -> StationCompliance:
     Args:
         boom: boom of beams with a contact row for each side.
         stiffness: stiffness (num_rows,) in N/m of the contact rows, 0 where a contact is open.
+        walls: compliance of :func:`contact_compliance`, if available.
     """
     of_rows = [
         ContactPlace(
@@ -134,8 +141,8 @@ def station_compliance(boom: Boom, stiffness: Array) -> StationCompliance:
     places = tuple(dict.fromkeys(of_rows[row] for row in closed))
     at = np.array([[float(of_rows[row] == place) for place in places] for row in closed])
     at = at.reshape(closed.size, len(places))
-    walls = contact_compliance(boom)[np.ix_(closed, closed)]
-    of_contacts = walls + np.diag(1.0 / stiffness[closed])
+    walls = contact_compliance(boom) if walls is None else walls
+    of_contacts = walls[np.ix_(closed, closed)] + np.diag(1.0 / stiffness[closed])
     together = at.T @ np.linalg.solve(of_contacts, at)
     return StationCompliance(places, np.linalg.inv(together))
 

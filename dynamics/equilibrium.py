@@ -9,7 +9,6 @@ Friction, which would allow a range of equilibria, is ignored.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -160,18 +159,29 @@ def _minimum(
     ]
     row_of_value = np.concatenate([term["row"] for term in terms])
 
+    def of_terms(of_term: OfTerm, gaps: Array) -> Array:
+        """Return ``of_term`` of each term (num_terms,) at displacements (num_rows,) in m."""
+        return np.concatenate([of_term(term, gaps[term["row"]]) for term in terms])
+
     def sum_terms(of_term: OfTerm, x: Array) -> Array:
         """Return the sum of ``of_term`` over the terms of each row (num_rows,)."""
-        gaps = unit * rows @ x
-        values = [of_term(term, gaps[term["row"]]) for term in terms]
-        return np.asarray(np.bincount(row_of_value, np.concatenate(values), len(rows)), dtype=float)
+        values = of_terms(of_term, unit * rows @ x)
+        return np.asarray(np.bincount(row_of_value, values, len(rows)), dtype=float)
 
     def unbalanced(x: Array) -> Array:
         return np.asarray(stiffness @ x - load + rows.T @ sum_terms(force_of, x) / unit)
 
-    def slope(length: float, x: Array, step: Array) -> float:
+    def slopes_along(x: Array, step: Array) -> Callable[[float], float]:
         """Return the derivative of the energy at ``x`` + ``length`` · ``step`` along the step."""
-        return float(unbalanced(x + length * step) @ step)
+        first, rise = float((stiffness @ x - load) @ step), float(step @ stiffness @ step)
+        gaps, moves = unit * rows @ x, unit * rows @ step
+        along = moves[row_of_value]
+
+        def slope(length: float) -> float:
+            forces = of_terms(force_of, gaps + length * moves)
+            return first + length * rise + float(forces @ along) / unit**2
+
+        return slope
 
     x = min(np.zeros(load.size), start, key=lambda one: float(np.linalg.norm(unbalanced(one))))
     for _ in range(_MOST_STEPS):
@@ -183,15 +193,14 @@ def _minimum(
         curvatures, axes = np.linalg.eigh(stiffness + (rows.T * sum_terms(slope_of, x)) @ rows)
         step = -axes @ (axes.T @ force / np.maximum(np.abs(curvatures), _FLAT))
         small, low, high = _EXACT * abs(float(force @ step)), 0.0, 1.0
-        while (end := slope(high, x, step)) < -small and high < _FARTHEST:
+        slope = slopes_along(x, step)
+        while (end := slope(high)) < -small and high < _FARTHEST:
             low, high = high, 4.0 * high
         if end < -small:
             return None
         if end > small:
-            start_slope = slope(low, x, step) if low else float(force @ step)
-            high = _flat_place(
-                partial(slope, x=x, step=step), (low, start_slope), (high, end), small
-            )
+            start_slope = slope(low) if low else float(force @ step)
+            high = _flat_place(slope, (low, start_slope), (high, end), small)
         x = x + high * step
     return x if np.linalg.norm(force) < BALANCE else None
 

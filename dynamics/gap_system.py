@@ -273,3 +273,11 @@ class GapSystem:
             geometric_stiffness=np.zeros((0, 0)),
             hung=self.hung @ shapes,
         )
+
+    def extend(self, omega2: Array) -> GapSystem:
+        """Return the system with further coordinates, uncoupled, with ω² (num_added,)."""
+        number, added = self.num_modes, omega2.size
+        wide = self.transform(np.append(self.omega2, omega2), np.eye(number, number + added))
+        if not self.geometric_stiffness.size:
+            return wide
+        return replace(wide, geometric_stiffness=np.pad(self.geometric_stiffness, (0, added)))

@@ -160,10 +160,7 @@ class HangingLoad:
             self.mass
         )
 
-        wide = system.transform(
-            np.append(system.omega2, np.zeros(dimensions)),
-            np.eye(system.num_modes, system.num_modes + dimensions),
-        )
+        wide = system.extend(np.zeros(dimensions))
         tip, lateral = (np.pad(row, (0, dimensions)) for row in (tip, lateral))
 
         def stretches(time: float) -> Array:

@@ -19,15 +19,18 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, ThreadPoolExecutor
 from contextlib import nullcontext
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-import xarray as xr
 
 from protractile.dynamics.arrays import Array
-from protractile.dynamics.integrator import AdaptiveStep, Integrator
 from protractile.dynamics.motion import Motion
 from protractile.dynamics.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from protractile.dynamics.integrator import Integrator
 
 Vary = Literal["load", "clearance", "velocity"]
 
@@ -118,7 +121,7 @@ def run_members(
         NumericsError: a member cannot be computed.
     """
     threads = ThreadPoolExecutor(len(os.sched_getaffinity(0)))
-    runs = list[xr.Dataset]()
+    runs: list[xr.Dataset] = []
     with threads if executor is None else nullcontext(executor) as pool:
         # If an error ends the loop, the iterator cancels the remaining members.
         for run in pool.map(_run, members):
@@ -179,6 +182,10 @@ def integrate_ensemble(
         ValueError: an argument is out of its range, or the varied data are zero.
         NumericsError: a member cannot be computed.
     """
+    import xarray as xr
+
+    from protractile.dynamics.integrator import AdaptiveStep
+
     if members < 2:
         raise ValueError(f"an ensemble must have at least 2 members, got {members}")
     if not 0.0 < relative < 1.0:
@@ -328,6 +335,8 @@ def measure_horizons(
         ValueError: the varied data are zero.
         NumericsError: a run cannot be computed.
     """
+    from protractile.dynamics.integrator import AdaptiveStep
+
     check_varied(motion, vary)
     shares = (EARLY, SHARES[0])
     integrator = integrator or AdaptiveStep()

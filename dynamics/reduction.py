@@ -84,12 +84,8 @@ def with_coordinates(system: GapSystem, omega2: Array, rows: Array) -> GapSystem
     contacts, frictions, dashpots = np.split(
         rows, np.cumsum([len(system.laws), len(system.frictions)])
     )
-    wider = system.transform(
-        np.concatenate([system.omega2, omega2]),
-        np.eye(system.num_modes, system.num_modes + omega2.size),
-    )
     return replace(
-        wider,
+        system.extend(omega2),
         rows=np.hstack([system.rows, contacts]),
         friction_rows=np.hstack([system.friction_rows, frictions]),
         dashpots=np.hstack([system.dashpots, dashpots]),

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 import numpy as np
 
@@ -48,6 +49,8 @@ def trapezoids(plates: Sequence[Plate]) -> Array:
     return np.stack([start + first, end + last, end - last, start - first], axis=1)
 
 
+# Load cases and combinations have the same sections.
+@lru_cache(maxsize=256)
 def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
     """Return the total clearances in m, along z and along y, of a section within another one.
 

@@ -42,6 +42,8 @@ from protractile.dynamics.excitation import Sine as Sine
 from protractile.dynamics.excitation import Step as Step
 from protractile.dynamics.excitation import PiecewiseLinear as PiecewiseLinear
 from protractile.geometry.axial import Thrust as Thrust
+from protractile.geometry.chassis import Chassis as Chassis
+from protractile.geometry.chassis import CraneForce as CraneForce
 from protractile.geometry.load import Load as Load
 from protractile.geometry.load import Moment as Moment
 from protractile.geometry.load import PartialLoad as PartialLoad
@@ -72,6 +74,7 @@ from protractile.cases import run_case as run_case
 from protractile.cases import sweep as sweep
 from protractile.cases import tables as tables
 from protractile.runs import CASES as CASES
+from protractile.runs.chart.run import chart as chart
 from protractile.runs.case.schema import Case as Case
 from protractile.runs.pipeline.results import Results as Results
 

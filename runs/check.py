@@ -80,31 +80,45 @@ _ROUND_OFF = 1.0e-12
 
 _BEAMS = "in the beam estimate"
 
+# Beginnings of the sentences that decide.
+_FIRST = "caution: ", "Limit "
+
 
 @dataclass(frozen=True, slots=True, repr=False)
 class Check:
     """Tables of a checked case, and sentences on its static state."""
 
     title: str  #: title of the case
-    tables: Sequence[Table]  #: tables with at least one row
-    lines: Sequence[str]  #: sentences and cautions
+    deciding: Sequence[Table]  #: tables of static results under the largest loads
+    inputs: Sequence[Table]  #: tables of parts, loads, reactions, buckling and modes
+    lines: Sequence[str]  #: sentences and cautions, those on limits and cautions first
+
+    @property
+    def tables(self) -> list[Table]:
+        """All tables, each with at least one row."""
+        return [*self.deciding, *self.inputs]
 
     @property
     def frames(self) -> dict[str, pd.DataFrame]:
         """The tables by title, with numbers in displayed units."""
         return {table.title: table.flat_frame for table in self.tables}
 
-    def show(self, console: Console) -> None:
-        """Print the tables, then the sentences."""
+    def show(self, console: Console, whole: bool = False) -> None:
+        """Print cautions, deciding tables and sentences; the ``whole`` has the other tables too."""
         print_text(console, self.title)
-        for table in self.tables:
-            table.show(console)
-        for line in self.lines:
+        first = [line for line in self.lines if line.startswith(_FIRST)]
+        for line in first:
             print_text(console, line)
+        for table in self.deciding:
+            table.show(console)
+        for line in self.lines[len(first) :]:
+            print_text(console, line)
+        for table in self.inputs if whole else ():
+            table.show(console)
 
     def __repr__(self) -> str:
         text = StringIO()
-        self.show(Console(file=text, width=WIDE))
+        self.show(Console(file=text, width=WIDE), whole=True)
         return text.getvalue()
 
     def _repr_html_(self) -> str:
@@ -123,7 +137,15 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
         _beam_name(model): model.coarsen(boom).critical_factor(checked.model_boom(model))
         for model in (case.models if boom.compressed else ())
     }
-    tables = [
+    combined = [*combination_tables(combination_rows(case, progress), case)]
+    deciding = [
+        static_table(case, boom if static is None else static.with_play.boom, context.rows),
+        *combined[:1],
+    ]
+    inputs = [
+        *combined[1:],
+        panel_table(weakest_plates(context.rows), case.system),
+        _buckling(case, boom, factors),
         segment_table(case, boom),
         stiffener_table(boom, case.system),
         joint_table(case, boom),
@@ -131,13 +153,9 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
         mass_table(boom, case.system),
         load_table(case, boom),
         axial_forces(boom, static),
-        _buckling(case, boom, factors),
         _damping_ratios(preview),
         *([_reactions(static.with_play, case.system)] if static else []),
         *([_cylinders(static.with_play, case.system)] if static else []),
-        static_table(case, boom if static is None else static.with_play.boom, context.rows),
-        panel_table(weakest_plates(context.rows), case.system),
-        *combination_tables(combination_rows(case, progress), case),
     ]
     lines = [*drive_lines(boom, case.system), *stick_slip_lines(context.drives, case.system)]
     lines += [*turning_lines(case), *_shaper_lines(preview)]
@@ -151,8 +169,10 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
         context.states.append(State(_BEAMS, None, static.with_play.tip, hertz[:1], closed))
     lines += cautions(context)
     lines.append(f"A run may take {run_cost(case, preview)}.")
-    lines = [case.system.convert(line) for line in lines]
-    return Check(case.title, [table for table in tables if table.rows], lines)
+    # Sorting keeps the order of lines of the same kind.
+    lines = sorted(map(case.system.convert, lines), key=lambda line: not line.startswith(_FIRST))
+    deciding, inputs = ([table for table in tables if table.rows] for tables in (deciding, inputs))
+    return Check(case.title, deciding, inputs, lines)
 
 
 def _beam_rows(beam: States) -> Rows:

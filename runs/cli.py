@@ -96,7 +96,11 @@ def run(
         from protractile.runs.pipeline.run import run_case
         from protractile.runs.report import output
         from protractile.runs.report.additions import judge
-        from protractile.runs.report.terminal_tables import print_failures, print_runs
+        from protractile.runs.report.terminal_tables import (
+            print_failures,
+            print_first_results,
+            print_runs,
+        )
 
         if not large:
             estimates.refuse_large(estimates.run_cost(effective), case)
@@ -112,13 +116,15 @@ def run(
             folder = prepare(out or f"runs/out/{Path(case).stem}", case)
             with (
                 atomic_folder(folder) as part,
-                terminal.display([model.name for model in effective.models]) as report_progress,
+                terminal.display(
+                    [model.name for model in effective.models], Path(case).stem
+                ) as report_progress,
             ):
                 renderers = (
                     () if no_pictures else ("protractile.runs.report.snapshots", "pyvista.plotting")
                 )
                 context = RunContext(comm, report_progress, cache, cache, helper, renderers)
-                finished = run_case(effective, case, context)
+                finished = run_case(effective, case, context, print_first_results)
                 assert finished is not None
                 with output.write_in_two_steps(finished, part, not no_pictures, helper) as write:
                     finished.evaluate()
@@ -143,12 +149,29 @@ def report(
         bool,
         typer.Option("--figures", help="Also write all figures as PNG, and show them on paper."),
     ] = False,
+    brief: Annotated[
+        bool,
+        typer.Option(
+            "--brief", help="Render nothing; print the models of the first run, and paths."
+        ),
+    ] = False,
 ) -> int:
     """Render the reports of runs again from their data, and print their tables."""
+    runs, judged = {}, {}
+    if brief:
+        from protractile.runs.pipeline.results import Results
+        from protractile.runs.report.additions import judge
+        from protractile.runs.report.terminal_tables import print_brief
+
+        for folder in folders:
+            runs[folder] = Results.load(folder)
+            judged[folder] = judge(runs[folder])
+        status = print_brief(runs, judged)
+        print(printable(f"Reports: {' '.join(f'{folder}/report.html' for folder in folders)}"))
+        return status
     from protractile.runs.report.output import rerender_report
     from protractile.runs.report.terminal_tables import print_runs
 
-    runs, judged = {}, {}
     for folder in folders:
         option = "--excel" if excel else None
         with rerender_report(folder, option, figures) as (results, addition, _):
@@ -298,9 +321,15 @@ def frequencies(
 
 @app.command()
 def check(
-    case: options.CaseFile, picture: options.Picture = None, large: options.Large = False
+    case: options.CaseFile,
+    picture: options.Picture = None,
+    large: options.Large = False,
+    whole: Annotated[
+        bool,
+        typer.Option("--all", help="Also print segments, joints, masses, loads and modes."),
+    ] = False,
 ) -> int:
-    """Check a case file, and print its loads, static state, stresses and first frequency."""
+    """Check a case file, and print cautions, static results, stresses and first frequency."""
     from protractile.runs.case.reading import load_checked
     from protractile.runs.check import check_case
     from protractile.runs.pipeline import estimates
@@ -314,7 +343,9 @@ def check(
         )
     with terminal.display() as report_progress:
         result = check_case(checked, report_progress)
-    result.show(Terminal())
+    result.show(Terminal(), whole)
+    if not whole:
+        print("Segments, joints, masses, loads, reactions and modes: protractile check --all")
     return 0
 
 

@@ -45,6 +45,9 @@ class CombinedCase(NamedTuple):
     name: str  #: names of the combination and the load case, if any; otherwise ``case``
     case: Case  #: the case with the loads of the combination
     combination: CombinationTable  #: the combination; a default one if the case gives none
+    of: Case  #: the case with the combination
+    table: LoadCaseTable  #: the load case
+    factors: Factors  #: the factors of the combination by group of loads
 
 
 def combined_cases(case: Case) -> Iterator[CombinedCase]:
@@ -59,7 +62,8 @@ def combined_cases(case: Case) -> Iterator[CombinedCase]:
                 names = [combination.name] if case.combinations else []
                 if one is not _PLAIN or not names:
                     names.append(one.name)
-                yield CombinedCase(", ".join(names), combine(case, one, factors), combination)
+                combined = combine(case, one, factors)
+                yield CombinedCase(", ".join(names), combined, combination, case, one, factors)
 
 
 def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
@@ -114,9 +118,7 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
         gravity = _times(gravity, dead, "acceleration")
     elif payload is not None:
         payload = payload.model_copy(update={"gravity": 0.0})
-    masses: list[tuple[Group, float]] = [("payload", hung)]
-    if case.payload is not None:
-        masses.append((case.payload.group, case.payload.mass))
+    masses = tip_masses(case, table)
     extra = acceleration * sum((factors[group] - weight_factor) * mass for group, mass in masses)
     if extra:
         angle = radians(0.0 if gravity is None else gravity.angle)
@@ -134,6 +136,19 @@ def combine(case: Case, table: LoadCaseTable, factors: Factors = UNIT) -> Case:
             "payload": payload,
         }
     )
+
+
+def tip_masses(case: Case, table: LoadCaseTable) -> list[tuple[Group, float]]:
+    """Return the masses in kg at the tip in a load case, each with its group."""
+    masses: list[tuple[Group, float]] = [("payload", _hung_mass(case, table))]
+    if case.payload is not None:
+        masses.append((case.payload.group, case.payload.mass))
+    return masses
+
+
+def load_tables(case: Case, table: LoadCaseTable) -> Sequence[LoadTable]:
+    """Return the tables of loads in a load case."""
+    return case.loads if table.loads is None else table.loads
 
 
 def _hung_mass(case: Case, table: LoadCaseTable) -> float:
@@ -180,6 +195,9 @@ def check_combinations(case: Case) -> None:
         selected = names if combination.load_cases is None else combination.load_cases
         _check_names(f"combination[{number}].load_cases", selected, names)
         _check_factors(case, number, combination, selected)
+        if "tipping" in combination.proofs and case.chassis is None:
+            what = "tipping needs the tipping lines of a chassis; give [chassis]"
+            raise BoomError(f"combination[{number}].proofs", what)
     for number, spectrum in enumerate(case.spectra, start=1):
         _check_names(f"spectrum[{number}].load_cases", spectrum.load_cases, names)
 
@@ -215,7 +233,7 @@ def _groups(case: Case, table: LoadCaseTable) -> Iterator[tuple[Group, str]]:
     if _hung_mass(case, table):
         yield "payload", f"the payload of {table.name!r}" if table.payload else "the load of hoist"
     parts: dict[str, Sequence[LoadTable | AxialTable | GroundAccelerationTable]] = {
-        "load": case.loads if table.loads is None else table.loads,
+        "load": load_tables(case, table),
         "axial": case.axial if table.axial is None else table.axial,
         "base": case.base if table.base is None else table.base,
     }

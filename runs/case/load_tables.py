@@ -235,9 +235,11 @@ class ResistanceTable(CaseTable):
     """the factor on capacities of cylinders"""
     pin: Annotated[Positive, In("1")] = 1.0
     """the factor on shear resistances of pins"""
+    tipping: Annotated[Positive, In("1")] = 1.0
+    """the factor on the stabilising moment of the chassis"""
 
 
-ProofName = Literal["yield", "plate", "column", "pad", "cylinder", "pin", "deflection"]
+ProofName = Literal["yield", "plate", "column", "pad", "cylinder", "pin", "deflection", "tipping"]
 # The proofs of a combination unless it names others.
 PROOFS: tuple[ProofName, ...] = ("yield", "plate", "column", "pad", "cylinder", "pin")
 
@@ -260,7 +262,8 @@ class CombinationTable(CaseTable):
     """the proofs that the combination demands; a proof compares the design effect with the limit
     design value (EN 13001-3-1): yield (static strength), plate (plate buckling), column (column
     buckling), pad (pressure), cylinder (force) and pin (shear) unless given; deflection (static
-    tip deflection) compares with limits.tip_at_rest"""
+    tip deflection) compares with limits.tip_at_rest, tipping the overturning with the stabilising
+    moment about each tipping line of the chassis"""
 
 
 class SpectrumTable(CaseTable):

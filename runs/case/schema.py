@@ -15,6 +15,7 @@ from pydantic.dataclasses import dataclass
 from pydantic.json_schema import GenerateJsonSchema
 from scipy.special import cosdg, sindg
 
+from protractile.geometry.chassis import Chassis
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import (
     MOST_STATIONS,
@@ -282,6 +283,8 @@ class Case(ClientKeys, CaseHeading):
     """the stops that segments may touch, one [[stop]] each"""
     cylinders: Annotated[tuple[Cylinder, ...], Few] = Field((), alias="cylinder")
     """the luffing cylinders, one [[cylinder]] each"""
+    chassis: Chassis | None = None
+    """the table of the undercarriage, for tipping, outrigger forces and the radii of load charts"""
     loads: Annotated[tuple[LoadTable, ...], Few] = Field((), alias="load")
     """the loads that are not uniform or not constant"""
     axial: Annotated[tuple[AxialTable, ...], Few] = ()

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from functools import reduce
+from functools import lru_cache, reduce
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
@@ -54,7 +54,13 @@ class ShapeTable(CaseTable):
         Raises:
             SectionError: the section is invalid.
         """
-        return type(self).make(**self.model_dump(exclude={"shape"}))
+        return _section(self)
+
+
+# Load cases and combinations share the sections of a case, which keep their properties.
+@lru_cache(maxsize=256)
+def _section(table: ShapeTable) -> Section:
+    return type(table).make(**table.model_dump(exclude={"shape"}))
 
 
 class SectionTable(ShapeTable):

@@ -8,6 +8,7 @@ from math import inf, prod, sqrt
 from typing import Any, NamedTuple
 
 from protractile.geometry.boom import Boom
+from protractile.geometry.chassis import Chassis
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import names_of
 from protractile.geometry.joint import BareStop, PadSize, SlidePad
@@ -255,6 +256,14 @@ def _of_parts(sizes: _Sizes) -> Ranges:
             ),
             "dashpot": sizes.dashpot("support"),
             "depth": Usual("the depth of the pin", 0.0, 0.3 * length, 20.0),
+        },
+        Chassis: {
+            "mass": Usual("the mass of the chassis", 0.1 * bare, 100.0 * bare, 100.0),
+            "counterweight": Usual("the mass of the counterweight", 0.0, 100.0 * bare, 100.0),
+            **{
+                key: Usual(f"the distance '{key}'", 0.0, 2.0 * length, 20.0)
+                for key in ("centre", "behind", "front", "rear", "side", "foot_ahead", "foot_above")
+            },
         },
         Cylinder: {
             "stiffness": Usual(

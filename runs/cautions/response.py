@@ -9,6 +9,7 @@ from math import inf
 
 import numpy as np
 
+from protractile.analysis.beams import beam_of
 from protractile.analysis.plate_buckling import weakest_plates
 from protractile.analysis.rows import REST, Rows
 from protractile.dynamics.failure import NUMERICAL_ERRORS
@@ -18,6 +19,7 @@ from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context, Sentence
+from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.hoisting_error import straight_path_error
 from protractile.runs.pipeline.pad_walls import largest_tip, remedies, rigid_wall_note
 from protractile.runs.pipeline.turning import fastest_turn, motion_laws, pendulum_frequency
@@ -244,7 +246,8 @@ def straight_path(context: Context) -> Iterator[str]:
     error = 0.0
     if context.case.hoist is not None and context.beam is not None:
         with suppress(*NUMERICAL_ERRORS):
-            error = straight_path_error(context.case, context.beam)
+            vibrating = static_states(context.case, context.beam.boom, beam_of)
+            error = straight_path_error(context.case, vibrating)
     if error > LARGE_PATH_ERROR:
         yield (
             "hoist: under large deflections the load lifts off later and oscillates more slowly "

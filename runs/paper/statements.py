@@ -23,3 +23,17 @@ STATEMENTS: dict[StatementId, str] = {
     "S11": "The description extends to more than two segments, with two more equations per segment "
     "and plane.",
 }
+# Titles of the statements in the table of the terminal.
+TITLES: dict[str, str] = {
+    "S1": "4 and 5 terms coincide until contact",
+    "S2": "4 and 5 terms end 20 % apart",
+    "S3": "models conform for 6 s, then stratify",
+    "S4": "deflection grows with the model",
+    "S5": "play changes the motion",
+    "S6": "head: greater relative differences",
+    "S7": "friction: models conform for 6 s",
+    "S8": "friction: elements stable for 7 s",
+    "S9": "collision model has little influence",
+    "S10": "2000 steps of series, 4000 of elements",
+    "S11": "more than two segments",
+}

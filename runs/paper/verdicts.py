@@ -9,19 +9,17 @@ from pathlib import Path
 from typing import Literal
 
 from rich.console import Console
-from rich.text import Text
 
-from protractile.geometry.typography import NONE, number
+from protractile.geometry.typography import NONE, join_words, number
 from protractile.runs.case.schema import Case
 from protractile.runs.paper.keys import Keys
-from protractile.runs.paper.statements import STATEMENTS
+from protractile.runs.paper.statements import STATEMENTS, TITLES
 from protractile.runs.process.terminal import message, say, shorten
 from protractile.runs.report.additions import Addition
-from protractile.runs.report.tables import as_json
+from protractile.runs.report.tables import Column, Table, as_json
 
 Judgement = Literal["reproduced", "contradicted", "undecided"]
 MARKS: Mapping[Judgement, str] = {"reproduced": "✓", "contradicted": "✗", "undecided": "?"}
-_STYLES = {"reproduced": "green", "contradicted": "red", "undecided": "yellow"}
 
 TEMPLATES = Path(__file__).parent / "templates"
 FILE = "verdicts.json"
@@ -128,31 +126,23 @@ def show(judged: Mapping[str, Addition], console: Console) -> int:
 
 
 def print_verdicts(runs: Mapping[str, Sequence[Verdict]], console: Console) -> None:
-    """Print a paragraph for each statement, with the verdict of the first run that decides it.
+    """Print a line for each statement, with the verdict of the first run that decides it.
 
     ``runs`` has the verdicts by the name of their case.
     """
-    names = [name for name, verdicts in runs.items() if verdicts]
-    if not names:
-        return
-    console.print(Text("Statements of the paper", style="italic"))
-    for name, verdict in decisive(runs):
-        demanded = " (demanded)" if verdict.demanded else ""
-        text = Text.assemble(
-            f"\n{verdict.id} ",
-            (f"{verdict.verdict}{demanded}", _STYLES[verdict.verdict]),
-            f" in {name}" if len(names) > 1 else "",
-        )
-        if verdict.measured is not None:
-            measured, limit = verdict.with_unit(verdict.measured), number(verdict.threshold)
-            text.append(
-                ": "
-                + ", ".join(
-                    filter(None, (f"{measured} measured", f"threshold {limit}", verdict.certainty))
-                )
-            )
-        text.append(f"\n{verdict.statement}")
-        console.print(text)
+    found = decisive(runs)
+    columns = [
+        Column("statement", [f"{verdict.id:3} {TITLES[verdict.id]}" for _, verdict in found]),
+        Column("verdict", [f"{MARKS[verdict.verdict]} {verdict.verdict}" for _, verdict in found]),
+        Column("measured", [verdict.with_unit(verdict.measured) for _, verdict in found]),
+        Column("threshold", [verdict.with_unit(verdict.threshold) for _, verdict in found]),
+    ]
+    names = {name: [verdict.id for case, verdict in found if case == name] for name, _ in found}
+    notes = [f"{join_words(ids)} in {name}." for name, ids in names.items() if len(names) > 1]
+    demanded = [verdict.id for _, verdict in found if verdict.demanded]
+    notes += [f"Demanded: {join_words(demanded)}."] if demanded else []
+    if found:
+        Table("Statements of the paper", columns, [" ".join(notes)] if notes else []).show(console)
 
 
 def decisive(runs: Mapping[str, Sequence[Verdict]]) -> list[tuple[str, Verdict]]:

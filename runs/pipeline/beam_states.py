@@ -6,9 +6,11 @@ The model has beam elements and the compliance of walls under pads, at the initi
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
-from protractile.analysis.beams import beam_of
+from protractile.analysis.beams import static_beam
+from protractile.analysis.model import AnalysisModel
 from protractile.analysis.states import States
 from protractile.geometry.boom import Boom
 from protractile.runs.case.build import build_boom
@@ -18,16 +20,19 @@ from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.models import MotionPlan, build_on, complete_system
 
 
-def static_states(case: Case, boom: Boom) -> States:
+def static_states(
+    case: Case, boom: Boom, build: Callable[..., AnalysisModel] = static_beam
+) -> States:
     """Return the static states of a boom without drives at t = 0 and under extreme loads.
 
-    The boom has the contact laws of the first model with play, or is bonded.
+    The boom has the contact laws of the first model with play, or is bonded. ``build`` is
+    :func:`.beam_of` for states about which the boom vibrates.
 
     Raises:
         NumericsError: there is no equilibrium at t = 0.
     """
     boom = boom.without_drives
-    model = beam_of(boom, lambda system, lines: complete_system(system, case, boom, lines))
+    model = build(boom, lambda system, lines: complete_system(system, case, boom, lines))
     return States.at_rest(model, case.time.duration)
 
 

@@ -2,8 +2,7 @@
 """Static results of all combinations of a case in their load cases.
 
 The boom consists of beam elements with play and axial forces, as in
-:mod:`.pipeline.beam_states`. Each combination has a system of its own, since its axial forces
-reduce the stiffness.
+:mod:`.pipeline.beam_states`. Combinations with the same extension share their elements.
 """
 
 from __future__ import annotations
@@ -28,6 +27,7 @@ from protractile.runs.pipeline.beam_states import (
     static_states,
 )
 from protractile.runs.pipeline.statics import boom_with_play
+from protractile.runs.pipeline.tipping import outrigger_rows
 from protractile.runs.process.terminal import Progress, ignore_progress
 
 
@@ -50,7 +50,8 @@ class CombinationState:
         if self.states is None:
             return Rows()
         measured = [*measure(self.states), *self.walls]
-        return Rows(extremes(measured, self.model, COMBINATION + self.combined.name))
+        found = extremes(measured, self.model, COMBINATION + self.combined.name)
+        return Rows([*found, *outrigger_rows(self.combined, self.states)])
 
 
 def combination_states(

@@ -85,9 +85,8 @@ def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
     return Evaluation(rows, curves, first, design)
 
 
-def evaluate_both(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
-    """Return the results of a model after its run, with and without play."""
-    found = evaluate_model(boom, case, ran)
+def evaluate_both(boom: Boom, case: Case, ran: ModelRun, found: Evaluation) -> Evaluation:
+    """Return the results of a model after its run, with play as ``found``, and without play."""
     if ran.model.bonded or not boom.joints:
         return found
     rows, curves = [*found.rows], [*found.curves]

@@ -12,10 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 from xml.etree import ElementTree
 
-import meshio
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from protractile.analysis.equilibria import equilibria
 from protractile.analysis.modes import MODES
@@ -30,6 +28,8 @@ from protractile.shell_model.stress.history import StressSummary, stress_near_pl
 from protractile.shell_model.stress.stresses import COMPONENTS, FACES, ShellStress, Stress
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from protractile.geometry.plating import PlatedMesh
     from protractile.shell_model.reduced_shell import ReducedShell
 
@@ -200,6 +200,8 @@ def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float])
     Raises:
         ValueError: a time lies outside the run.
     """
+    import meshio
+
     output_times = np.asarray(fields["time"].values, dtype=float)
     for t in times:
         if not output_times[0] <= t <= output_times[-1]:

@@ -8,8 +8,7 @@ three levels. Motions that friction makes regular are compared over the whole ru
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-
-import xarray as xr
+from typing import TYPE_CHECKING
 
 from protractile.analysis.comparison import Distributions, PeakDifferences, compare
 from protractile.analysis.modes import ModeComparison
@@ -19,6 +18,9 @@ from protractile.geometry.typography import TO_PERCENT, join_words, number, sign
 from protractile.runs.case.schema import Case, Model, TimeTable
 from protractile.runs.pipeline.design_results import QualityNote
 from protractile.runs.pipeline.summary import Comparisons, Summary, WholeRun
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Members whose tips differ by more than this fraction of the range have diverged.
 _DIVERGED = 0.2

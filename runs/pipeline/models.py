@@ -107,13 +107,15 @@ def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[L
 
 def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Iterator[Travel]:
     """Yield a :class:`Travel` without moving contacts for each change of axial forces."""
+    if not (boom.axial_changes and lines):
+        return
     deflections = [dict(line.deflections) for line in lines]
     # Contacts count as stiff as the softest segment, so that no direction lacks stiffness.
     least = min(system.omega2[system.omega2 > 0.0], default=1.0)
     stiffness = np.diag(np.maximum(system.omega2, _LEAST_STIFFNESS * least))
     stiffness += least * (system.rows.T * system.row_masses) @ system.rows
     no_rows = RowTable(np.array([0.0, 1.0]), np.zeros((1, 4, 0, system.num_modes)))
-    for change in boom.axial_changes if lines else ():
+    for change in boom.axial_changes:
         geometric = change.geometric_stiffness(deflections)
         force = ChangingAxialForce.of(geometric, stiffness, change.history.peak)
         if force.factors.size:

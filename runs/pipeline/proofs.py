@@ -14,7 +14,7 @@ from protractile.analysis.proofs import Resistance, governing, most_slender_plat
 from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import Row, Rows
 from protractile.analysis.states import States
-from protractile.beam_model.statics import estimate_critical_factor
+from protractile.beam_model.static_model import estimate_critical_factor
 from protractile.dynamics.failure import NumericsError
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
@@ -22,6 +22,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.beam_states import moving_states, static_states
 from protractile.runs.pipeline.combinations import CombinationState
 from protractile.runs.pipeline.statics import boom_with_play
+from protractile.runs.pipeline.tipping import tipping_proofs
 
 # Note if no shell proves the local plate stress.
 NO_SHELL = (
@@ -52,12 +53,17 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
     Raises:
         NumericsError: a combination has no equilibrium.
     """
-    proved = governing(row for state in states for row in _proofs(state, case))
+    proved = governing(row for state in states for row in proofs_of(state, case))
     notes = [*_missing_data_notes(case, states), *_curve_note(case, states)]
     return Proofs.among([*proved, *_fatigue(case)], notes, case)
 
 
-def _proofs(state: CombinationState, case: Case) -> Iterator[Row]:
+def proofs_of(state: CombinationState, case: Case) -> Iterator[Row]:
+    """Yield the proofs of a combination that its case demands.
+
+    Raises:
+        NumericsError: the combination has no equilibrium.
+    """
     table, factor = state.combined.combination, state.critical_factor
     if state.states is None:
         raise NumericsError(
@@ -65,7 +71,9 @@ def _proofs(state: CombinationState, case: Case) -> Iterator[Row]:
         )
     if factor is None and "column" in table.proofs:
         factor = estimate_critical_factor(state.states.boom)
-    return proofs(
+    if "tipping" in table.proofs:
+        yield from tipping_proofs(state.combined, state.states)
+    yield from proofs(
         state.states,
         state.rows,
         table.proofs,
@@ -149,6 +157,8 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
     pins += [one.pin for one in boom.cylinders]
     if "pin" in requested_proofs and not any(pins):
         yield "Pin shear is not proved: the case has no table `pin`."
+    if case.chassis is not None and "tipping" not in requested_proofs:
+        yield "Tipping is not proved: no combination lists `tipping`."
     if not case.spectra:
         yield "Fatigue strength is not proved: the case has no `[[spectrum]]`."
     if "deflection" not in requested_proofs:

@@ -12,7 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 from pydantic import ValidationError
 
 from protractile.analysis.curves import Curves
@@ -62,6 +61,7 @@ ENSEMBLES = "ensembles.nc"
 
 if TYPE_CHECKING:
     import pandas as pd
+    import xarray as xr
 
 # Attributes of the conventions for climate and forecast data (CF) that apply to a boom.
 CONVENTIONS = "CF-1.8"
@@ -310,6 +310,8 @@ def read_fields(path: Path) -> xr.Dataset:
 
 def read_netcdf(path: Path) -> xr.Dataset:
     """Read a whole netCDF file into memory."""
+    import xarray as xr
+
     return xr.load_dataset(path, engine="scipy")
 
 
@@ -319,6 +321,8 @@ def label(boom: Boom, trajectories: Mapping[str, Trajectory]) -> xr.Dataset:
     The stations of the boom become the dimension ``station``. All trajectories, which are given by
     model name, have the same times.
     """
+    import xarray as xr
+
     everything = [trajectory.data for trajectory in trajectories.values()]
     time = everything[0]["time"]
     units = {

@@ -5,8 +5,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field
 from functools import cached_property
+from threading import Lock
 
 import numpy as np
 
@@ -45,6 +47,8 @@ class Run:
 
     results: Results
     model_runs: dict[str, ModelRun]
+    #: results with play, by model; those of models that are left out are computed when needed
+    found: dict[str, Evaluation] = field(default_factory=dict)
 
     @property
     def shells(self) -> dict[str, ShellOutput]:
@@ -69,28 +73,28 @@ class Run:
         Raises:
             NumericsError: a comparison of the models is not finite.
         """
-        evaluate_run(self.results, self._evaluate_models(evaluate_both))
+        evaluate_run(self.results, self._evaluate_models(without_play=True))
         check_finite(self.results.summary)
 
     def evaluate_with_play(self) -> None:
         """Add rows and design results of the models with play to the results."""
-        results, evaluations = self.results, self._evaluate_models(evaluate_model)
+        results, evaluations = self.results, self._evaluate_models(without_play=False)
         results.rows = Rows(row for one in evaluations.values() for row in one.rows)
         designs = {name: one.design for name, one in evaluations.items()}
         results.summary.design = DesignResults(designs)
         check_finite(results.summary)
 
-    def _evaluate_models(
-        self, evaluate: Callable[[Boom, Case, ModelRun], Evaluation]
-    ) -> dict[str, Evaluation]:
-        """Return the results of each model by name."""
+    def _evaluate_models(self, without_play: bool) -> dict[str, Evaluation]:
+        """Return the results of each model by name, with those ``without_play`` if requested."""
         case, boom, summary = self.results.case, self.results.boom, self.results.summary
         evaluations = {}
         for name, ran in self.model_runs.items():
             model_summary = summary.models[name]
             with ran.stages.stage("design results"), np.errstate(all="ignore"):
                 try:
-                    found = evaluate(boom, case, ran)
+                    found = self.found.get(name) or evaluate_model(boom, case, ran)
+                    if without_play:
+                        found = evaluate_both(boom, case, ran, found)
                     check_finite([found.rows, found.design])
                     evaluations[name] = found
                 except NUMERICAL_ERRORS as error:
@@ -102,8 +106,12 @@ class Run:
         return evaluations
 
 
-def run_case(case: Case, file: str, context: RunContext) -> Run | None:
+def run_case(
+    case: Case, file: str, context: RunContext, show: Callable[[Results], None] | None = None
+) -> Run | None:
     """Run all models of a case; return None except on rank 0. Collective.
+
+    After each model, ``show`` receives results of the models with play that have finished.
 
     :meth:`Run.evaluate` adds the design results. ``failures`` in the summary has the models that
     cannot be computed, with the reasons. ``file`` is the name of the case in messages.
@@ -113,6 +121,9 @@ def run_case(case: Case, file: str, context: RunContext) -> Run | None:
     """
     boom = build_boom(case)
     cutoff = None if case.ensemble is None else members.slow_cutoff(boom, case.time)
+    found: dict[str, Evaluation] = {}
+    motions: dict[str, CompletedMotion] = {}
+    lock = Lock()
 
     def attempt(model: Model) -> ModelRun | Exception | None:
         # Results are checked for overflow at the end.
@@ -121,6 +132,13 @@ def run_case(case: Case, file: str, context: RunContext) -> Run | None:
                 run = run_model(boom, model, case, cutoff, context)
                 if run is not None:
                     check_finite(run.motion.summary)
+                    if show is not None:
+                        # If they cannot be computed, the evaluation of the run tells why.
+                        with suppress(*NUMERICAL_ERRORS), run.stages.stage("design results"):
+                            found[model.name] = evaluate_model(boom, case, run)
+                        with lock:
+                            motions[model.name] = run.motion
+                            show(_first_results(boom, case, motions, found))
                 return run
             except NUMERICAL_ERRORS as error:
                 return error
@@ -139,7 +157,28 @@ def run_case(case: Case, file: str, context: RunContext) -> Run | None:
         if not ran and model.name in failures:
             raise NumericsError(f"{file}: model[{number}]: {failures[model.name]}")
     motions = {name: one.motion for name, one in ran.items()}
-    return Run(_results(boom, case, cutoff, motions, failures), ran)
+    return Run(_results(boom, case, cutoff, motions, failures), ran, found)
+
+
+def _first_results(
+    boom: Boom,
+    case: Case,
+    motions: Mapping[str, CompletedMotion],
+    found: Mapping[str, Evaluation],
+) -> Results:
+    """Return the results with play of the models that have finished, in the order of the case."""
+    names = [model.name for model in case.models if model.name in {*motions} & {*found}]
+    summary = Summary(
+        title=case.title,
+        case_hash="",
+        versions={},
+        models={name: motions[name].summary for name in names},
+        failures={},
+        design=DesignResults({name: found[name].design for name in names}),
+    )
+    data = label(boom, {name: motions[name].trajectory for name in names})
+    rows = Rows(row for name in names for row in found[name].rows)
+    return Results(case, data, summary, rows=rows)
 
 
 def _results(

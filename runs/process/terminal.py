@@ -139,11 +139,14 @@ def ignore_progress(model: str, stage: str, part: float) -> None:
 
 
 @contextmanager
-def display(models: Sequence[str] = ()) -> Iterator[Progress]:
-    """Yield a function that displays the progress of each stage of these models on stderr."""
+def display(models: Sequence[str] = (), case: str = "") -> Iterator[Progress]:
+    """Yield a function that displays the progress of each stage of these models on stderr.
+
+    Lines begin with the name of the case, since several cases may run at the same time.
+    """
     console = Console(stderr=True)
     if not console.is_terminal:
-        yield ProgressLines(models)
+        yield ProgressLines(models, case)
         return
     columns = TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn()
     bars: dict[str, TaskID] = {}
@@ -159,15 +162,17 @@ def display(models: Sequence[str] = ()) -> Iterator[Progress]:
 
 
 class ProgressLines:
-    """Progress reporter that prints lines with model, stage and time."""
+    """Progress reporter that prints lines with case, model, stage and time."""
 
     def __init__(
         self,
         models: Sequence[str],
+        case: str = "",
         say: Callable[[str], None] = say,
         clock: Callable[[], float] = perf_counter,
     ) -> None:
         self._models, self._say, self._clock = list(models), say, clock
+        self._case = f"{case}: " if case else ""
         self._last_time = clock()
         self._starts: dict[tuple[str, str], float] = {}
 
@@ -190,4 +195,4 @@ class ProgressLines:
         place = ""
         if model in self._models:
             place = f" ({self._models.index(model) + 1} of {len(self._models)})"
-        self._say(printable(f"{model}{place}: {state}"))
+        self._say(printable(f"{self._case}{model}{place}: {state}"))

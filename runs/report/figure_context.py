@@ -3,22 +3,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import astuple, dataclass
 from functools import cached_property
 from itertools import cycle
 from typing import Any, Literal
 
 import numpy as np
-import xarray as xr
 from matplotlib.figure import Figure as Sheet
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import join_words
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve
+from protractile.runs.report.labels import tip_directions
 from protractile.runs.report.static_charts import draw_chart
 
 # Parts of the report to which figures belong.
@@ -151,19 +150,6 @@ class FigureContext:
         return min(float(f"{CLOSE_UP * max(peaks):.2g}"), end) if peaks else end
 
 
-def tip_directions(trajectories: xr.Dataset) -> list[str]:
-    """Return the names of the tip's displacements, largest amplitude first."""
-    places = [name for name in ("tip", "tip_lateral") if name in trajectories]
-    spans = {name: float(np.ptp(trajectories[name].values, axis=-1).max()) for name in places}
-    return sorted(places, key=lambda name: -spans[name])
-
-
-def farthest(values: Sequence[float] | Array) -> float:
-    """Return the finite value of largest magnitude, with its sign; NaN without finite values."""
-    finite = np.asarray(values)[np.isfinite(values)]
-    return float(finite[np.abs(finite).argmax()]) if finite.size else float("nan")
-
-
 def highest(values: Sequence[float] | Array) -> float:
     """Return the largest finite value; NaN without finite values."""
     finite = np.asarray(values)[np.isfinite(values)]
@@ -173,9 +159,3 @@ def highest(values: Sequence[float] | Array) -> float:
 def initial_position_note(case: Case) -> str:
     """Return a note that x is the position at t = 0; empty without telescoping."""
     return " Positions x are at t = 0 and move with their segments." if case.driven_segments else ""
-
-
-def extension_note(case: Case, times: Iterable[float | None]) -> str:
-    """Return a note on the extensions at the times of static states; empty without telescoping."""
-    several = [f"{time:g}" for time in sorted({time for time in times if time is not None})]
-    return f" Extension as at {join_words(several)} s." if case.driven_segments and several else ""

@@ -5,13 +5,14 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import matplotlib
 
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report import boom_drawing, force_figures, motion_figures, rest_figures, theme
-from protractile.runs.report.figure_context import Figure, FigureContext
+from protractile.runs.report.figure_context import THINNED, Figure, FigureContext
 
 FOLDER = "figures"
 
@@ -40,7 +41,13 @@ FIGURES: Sequence[Callable[[FigureContext], list[Figure]]] = (
 def figures_of(results: Results) -> list[Figure]:
     """Return all figures for which a run has data."""
     context = FigureContext(results)
-    return [figure for describe in FIGURES for figure in describe(context)]
+    figures = [figure for describe in FIGURES for figure in describe(context)]
+    return [
+        replace(figure, caption=figure.caption + THINNED * figure.chart.thinned)
+        if figure.chart
+        else figure
+        for figure in figures
+    ]
 
 
 def write_pictures(figures: Iterable[Figure], folder: Path) -> None:

@@ -13,10 +13,10 @@ from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.figure_context import (
     Figure,
     FigureContext,
-    farthest,
     highest,
     initial_position_note,
 )
+from protractile.runs.report.labels import farthest
 
 # Number of intervals into which a run is divided; the maximum of each is drawn.
 FORCE_BINS = 100

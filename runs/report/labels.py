@@ -1,13 +1,22 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Texts of rows: titles with places, amounts, dynamic factors and utilisations."""
+"""Texts of rows: titles with places, amounts, factors, utilisations; extremes of curves."""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
 
 from protractile.analysis.quantities import Quantity
 from protractile.analysis.rows import MOTION, REST, Row, Rows
-from protractile.geometry.typography import DECIMALS, TO_PERCENT, number
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import DECIMALS, TO_PERCENT, join_words, number
+from protractile.runs.case.schema import Case
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 def title(row: Row) -> str:
@@ -54,3 +63,22 @@ def used(row: Row) -> str:
         f"{TO_PERCENT * row.utilisation:.3g} % by {row.of.title} ({row.part}, x = {row.x:.4g} m): "
         f"{relation} {row.of.limit}"
     )
+
+
+def tip_directions(trajectories: xr.Dataset) -> list[str]:
+    """Return the names of the tip's displacements, largest amplitude first."""
+    places = [name for name in ("tip", "tip_lateral") if name in trajectories]
+    spans = {name: float(np.ptp(trajectories[name].values, axis=-1).max()) for name in places}
+    return sorted(places, key=lambda name: -spans[name])
+
+
+def farthest(values: Sequence[float] | Array) -> float:
+    """Return the finite value of largest magnitude, with its sign; NaN without finite values."""
+    finite = np.asarray(values)[np.isfinite(values)]
+    return float(finite[np.abs(finite).argmax()]) if finite.size else float("nan")
+
+
+def extension_note(case: Case, times: Iterable[float | None]) -> str:
+    """Return a note on the extensions at the times of static states; empty without telescoping."""
+    several = [f"{time:g}" for time in sorted({time for time in times if time is not None})]
+    return f" Extension as at {join_words(several)} s." if case.driven_segments and several else ""

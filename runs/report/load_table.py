@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -11,12 +11,12 @@ import numpy as np
 from protractile.dynamics.excitation import resolving_times
 from protractile.geometry.boom import Boom
 from protractile.geometry.load import Load, PartialLoad
-from protractile.geometry.typography import SHOWN, in_shown_unit, number
+from protractile.geometry.typography import SHOWN, in_shown_unit
 from protractile.geometry.units import System
 from protractile.runs.case.actions import thrusts
 from protractile.runs.case.load_tables import HistoryTable, LoadTable, build_history
 from protractile.runs.case.schema import Case
-from protractile.runs.report.tables import Table
+from protractile.runs.report.tables import Amount, Cell, Table
 
 # Forces and moments from this number on are in kN and kN m in all systems of units.
 _ENGINEERS, _MANY = {"N", "N m"}, 1.0e5
@@ -39,14 +39,13 @@ class _LoadRow(NamedTuple):
 
 def load_table(case: Case, boom: Boom) -> Table:
     """Return the table of all loads of a case, in the units of the case."""
-    system, rows = case.system, []
+    system, rows = case.system, list[Sequence[Cell]]()
     for *names, largest, unit, time in _rows(case, boom):
         shown, label = system.of(largest, unit), system.label(unit)
         if unit in _ENGINEERS and abs(shown) >= _MANY:
             label, shown = SHOWN[unit], in_shown_unit(largest, unit)
-        maximum = f"{number(shown, 4)} {label}"
-        rows.append((*names, maximum, "" if time is None else f"{time:.4g}"))
-    headings = "load", "on", "direction", "history", "maximum", "maximum\nat s"
+        rows.append((*names, Amount(shown, label, 4), "" if time is None else time))
+    headings = "load", "on", "direction", "history", "maximum", ("maximum\nat", ".4g", "s")
     return Table.of_rows("", "Loads", headings, rows)
 
 

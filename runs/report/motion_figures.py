@@ -11,7 +11,8 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.typography import TO_MILLI, fixed, scientific
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve, Vertical
-from protractile.runs.report.figure_context import Figure, FigureContext, farthest, highest
+from protractile.runs.report.figure_context import Figure, FigureContext, highest
+from protractile.runs.report.labels import farthest
 
 # Lower and upper percentile of the band of an ensemble.
 BAND = (5.0, 95.0)

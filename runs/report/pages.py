@@ -10,9 +10,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from PIL import Image
-
 TEMPLATES = Path(__file__).parent / "templates"
 # Largest width in pixels of pictures in a page, twice the width of the page; compression of
 # pictures to a third of their size without visible loss.
@@ -28,6 +25,8 @@ def page(template: str | Path, uris: Mapping[str, str] | None = None, **content:
     The template is a name of this package, or the path of one that extends it; ``content`` has its
     variables. ``uris`` has the data URIs of its pictures by their anchors.
     """
+    from jinja2 import Environment, FileSystemLoader, StrictUndefined
+
     path = TEMPLATES / template
     environment = Environment(
         loader=FileSystemLoader([path.parent, TEMPLATES]),
@@ -47,6 +46,8 @@ def file_uris(paths: Mapping[str, Path]) -> dict[str, str]:
 
 
 def _data_uri(path: Path) -> str:
+    from PIL import Image
+
     if path.suffix.lower() == ".gif":
         return f"data:image/gif;base64,{_text(path.read_bytes())}"
     smaller = BytesIO()

@@ -73,6 +73,11 @@ KINDS: Mapping[str, Kind] = {
         "deflection under the loads of the combination ≤ limits.tip_at_rest",
         "larger sections, less play or a longer overlap",
     ),
+    "tipping": Kind(
+        "Σ overturning moments ≤ Σ stabilising moments/γ about a tipping line; the load hangs at "
+        "the deflected tip",
+        "more counterweight, outriggers farther out, or a smaller radius",
+    ),
     "fatigue": Kind(
         "Σ n/N ≤ 1, nominal ranges, rainflow and Miner (EN 1993-1-9, 7.1 and A.5)",
         "a better detail, its place at less stress, or fewer repeats",

@@ -19,9 +19,9 @@ from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.figure_context import (
     Figure,
     FigureContext,
-    extension_note,
     initial_position_note,
 )
+from protractile.runs.report.labels import extension_note
 
 # Heading of each quantity's panel, and conversion factor to its unit.
 _PANELS: Mapping[str, tuple[str, float]] = {

@@ -13,8 +13,7 @@ from protractile.runs.pipeline.design_results import ModelDesignResults
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.drive_tables import drive_table, luffing_table, stick_slip_table
-from protractile.runs.report.figure_context import extension_note
-from protractile.runs.report.labels import amount_of, label, place, times
+from protractile.runs.report.labels import amount_of, extension_note, label, place, times
 from protractile.runs.report.model_tables import metric_columns
 from protractile.runs.report.proof_tables import proof_table
 from protractile.runs.report.static_tables import combination_tables

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from protractile.analysis.rows import COMBINATION, INITIAL, REST, Row, Rows
 from protractile.beam_model.statics import static_theory
@@ -15,7 +15,7 @@ from protractile.runs.case.combinations import combined_cases
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.report.load_table import release_note
-from protractile.runs.report.tables import Column, Table
+from protractile.runs.report.tables import Amount, Cell, Column, Table
 
 # Fraction of the largest result of a unit that is displayed as 0.
 _NEGLIGIBLE = 1.0e-4
@@ -56,12 +56,14 @@ def static_table(case: Case, boom: Boom, rows: Rows) -> Table:
     used = [row.utilisation for row in largest]
     columns = [
         Column("", [row_name(row, case.system) for row in largest]),
-        Column("t = 0", [amount(at, row.of.unit) for at, row in zip(starts, largest, strict=True)]),
+        Column(
+            "t = 0", [Amount.of(at, row.of.unit) for at, row in zip(starts, largest, strict=True)]
+        ),
     ]
     if vary:
         columns += [
-            Column("maximum", [amount(row.value, row.of.unit) for row in largest]),
-            Column("time of\nmaximum, s", [f"{row.time:.4g}" for row in largest]),
+            Column("maximum", [Amount.of(row.value, row.of.unit) for row in largest]),
+            Column("time of\nmaximum", [row.time for row in largest], ".4g", "s"),
         ]
     if any(used):
         columns.append(Column("utilisation", used, ".3g", "%"))
@@ -165,9 +167,9 @@ def combination_tables(rows: Rows, case: Case, shell: str = "") -> Iterator[Tabl
         yield _envelope(shown, case.system)
 
 
-def _marked(row: Row, most: float) -> str:
-    text = amount(row.value, row.of.unit)
-    return text + (_GOVERNS if abs(row.value) == most else " " * len(_GOVERNS))
+def _marked(row: Row, most: float) -> Amount:
+    mark = _GOVERNS if abs(row.value) == most else " " * len(_GOVERNS)
+    return Amount.of(row.value, row.of.unit, mark)
 
 
 def _envelope(shown: Rows, system: System) -> Table:
@@ -175,13 +177,13 @@ def _envelope(shown: Rows, system: System) -> Table:
     of_key: dict[tuple[str, str, str], list[Row]] = {}
     for row in shown:
         of_key.setdefault(row.key, []).append(row)
-    lines = []
+    lines = list[Sequence[Cell]]()
     for several in of_key.values():
         least, most = (end(several, key=lambda row: row.value) for end in (min, max))
         governing = max((least, most), key=lambda row: abs(row.value))
         # The positions of stations depend on the extension.
         name = row_name(governing, system, placed=False)
-        ends = (amount(row.value, row.of.unit) for row in (least, most))
+        ends = (Amount.of(row.value, row.of.unit) for row in (least, most))
         lines.append((name, *ends, governing.state.removeprefix(COMBINATION)))
     moving = shown.where(quantity=["pad_pressure", "contact_force"])
     note = "Pads and contacts move with the extension; x is given for the governing combination."

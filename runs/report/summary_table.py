@@ -5,9 +5,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from textwrap import fill
+from typing import TYPE_CHECKING
 
 import numpy as np
-import xarray as xr
 
 from protractile.analysis.low_pass import mean_period
 from protractile.analysis.rows import EXTENDED, INITIAL, MOTION, REST, Row, Rows
@@ -28,12 +28,22 @@ from protractile.runs.pipeline.model_quality import static_deviation
 from protractile.runs.pipeline.pad_walls import rigid_wall_note
 from protractile.runs.pipeline.quantities import decay_time
 from protractile.runs.pipeline.results import Results
-from protractile.runs.report.figure_context import farthest, tip_directions
-from protractile.runs.report.labels import amount_of, place, times, title, used
+from protractile.runs.report.labels import (
+    amount_of,
+    farthest,
+    place,
+    times,
+    tip_directions,
+    title,
+    used,
+)
 from protractile.runs.report.load_table import release_note
 from protractile.runs.report.result_tables import PlayPair, peaks, play_pairs, weakest_panels
 from protractile.runs.report.tables import Column, Table
 from protractile.shell_model.stress.history import BAND
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # Higher utilisations are highlighted.
 NEAR = 0.9

@@ -10,10 +10,10 @@ from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from html import escape
-from itertools import zip_longest
+from itertools import chain, zip_longest
 from pathlib import Path
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
@@ -21,7 +21,16 @@ from rich.measure import Measurement
 from rich.table import Table as Grid
 from rich.text import Text
 
-from protractile.geometry.typography import NONE, count, fixed, number, repeated
+from protractile.geometry.typography import (
+    DECIMALS,
+    NONE,
+    SHOWN,
+    count,
+    fixed,
+    in_shown_unit,
+    number,
+    repeated,
+)
 from protractile.geometry.units import Unit
 from protractile.runs.folder.files import write_atomically
 
@@ -31,13 +40,33 @@ if TYPE_CHECKING:
 # Characters per line in the report, on a telephone, and in a file.
 ROOMY, NARROW = 115, 40
 WIDE = 180
+# Numbers of characters above which cells break, of which the first that fits is taken.
+_LONGEST = 40, 30, 20, 12, 0
 # Spaces at which no line breaks, for example between a number and its unit.
 _KEPT_SPACE = re.compile(
     r"(?<=\d) (?=[^\W\d]{1,3}\b|[%×])|(?<=×) (?=\d)|(?<=\b\w) (?=[=≤≥])|(?<=[=≤≥]) (?=[−\d])"
 )
 
+
+class Amount(NamedTuple):
+    """Cell of a column with several units: a number, its unit, and a mark such as ``*``."""
+
+    value: float  #: number in ``unit``
+    unit: str  #: displayed unit
+    digits: int = 3  #: number of significant digits
+    mark: str = ""
+
+    @classmethod
+    def of(cls, value: float, unit: str, mark: str = "") -> Amount:
+        """Return the cell of a number in an SI unit, in its display unit."""
+        return cls(round(in_shown_unit(value, unit), DECIMALS), SHOWN[unit], mark=mark)
+
+    def __str__(self) -> str:
+        return f"{number(self.value, self.digits)} {self.unit}".strip() + self.mark
+
+
 # Type of a cell: text, a number, repeated measurements of a number, or None.
-Cell = str | float | list[float] | None
+Cell = str | float | list[float] | Amount | None
 # Type of a cell in JSON, which has no infinity or NaN.
 Plain = str | float | list[float | None] | None
 
@@ -85,9 +114,15 @@ class Column:
         """The cells in the unit of the heading."""
         return [self._plain(cell) for cell in self.cells]
 
+    @property
+    def units(self) -> list[Column]:
+        """The column of the units of amounts; none for other cells."""
+        units = [cell.unit if isinstance(cell, Amount) else None for cell in self.cells]
+        return [Column(f"{self.heading}\nunit", units)] if any(units) else []
+
     def _shown(self, cell: Cell) -> str:
-        if isinstance(cell, str):
-            return cell
+        if isinstance(cell, str | Amount):
+            return str(cell)
         if cell is None:
             return NONE
         if isinstance(cell, list):
@@ -101,8 +136,10 @@ class Column:
 
     def _plain(self, cell: Cell) -> Any:
         """Return a cell in the displayed unit; without conversion an integer stays an integer."""
+        if isinstance(cell, Amount):
+            return cell.value
         if isinstance(cell, list):
-            return [self._plain(one) for one in cell]
+            return [self._plain(part) for part in cell]
         if cell is None or isinstance(cell, str) or (isinstance(cell, int) and self.factor == 1.0):
             return cell
         return float(self.factor * cell) if math.isfinite(cell) else None
@@ -158,15 +195,18 @@ class Table:
     def frame(self) -> pd.DataFrame:
         """The table as a data frame, with numbers in displayed units and None for empty cells.
 
+        A column of several units has its numbers, and is followed by a column of their units.
+
         Raises:
             ValueError: two columns have the same heading.
         """
         import pandas as pd
 
-        headings = [*self.headings]
+        columns = [*chain(*((column, *column.units) for column in self.columns))]
+        headings = [column.heading for column in columns]
         if len({*headings}) < len(headings):
             raise ValueError(f"{self.title}: two columns have the same heading, of {headings}")
-        cells = [pd.Series(column.plain, dtype=object) for column in self.columns]
+        cells = [pd.Series(column.plain, dtype=object) for column in columns]
         frame = pd.concat(cells, axis=1, keys=headings)
         return frame.where(frame.notna(), None)
 
@@ -195,14 +235,24 @@ class Table:
         """True if a telephone shows the cells of a row below one another, with their headings."""
         return self._letters > NARROW
 
+    def _widths(self, longest: float = math.inf) -> list[int]:
+        """Return the number of characters of each column whose headings break at spaces.
+
+        Lines of cells with more than ``longest`` characters break, too, but no numbers with units.
+        """
+        widths = []
+        for column in self.columns:
+            parts = ["", *column.heading.split()]
+            for line in "\n".join(column.text).split("\n"):
+                kept = _KEPT_SPACE.sub("\N{NO-BREAK SPACE}", line)
+                parts += kept.split(" ") if len(line) > longest else [line]
+            widths.append(max(map(len, parts)))
+        return widths
+
     @property
     def _letters(self) -> int:
         """The number of characters in a line, if headings break at spaces."""
-        letters = [
-            max(len(part) for part in ("", *of.heading.split(), *"\n".join(of.text).split("\n")))
-            for of in self.columns
-        ]
-        return sum(letters, start=2 * len(letters))
+        return sum(self._widths(), start=2 * len(self.columns))
 
     def show(self, console: Console) -> None:
         """Print the table."""
@@ -210,10 +260,13 @@ class Table:
             # Printed separately, since rich would break the title at the width of the table.
             console.print(Text(self.title, style="italic"))
         grid = Grid(box=SIMPLE_HEAD, pad_edge=False)
-        for i, heading in enumerate(self.headings):
-            # Numbers such as 1 × 10⁻¹² must not break.
-            whole = i == 0 or ("\n" in heading and any(" × 10" in row[i] for row in self.rows))
-            grid.add_column(heading, justify="right" if i else "left", no_wrap=whole)
+        # Headings break first, then the longest cells.
+        room = console.width - len(self.columns) - 1
+        choices = (self._widths(longest) for longest in _LONGEST)
+        widths = next((of for of in choices if sum(of) <= room), [0] * len(self.columns))
+        for i, (heading, width) in enumerate(zip(self.headings, widths, strict=True)):
+            justify: Literal["left", "right"] = "right" if i else "left"
+            grid.add_column(heading, justify=justify, no_wrap=not width and i == 0, min_width=width)
         for row in self.rows:
             grid.add_row(*map(Text, row))
         unlimited = console.options.update(max_width=WIDE)

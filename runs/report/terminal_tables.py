@@ -4,11 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from rich.console import Console
 
 from protractile.analysis.rows import INITIAL, MOTION, REST, Rows
-from protractile.geometry.typography import TO_PERCENT, number, percent
+from protractile.geometry.typography import number, percent
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
@@ -75,6 +76,28 @@ def print_runs(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> i
     return status
 
 
+def print_brief(runs: Mapping[str, Results], judged: Mapping[str, Addition]) -> int:
+    """Print output of the client, models of the first run, missed limits; return the exit status.
+
+    Runs, and the additions of the client, have the names of their folders as keys.
+    """
+    console, results = Terminal(), next(iter(runs.values()))
+    status = show(judged, console)
+    shown_models(results).show(console)
+    for file, other in runs.items():
+        for fault in limit_faults(other):
+            status = 1
+            say(message(f"{shorten(file)}: {fault}"))
+    return status
+
+
+def print_first_results(results: Results) -> None:
+    """Print the results of the models that have finished while the run goes on."""
+    table, models = result_table(results), len(results.case.models)
+    title = f"Results so far, {len(results.summary.models)} of {models} models"
+    replace(table, title=title, notes=()).show(Terminal())
+
+
 def print_failures(file: str, results: Results) -> int:
     """Print one line on the failed models of a run; return the status 3, or 0 without failures."""
     failures = results.summary.failures
@@ -89,9 +112,7 @@ def print_failures(file: str, results: Results) -> int:
 
 def print_models(results: Results, console: Console) -> None:
     """Print the table of models, notes on accuracy, and cautions."""
-    texts = {column.heading: column.text for column in model_table(results).columns}
-    columns = [Column(SHOWN[one], texts[one]) for one in texts if one in SHOWN]
-    Table(f"Models: {results.case.title}", columns).show(console)
+    shown_models(results).show(console)
     for name, model in results.summary.models.items():
         if errors := model.reduction_errors:
             print_text(
@@ -106,6 +127,13 @@ def print_models(results: Results, console: Console) -> None:
     missing = [] if skipped is None else [f"no snapshots: {skipped}"]
     for line in (*missing, *results.summary.cautions):
         print_text(console, line)
+
+
+def shown_models(results: Results) -> Table:
+    """Return the table of models with the columns that fit a terminal."""
+    columns = model_table(results).columns
+    kept = [Column(SHOWN[of.heading], of.text) for of in columns if of.heading in SHOWN]
+    return Table(f"Models: {results.case.title}", kept)
 
 
 def print_results(results: Results, console: Console) -> None:
@@ -132,10 +160,7 @@ def result_table(results: Results) -> Table:
     padded = any("pad_pressure" in one for one in used)
     carried = [rows.where(quantity="pad_force" if padded else "contact_force") for rows in moved]
     governing = [Rows(one.values()).governing for one in used]
-    shares = [
-        f"{TO_PERCENT * one.utilisation:.3g} {one.of.short}" if one and one.utilisation else None
-        for one in governing
-    ]
+    shares = [row.utilisation if row else None for row in governing]
     columns = [
         Column("model", names),
         Column("static tip\nt = 0", static, ".1f", "mm"),
@@ -149,14 +174,15 @@ def result_table(results: Results) -> Table:
             ".3g",
             "kN",
         ),
-        Column("utilisation", shares, "", "%"),
+        Column("used", shares, ".3g", "%"),
+        Column("by", [row.of.short if row and row.utilisation else None for row in governing]),
     ]
     columns = [one for one in columns if any(cell is not None for cell in one.cells)]
     models = [model for model in results.completed_models if model.name in names]
     notes = [
         "φ: maximum in motion over the static value under the maximum load."
         + " One pad: largest force of one pad of a pair." * padded
-        + " Utilisation: of the governing strength." * any(shares),
+        + " Used: part of the governing strength." * any(shares),
         *filter(None, [rigid_wall_note(models, results.boom)]),
     ]
     return Table(f"Results: {results.case.title}", columns, notes)

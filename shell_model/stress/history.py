@@ -10,10 +10,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-import xarray as xr
 
 from protractile.geometry.arrays import Array, Indices
 from protractile.shell_model.stress.stresses import (
@@ -24,6 +23,9 @@ from protractile.shell_model.stress.stresses import (
     WallForces,
     wall_forces,
 )
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,6 +108,8 @@ def stress_near_places(
         ``von_mises`` (time, segment, place) in Pa, the maximum over triangles and faces, and
         ``von_mises_patch``, the maximum over patches; NaN where a segment is absent.
     """
+    import xarray as xr
+
     shape = (shell.time.size, len(names), len(places))
     largest, patched = (np.full(shape, np.nan, dtype=np.float32) for _ in range(2))
     for number in range(len(names)):

@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-import xarray as xr
 
 from protractile.geometry.arrays import Array, Indices
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     # Imported only for types, since gmsh takes long to load.
     from protractile.geometry.plating import PlatedMesh
 

@@ -11,7 +11,8 @@ from protractile.beam_model.component import Motion, SegmentModel
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.kantorovich import kantorovich_segments, rigid_segment
 from protractile.beam_model.segment_model import gap_system
-from protractile.beam_model.statics import estimate_critical_factor, static_state
+from protractile.beam_model.static_model import estimate_critical_factor
+from protractile.beam_model.statics import static_state
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step

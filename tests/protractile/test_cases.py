@@ -43,7 +43,7 @@ def test_tables_of_python_are_those_of_a_file() -> None:
 
 def test_check_returns_the_output_of_the_command(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: other code path."""
-    assert protractile("check", COARSE) == 0
+    assert protractile("check", COARSE, "--all") == 0
     printed = capsys.readouterr().out
     lines, words = printed.splitlines(), " ".join(printed.split())
     found = pt.check(pt.load_case(COARSE))

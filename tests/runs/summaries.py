@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import partial
 from io import StringIO
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -85,7 +86,7 @@ def printed(show: Callable[..., object], *given: Any, width: int = 160) -> str:
 
 def printed_check(case: Case, width: int = 200) -> str:
     """Return the text that ``check`` prints of a case, to a console of a width."""
-    return printed(check_case(CheckedCase(case)).show, width=width)
+    return printed(partial(check_case(CheckedCase(case)).show, whole=True), width=width)
 
 
 def finished(case: Case, context: RunContext | None = None) -> Run:

@@ -68,7 +68,7 @@ def in_a_process(
 
 def test_check_prints_inferred_boxes(protractile: Protractile) -> None:
     """Reference: non-regression, the boxes that :mod:`.geometry.box` infers."""
-    answer = protractile("check case.toml")
+    answer = protractile("check case.toml --all")
     assert (answer.status, answer.err) == (0, "")
     for part in (
         "488.9 × 325.9",
@@ -90,14 +90,14 @@ def test_check_draws_the_boom(protractile: Protractile) -> None:
 
 def test_check_prints_modal_damping_ratios(protractile: Protractile) -> None:
     """Reference: analytic, the requested ratio, and no line without damping."""
-    assert " % at" not in protractile("check case.toml").out
+    assert " % at" not in protractile("check case.toml --all").out
     Path("case.toml").write_text(COARSE + "\n[damping]\nmodal = 0.015\n", encoding="utf-8")
-    answer = protractile("check case.toml")
+    answer = protractile("check case.toml --all")
     assert (answer.status, answer.err) == (0, "")
     assert answer.out.count("1.5 % at") >= 3 * 3
     dragged = COARSE.replace("exponent = 2.0", "exponent = 2.0\ndashpot = 1e3", 1)
     Path("case.toml").write_text(dragged, encoding="utf-8")
-    assert " % at" in protractile("check case.toml").out
+    assert " % at" in protractile("check case.toml --all").out
 
 
 def test_schema_is_the_case_s_json_schema(protractile: Protractile) -> None:

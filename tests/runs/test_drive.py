@@ -19,8 +19,8 @@ from protractile.runs.pipeline.models import build
 from protractile.runs.report import theme
 from protractile.runs.report.boom_drawing import boom_sheet
 from protractile.runs.report.drive_tables import drive_table
-from protractile.runs.report.figure_context import extension_note
 from protractile.runs.report.figures import figures_of
+from protractile.runs.report.labels import extension_note
 from protractile.runs.report.result_tables import record_tables, rest_tables
 from protractile.runs.report.summary_table import summary_table
 from protractile.runs.sweep.points import plan

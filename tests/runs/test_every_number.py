@@ -31,6 +31,7 @@ EXEMPT = {
     "its range follows from the joint or the cylinder (sanity)": (
         "JointTable.play", "lateral_play", "extension", "ground",
     ),
+    "its range follows from the boom (chart.run)": ("ChartTable",),
     "a part of the play, which is checked": ("play_above", "lateral_play_right"),
     "its section is compared with it (part_ranges)": ("SegmentTable.length",),
     "loads are compared with the weight of the boom (cautions.loads)": ("load",),

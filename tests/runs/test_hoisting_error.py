@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from protractile.analysis.beams import beam_of
 from protractile.cases import change, run_case
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase
@@ -38,7 +39,7 @@ def bar_case(bending: float, duration: float, **hoist: object) -> Case:
 
 def estimated(case: Case) -> float:
     """Return the estimated error of the tip's motion over its range."""
-    return straight_path_error(case, static_states(case, build_boom(case)))
+    return straight_path_error(case, static_states(case, build_boom(case), beam_of))
 
 
 def actual(case: Case) -> tuple[float, list[str]]:
@@ -118,5 +119,5 @@ def test_level_boom_has_no_error_by_its_path() -> None:
 def test_estimated_error_of_shipped_cranes(name: str, expected: float) -> None:
     """Reference: other code, Dormand-Prince steps of order 8 to a tolerance of 1e-8."""
     case = shipped(name)
-    beam = static_states(case, boom_with_play(case, build_boom(case)))
+    beam = static_states(case, boom_with_play(case, build_boom(case)), beam_of)
     assert straight_path_error(case, beam) == pytest.approx(expected, rel=1e-3)

@@ -152,12 +152,13 @@ def test_keys_and_commands_of_clients_exist_by_registration() -> None:
         words.append({*answer("--help", program=text)[0].split()})
         keys.append({*json.loads(answer("schema", program=text)[0])["properties"]})
     assert words[0] - words[1] >= {"live", "export"}
-    assert keys[0] - keys[1] == {"statements", "demand"}
+    assert keys[0] - keys[1] == {"chart", "statements", "demand"}
 
 
-def test_check_imports_neither_solvers_nor_figures() -> None:
-    out, modules = answer("check", str(CASES / "spatial.toml"))
-    assert "shell" in out
+@pytest.mark.parametrize(("command", "case"), [("check", "spatial"), ("prove", "inspection-arm")])
+def test_check_and_prove_import_neither_solvers_nor_figures(command: str, case: str) -> None:
+    out, modules = answer(command, str(CASES / f"{case}.toml"))
+    assert "static" in out.lower()
     assert not modules & OF_RUNS
 
 

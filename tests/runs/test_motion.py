@@ -13,6 +13,7 @@ from protractile.dynamics.trajectory import Trajectory
 from protractile.runs.case.reading import select
 from protractile.runs.case.schema import DampingTable
 from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.run import run_case as run_models
 from tests.runs.case_texts import shipped
@@ -114,3 +115,19 @@ def test_arm_with_friction_moves_in_a_gust(friction: float) -> None:
     assert float(np.abs(coarse - fine).max()) < 0.01 * float(np.ptp(fine))
     for model in results.summary.models.values():
         assert model.energy_residual < 1e-10
+
+
+def test_results_are_shown_as_soon_as_each_model_has_finished() -> None:
+    """Reference: the results of the whole run, which are the same numbers."""
+    case = change(
+        select(shipped("coarse"), "", ["kantorovich-4", "kantorovich-5"]), **{"time.duration": 0.03}
+    )
+    shown: list[Results] = []
+    run = run_models(case, "", RunContext(), shown.append)
+    assert run is not None
+    assert [[*results.summary.models] for results in shown] == [
+        ["kantorovich-4"],
+        ["kantorovich-4", "kantorovich-5"],
+    ]
+    run.evaluate_with_play()
+    assert [*shown[-1].rows] == [*run.results.rows]

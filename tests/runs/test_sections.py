@@ -100,7 +100,7 @@ def test_check_prints_it(capsys: pytest.CaptureFixture[str]) -> None:
         "{ shape = 'octagon', height = 0.5, width = 0.32, chamfer = 0.004, top = 0.008, "
         "bottom = 0.008, web = 0.006 }"
     )
-    assert protractile("check", written([table, BOXES[1]])) == 0
+    assert protractile("check", "--all", written([table, BOXES[1]])) == 0
     shown = capsys.readouterr().out
     for part in ("500 × 320", "t 8 / 6", "26.0 in height", "29.0 in width"):
         assert part in shown
@@ -169,7 +169,7 @@ def test_stiffeners_change_no_number_of_the_beams(stiffened: str) -> None:
 
 def test_check_prints_them(stiffened: str, capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic masses, of 2 (0.4889 + 0.3259) x 0.3 x 0.01 m³ and of the outlines'."""
-    assert protractile("check", stiffened) == 0
+    assert protractile("check", "--all", stiffened) == 0
     rows = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert ["collar", "outer", "9.7–10", "10", "38.4"] in rows
     assert ["diaphragm", "outer", "0", "6", "7.5"] in rows

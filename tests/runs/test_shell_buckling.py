@@ -13,7 +13,7 @@ pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
-from protractile.beam_model.statics import estimate_critical_factor
+from protractile.beam_model.static_model import estimate_critical_factor
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.geometry.boom import Boom
 from protractile.runs.case.build import build_boom

@@ -15,7 +15,7 @@ from protractile.geometry.typography import fixed, number, scientific
 from protractile.runs.pipeline.model_quality import main_models
 from protractile.runs.report import theme
 from protractile.runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
-from protractile.runs.report.tables import ROOMY, Column, Table
+from protractile.runs.report.tables import ROOMY, Amount, Column, Table
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import printed
 
@@ -182,3 +182,23 @@ def test_colours_are_distinct() -> None:
     names = [f"model {i}" for i in range(3 * len(theme.PALETTE))]
     drawn = theme.line_styles([*names, "bonded"], ["bonded"])
     assert len(set(drawn.values())) == len(names) + 1
+
+
+def test_amounts_are_numbers_with_a_column_of_their_units() -> None:
+    """Reference: by hand."""
+    cells = [Amount.of(-2.61, "m", "*"), Amount.of(1.5e8, "Pa"), None]
+    table = Table("", [Column("result", ["tip", "stress", "none"]), Column("most", cells)])
+    assert table.columns[1].text == ["−2610 mm*", "150 MPa", "–"]
+    assert table.flat_frame.to_dict("list") == {
+        "result": ["tip", "stress", "none"],
+        "most": [-2610.0, 150.0, None],
+        "most, unit": ["mm", "MPa", None],
+    }
+
+
+def test_headings_break_before_cells_and_numbers_keep_their_units() -> None:
+    """Reference: by hand. The table needs 24 characters with whole cells, 19 with whole words."""
+    columns = [Column("long heading of", ["41.3 bending"]), Column("two words", ["2 × 10⁻¹²"])]
+    wide, narrow = (printed(Table("", columns).show, width=width) for width in (24, 20))
+    assert "41.3 bending" in wide
+    assert "2 × 10⁻¹²" in narrow

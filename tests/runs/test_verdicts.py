@@ -2,6 +2,7 @@
 """Verdicts on the statements of the paper, and their tables in the terminal."""
 
 import json
+import re
 from collections.abc import Callable
 from dataclasses import asdict, replace
 from typing import Any
@@ -432,20 +433,28 @@ def test_verdict_comes_from_the_first_decisive_run(
     assert (found[0], found[1].verdict) == (name, verdict)
 
 
-def test_verdicts_of_several_cases_name_their_case() -> None:
-    paragraphs = printed(print_verdicts, RUNS, width=80).split("\n\n")[1:]
-    heads = [paragraph.splitlines()[0] for paragraph in paragraphs]
-    assert heads[0] == "S1 reproduced in paper"
-    assert heads[6] == "S7 contradicted in paper-friction"
-    assert "in paper" not in printed(print_verdicts, {"paper": RUNS["paper"]})
+def test_each_verdict_is_a_line_of_a_terminal() -> None:
+    """Reference: by construction; lines of 80 characters at most, none broken."""
+    lines = printed(print_verdicts, RUNS, width=80).splitlines()
+    rows = [line for line in lines if re.match(r" S\d", line)]
+    assert [row.split()[0] for row in rows] == [*STATEMENTS]
+    assert "✓ reproduced" in rows[0]
+    assert "✗ contradicted" in rows[6]
+    assert "S7 in paper-friction." in " ".join(lines)
+    assert " in paper" not in printed(print_verdicts, {"paper": RUNS["paper"]})
 
 
 def test_a_verdict_shows_number_and_threshold() -> None:
     verdict = Verdict("S4", "It grows.", 1.25, 0.5, "%", "reproduced", "", 7.51, demanded=True)
-    assert printed(print_verdicts, {"paper": [verdict]}).splitlines()[2:] == [
-        "S4 reproduced (demanded): 1.25 % measured, threshold 0.5, 7.5 standard errors away",
-        "It grows.",
-    ]
+    (row,) = (
+        line
+        for line in printed(print_verdicts, {"paper": [verdict]}, width=80).splitlines()
+        if " S4 " in line
+    )
+    assert re.split(r"  +", row.strip()) == [
+        "S4", "deflection grows with the model", "✓ reproduced", "1.25 %", "0.5 %",
+    ]  # fmt: skip
+    assert "Demanded: S4." in printed(print_verdicts, {"paper": [verdict]})
     assert printed(print_verdicts, {"boom": []}) == ""
 
 

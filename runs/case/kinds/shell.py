@@ -173,7 +173,7 @@ class Shell(ModelTable, init=False):
         return lines(built.shell.fields, boom)
 
     def critical_factor(self, model_boom: ModelBoom) -> float | None:
-        from protractile.beam_model.statics import estimate_critical_factor
+        from protractile.beam_model.static_model import estimate_critical_factor
 
         return estimate_critical_factor(model_boom.boom)
 

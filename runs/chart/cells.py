@@ -1,0 +1,348 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Cells of a load chart: the largest payload at a radius for which all proofs hold.
+
+The tip hangs at the radius under the rated load, with factors 1: its deflection by play, plates
+and bending moves it, so that the luffing angle follows from the payload. The payload is the root of
+the governing utilisation = 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from math import acos, atan2, degrees, hypot
+from typing import NamedTuple
+
+import numpy as np
+
+from protractile.analysis.proofs import governing
+from protractile.analysis.quantities import PROVED
+from protractile.analysis.rows import COMBINATION, Row, Rows
+from protractile.analysis.states import States
+from protractile.dynamics.failure import NUMERICAL_ERRORS
+from protractile.geometry.boom import Boom
+from protractile.geometry.cylinder import force_name
+from protractile.geometry.typography import percent
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.combinations import combine
+from protractile.runs.case.load_tables import LoadCaseTable
+from protractile.runs.case.schema import Case
+from protractile.runs.chart.keys import ChartTable
+from protractile.runs.pipeline.beam_states import static_states
+from protractile.runs.pipeline.combinations import combination_states
+from protractile.runs.pipeline.proofs import proofs_of
+from protractile.runs.pipeline.statics import boom_with_play
+from protractile.runs.pipeline.tipping import foot_of, hook_place
+
+# Deviation of the radius in m at which the luffing angle is found, most steps to find it, and most
+# proofs that are followed to a capacity.
+_RADIUS, _STEPS, _MOST_PROOFS = 1.0e-5, 30, 8
+# Reasons without a proof that limit a capacity.
+LARGEST, OUT_OF_REACH, NO_EQUILIBRIUM = "largest payload", "out of reach", "no equilibrium"
+
+# Relative error of a capacity, and the fraction of the largest payload that is tried first.
+_ACCURACY, _FIRST = 2.0e-7, 0.02
+
+
+class Configuration(NamedTuple):
+    """Extensions of the joints of a boom."""
+
+    extension: Mapping[str, float]  #: extension in m by inner segment
+    length: float  #: length in m from the foot pin to the tip
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """Rated capacity of a boom at a radius."""
+
+    configuration: Configuration  #: the configuration
+    radius: float  #: horizontal distance in m of the loaded tip from the slewing axis
+    #: capacity in kg, or the rated payload of the chart; None if there is none
+    capacity: float | None = None
+    reason: str = ""  #: why there is no larger capacity; empty if the governing proof limits it
+    angle: float | None = None  #: luffing angle in degrees
+    height: float | None = None  #: height of the tip in m
+    tip: float | None = None  #: tip deflection in m under the rated load
+    droop: float | None = None  #: increase of the radius in m by the tip deflection
+    cylinder_force: float | None = None  #: force of the first cylinder in N under the rated load
+    #: governing proof of each kind, the governing one first
+    proofs: tuple[Row, ...] = ()
+
+    @property
+    def length(self) -> float:
+        """The length in m from the foot pin to the tip."""
+        return self.configuration.length
+
+    @property
+    def governing(self) -> Row | None:
+        """The governing proof; None if another reason limits the capacity."""
+        return None if self.reason else self.proofs[0]
+
+    @property
+    def combination(self) -> str:
+        """The combination of the governing proof."""
+        return "" if self.governing is None else self.governing.state.removeprefix(COMBINATION)
+
+
+# Combination with its load case, and kind of a proof.
+_Key = tuple[str, str]
+
+
+def _key(row: Row) -> _Key:
+    return row.state.removeprefix(COMBINATION), row.quantity
+
+
+class NoCapacityError(Exception):
+    """A boom that cannot carry a payload at a radius; its text is the reason."""
+
+
+@dataclass
+class Search:
+    """Search for the capacity of a configuration at a radius in m."""
+
+    case: Case  #: case with a chart
+    configuration: Configuration  #: the configuration
+    radius: float  #: horizontal distance in m of the loaded tip from the slewing axis
+    #: load case and rated state by payload in kg
+    points: dict[float, tuple[LoadCaseTable, States]] = field(default_factory=dict)
+
+    def cell(self, near: Cell | None = None) -> Cell:
+        """Return the cell; the search begins at the capacity of a cell ``near``, if it is given."""
+        chart = chart_of(self.case)
+        try:
+            if chart.payload is not None:
+                return self._with_payload(chart.payload, "", self._proofs(chart.payload))
+            first = _FIRST * chart.largest_payload
+            followed = _key(self._proofs(0.0)[0]) if near is None else _key(near.proofs[0])
+            if near is not None and near.capacity:
+                first = near.capacity
+            for _ in range(_MOST_PROOFS):
+                payload, reason = self._root(min(first, chart.largest_payload), followed)
+                found = self._proofs(payload)
+                if (found[0].utilisation or 0.0) <= 1.0 + 10.0 * _ACCURACY:
+                    return self._with_payload(payload, reason, found)
+                first, followed = max(payload, 1.0), _key(found[0])
+            raise NoCapacityError(NO_EQUILIBRIUM)
+        except NoCapacityError as error:
+            return Cell(self.configuration, self.radius, reason=str(error))
+
+    def _with_payload(self, capacity: float, reason: str, found: Rows) -> Cell:
+        proofs: dict[str, Row] = {}
+        for row in found:
+            proofs.setdefault(row.quantity, row)
+        table, states = self.points[capacity]
+        assert table.angle is not None
+        tip, name = _tip(states), force_name(1)
+        radius, height = hook_place(self.case, states.boom, table.angle, tip)
+        straight, _ = hook_place(self.case, states.boom, table.angle, 0.0)
+        force = float(states.observed(name)[0]) if states.boom.cylinders else None
+        return Cell(
+            self.configuration, self.radius, capacity, reason, table.angle, height, tip,
+            radius - straight, force, tuple(proofs.values()),
+        )  # fmt: skip
+
+    def _root(self, first: float, followed: _Key) -> tuple[float, str]:
+        """Return the largest payload in kg for which one proof holds, and what else limits it.
+
+        Raises:
+            NoCapacityError: the proof does not hold without payload.
+        """
+        from scipy.optimize import brentq
+
+        largest = chart_of(self.case).largest_payload
+        tried, failures = set[float](), dict[float, str]()
+
+        @cache
+        def excess(payload: float) -> float:
+            tried.add(payload)
+            try:
+                proofs = self._proofs(payload, followed)
+                return max((row.utilisation or 0.0 for row in proofs), default=0.0) - 1.0
+            except NoCapacityError as error:
+                failures[payload] = str(error)
+                return 1.0
+
+        if excess(0.0) > 0.0:
+            what = f"{PROVED[followed[1]].title} {percent(1.0 + excess(0.0))} without payload"
+            raise NoCapacityError(failures.get(0.0, what))
+        low, high = 0.0, first
+        while excess(high) < 0.0:
+            if high == largest:
+                return largest, LARGEST
+            # Utilisations are nearly linear in the payload.
+            rise = (excess(high) - excess(0.0)) / high
+            ahead = -1.01 * excess(0.0) / rise if rise > 0.0 else np.inf
+            low, high = high, min(max(ahead, 1.01 * high), 8.0 * high, largest)
+        accuracy = {"xtol": _ACCURACY * high, "rtol": _ACCURACY}
+        brentq(excess, low, high, **accuracy)
+        capacity = max(payload for payload in tried if excess(payload) <= _ACCURACY)
+        beyond = [payload for payload in tried if payload > capacity]
+        return capacity, failures.get(min(beyond, default=0.0), "")
+
+    def _proofs(self, payload: float, followed: _Key | None = None) -> Rows:
+        """Return the governing proofs with a payload in kg, the governing one first.
+
+        With ``followed``, only one kind of proof in one combination is computed.
+
+        Raises:
+            NoCapacityError: the tip cannot stand at the radius, or there is no equilibrium.
+        """
+        case = combined_case(self.case, self.point(payload)[0])
+        if followed is not None:
+            (combination,) = (
+                one for one in case.combinations if followed[0].startswith(f"{one.name}, ")
+            )
+            combination = combination.model_copy(update={"proofs": (followed[1],)})
+            case = case.model_copy(update={"combinations": (combination,)})
+        try:
+            states = combination_states(case)
+            return governing(row for state in states for row in proofs_of(state, case))
+        except NUMERICAL_ERRORS:
+            raise NoCapacityError(NO_EQUILIBRIUM) from None
+
+    def point(self, payload: float) -> tuple[LoadCaseTable, States]:
+        """Return the load case with a payload in kg and its rated state, with the tip in place.
+
+        The fixed-point iteration over the tip deflection has secant steps.
+
+        Raises:
+            NoCapacityError: no luffing angle leads to the radius, or there is no equilibrium.
+        """
+        if payload in self.points:
+            return self.points[payload]
+        guesses = [self._expected(payload)]
+        found: list[float] = []
+        for _ in range(_STEPS):
+            table, states = self._rated(payload, guesses[-1])
+            found.append(_tip(states))
+            assert table.angle is not None
+            reached, _ = hook_place(self.case, states.boom, table.angle, found[-1])
+            if abs(reached - self.radius) < _RADIUS:
+                self.points[payload] = table, states
+                return table, states
+            guesses.append(_secant(guesses, found))
+        raise NoCapacityError(NO_EQUILIBRIUM)
+
+    def _expected(self, payload: float) -> float:
+        """Return the tip deflection in m that the last two payloads let expect."""
+        last = [(one, _tip(states)) for one, (_, states) in self.points.items()][-2:]
+        if len(last) < 2:
+            return last[0][1] if last else 0.0
+        (one, first), (other, second) = last
+        return second + (second - first) * (payload - other) / (other - one)
+
+    def _rated(self, payload: float, tip: float) -> tuple[LoadCaseTable, States]:
+        """Return the load case whose tip would be at the radius with this deflection in m."""
+        extension = self.configuration.extension
+        table = load_case_of(self.case, payload, extension, self._angle(tip))
+        rated = combine(self.case, table)
+        try:
+            with np.errstate(all="ignore"):
+                return table, static_states(rated, boom_with_play(rated, build_boom(rated)))
+        except NUMERICAL_ERRORS:
+            raise NoCapacityError(NO_EQUILIBRIUM) from None
+
+    def _angle(self, tip: float) -> float:
+        """Return the luffing angle in degrees that leads to the radius with this deflection in m.
+
+        Raises:
+            NoCapacityError: the radius is out of reach.
+        """
+        chassis, length = self.case.chassis, self.configuration.length
+        ratio = (self.radius - (chassis.foot_ahead if chassis else 0.0)) / hypot(length, tip)
+        angle = degrees(acos(ratio) - atan2(tip, length)) if abs(ratio) <= 1.0 else -1.0
+        least, most = chart_of(self.case).angles
+        if not least <= angle <= most:
+            raise NoCapacityError(OUT_OF_REACH)
+        return angle
+
+
+def solve(case: Case, configuration: Configuration) -> list[Cell]:
+    """Return the cells of a configuration at all radii of the chart."""
+    cells: list[Cell] = []
+    near = None
+    for radius in chart_of(case).radii:
+        cells.append(Search(case, configuration, radius).cell(near))
+        near = cells[-1] if cells[-1].proofs else near
+    return cells
+
+
+def chart_of(case: Case) -> ChartTable:
+    """Return the table of the chart of a case that has one."""
+    chart: ChartTable | None = getattr(case, "chart")  # noqa: B009 # a key of a client
+    assert chart is not None
+    return chart
+
+
+def load_case_of(
+    case: Case, payload: float, extension: Mapping[str, float], angle: float
+) -> LoadCaseTable:
+    """Return the load case of the chart with a payload in kg, extensions in m and an angle."""
+    name = chart_of(case).load_case
+    (table,) = (one for one in case.load_cases if one.name == name)
+    extended = {**table.extension, **extension}
+    return table.model_copy(update={"payload": payload, "extension": extended, "angle": angle})
+
+
+def combined_case(case: Case, table: LoadCaseTable) -> Case:
+    """Return the case with one load case, in the combinations of the chart."""
+    names = chart_of(case).combinations
+    combinations = tuple(
+        one.model_copy(update={"load_cases": None})
+        for one in case.combinations
+        if (table.name in (one.load_cases or [table.name]) if names is None else one.name in names)
+    )
+    changes = {"load_cases": (table,), "combinations": combinations, "spectra": ()}
+    return case.model_copy(update=changes)
+
+
+def configurations(case: Case, boom: Boom) -> Iterator[Configuration]:
+    """Yield the configurations of the chart; ``boom`` has the extensions of the case.
+
+    Raises:
+        ValueError: a length is not between that of the retracted boom and that of the case.
+    """
+    chart, full = chart_of(case), boom.tip - foot_of(boom)
+    most = {one.inner: one.extension for one in case.joints if one.extension is not None}
+    lengths = {one.name: boom.segments[i].length for i, one in enumerate(case.segments)}
+    least = {
+        one.inner: max(0.0, lengths[one.inner] - lengths[one.outer])
+        for one in case.joints
+        if one.inner in most
+    }
+    strokes = {name: most[name] - least[name] for name in chart.order or most}
+    for extension in chart.extensions or ([] if chart.lengths else [{}]):
+        shorter = sum(most[name] - extension.get(name, most[name]) for name in most)
+        yield Configuration(extension, full - shorter)
+    retracted = full - sum(most[name] - least[name] for name in most)
+    for number, length in enumerate(chart.lengths, start=1):
+        left = length - retracted
+        if not -_RADIUS <= left <= sum(strokes.values()) + _RADIUS:
+            raise ValueError(
+                f"chart.lengths[{number}]: must be from {retracted:g} m, with all segments "
+                f"retracted, to {retracted + sum(strokes.values()):g} m, got {length:g} m"
+            )
+        extension = dict(least)
+        for name, stroke in strokes.items():
+            share = stroke * left / sum(strokes.values())
+            if chart.order:
+                share = min(stroke, max(0.0, left))
+                left -= share
+            extension[name] += share
+        yield Configuration(extension, length)
+
+
+def _tip(states: States) -> float:
+    """Return the lowest tip deflection in m."""
+    return float(states.observed("tip").min())
+
+
+def _secant(guesses: list[float], found: list[float]) -> float:
+    """Return the next guess of a fixed point, from the guesses and the values that they led to."""
+    if len(found) < 2:
+        return found[-1]
+    changes = [value - guess for guess, value in zip(guesses[-2:], found[-2:], strict=True)]
+    if changes[1] == changes[0]:
+        return found[-1]
+    return guesses[-1] - changes[1] * (guesses[-1] - guesses[-2]) / (changes[1] - changes[0])

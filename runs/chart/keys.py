@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Keys of a case for its load chart."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from protractile.geometry.fields import In, Name, NotNegative, Positive
+from protractile.runs.case.limits import CaseTable
+
+# Most rows and columns of a chart.
+_MOST = 100
+
+Angle = Annotated[float, Field(strict=True, ge=0.0, lt=90.0)]
+
+
+class ChartTable(CaseTable):
+    """The load chart of a boom: its rated capacity for each extension and radius."""
+
+    load_case: Name
+    """the name of the load case whose payload is searched"""
+    radii: Annotated[tuple[Positive, ...], In("m"), Field(min_length=1, max_length=_MOST)]
+    """the horizontal distances in m of the loaded tip from the slewing axis of the chassis, or from
+    the foot pin without chassis"""
+    extensions: Annotated[
+        tuple[Annotated[dict[str, NotNegative], In("m")], ...], Field(max_length=_MOST)
+    ] = ()
+    """the configurations: inner segment = extension in m, as in load cases"""
+    lengths: Annotated[tuple[Positive, ...], In("m"), Field(max_length=_MOST)] = ()
+    """the lengths in m from the foot pin to the tip, in place of extensions; joints extend up to
+    their extension in the case"""
+    order: tuple[str, ...] = ()
+    """the inner segments in the order in which they extend for lengths; in proportion unless
+    given"""
+    combinations: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
+    """the names of the combinations whose proofs must hold; all with the load case unless given"""
+    angles: Annotated[tuple[Angle, Angle], In("deg")] = (0.0, 80.0)
+    """the smallest and the largest luffing angle in degrees"""
+    payload: Annotated[Positive, In("kg")] | None = None
+    """the rated payload in kg, such as that of a cage; with it the chart has the governing
+    utilisation in place of the capacity"""
+    largest_payload: Annotated[Positive, In("kg")] = 1.0e5
+    """the largest payload in kg that is tried, such as the capacity of the hook"""
+
+
+class Keys(CaseTable):
+    """Keys of a case for its load chart."""
+
+    chart: ChartTable | None = None
+    """the table of the load chart"""

@@ -1,0 +1,401 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Load charts: capacities of rigid booms by hand, agreement with proofs, errors."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from math import acos, atan2, cos, degrees, hypot, pi, radians, sin
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import protractile as pt
+from protractile.geometry.arrays import Array
+from protractile.geometry.chassis import Chassis, CraneForce
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.chart import output, run
+from protractile.runs.chart.cells import LARGEST, OUT_OF_REACH, Cell, Search, solve
+from protractile.runs.folder.cache import Cache
+from protractile.runs.pipeline.combinations import combination_states
+from protractile.runs.pipeline.proofs import proofs_of
+from protractile.runs.process.bad_input import BadInput
+from protractile.runs.process.ranks import single_rank
+from studies.reference_models.elastica import Rod, Telescope
+
+# Gravity in m/s², so small that the boom stays straight.
+G = 1.0e-4
+# Mass of the boom in kg/m, lengths of its segments in m, and places of its cylinder in m.
+MASS, LENGTHS, LUG, FRONT, BELOW = 50.0, (8.0, 8.0), 3.0, 1.5, 1.2
+CAPACITY, PIN = 9.0, {"diameter": 0.00016, "strength": 4.0e8}
+DEAD, PAYLOAD = 1.2, 1.5
+CHASSIS = {
+    "mass": 12000.0,
+    "centre": 0.3,
+    "counterweight": 2000.0,
+    "behind": 2.0,
+    "front": 2.5,
+    "rear": 2.2,
+    "side": 2.4,
+    "foot_ahead": -0.8,
+    "foot_above": 1.5,
+}
+
+
+def rigid(**chart: Any) -> dict[str, Any]:
+    """Return a rigid boom of two bonded segments on a cylinder, and its chart."""
+    section = {"mass_per_length": MASS, "second_moment_of_area": 2.0e-3}
+    return {
+        "title": "rigid",
+        "time": {"duration": 1.0},
+        "start": {"state": "equilibrium"},
+        "gravity": {"angle": 45.0, "acceleration": G},
+        "material": {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3, "density": 7850.0},
+        "segment": [
+            {
+                "name": "base",
+                "length": LENGTHS[0],
+                "supports": [{"x": 0.0, "kind": "hinged", "pin": PIN}],
+                **section,
+            },
+            {"name": "fly", "length": LENGTHS[1], **section},
+        ],
+        "cylinder": [
+            {
+                "segment": "base",
+                "x": LUG,
+                "ground": {"front": FRONT, "below": BELOW},
+                "stiffness": 5.0e9,
+            }
+        ],
+        "joint": [
+            {
+                "outer": "base",
+                "inner": "fly",
+                "extension": 6.0,
+                "stations": ["tail", "head"],
+                "bonded": True,
+                "play": 0.0,
+                "stiffness": 1.0e12,
+                "exponent": 1.0,
+            }
+        ],
+        "load_case": [{"name": "lift"}],
+        "combination": [
+            {
+                "name": "A",
+                "factors": {"dead": DEAD, "payload": PAYLOAD},
+                "proofs": ["cylinder"],
+            }
+        ],
+        "chart": {"load_case": "lift", "radii": [4.0, 6.0, 9.0], "lengths": [9.0, 14.0]} | chart,
+        "model": [{"name": "beam", "kind": "finite-element", "theory": "euler-bernoulli"}],
+    }
+
+
+def cells(tables: dict[str, Any], capacity: float = CAPACITY) -> list[Cell]:
+    """Return all cells of the chart of a case."""
+    case = pt.load_case(tables)
+    # Case files refuse a capacity so small.
+    weak = tuple(replace(cylinder, capacity=capacity) for cylinder in case.cylinders)
+    case = case.model_copy(update={"cylinders": weak})
+    return [cell for one in run.plan(case, "case") for cell in solve(case, one)]
+
+
+def moment_of_boom(length: float) -> float:
+    """Return the moment of the boom's mass in kg·m about the foot, if it lies."""
+    return MASS * (LENGTHS[0] ** 2 / 2.0 + LENGTHS[1] * (length - LENGTHS[1] / 2.0))
+
+
+def test_capacity_by_the_cylinder() -> None:
+    """Reference: analytic, moments of a rigid boom about its foot pin."""
+    found = cells(rigid())
+    assert len(found) == 6
+    for cell in found:
+        turn = acos(cell.radius / cell.length)
+        lug = LUG * cos(turn) - FRONT, LUG * sin(turn) + BELOW
+        arm = (LUG * cos(turn) * lug[1] - LUG * sin(turn) * lug[0]) / hypot(*lug)
+        dead = DEAD * moment_of_boom(cell.length) * cos(turn)
+        payload = (CAPACITY * arm / G - dead) / (PAYLOAD * cell.radius)
+        assert cell.capacity == pytest.approx(payload, rel=1.0e-6)
+        assert cell.governing is not None
+        assert cell.governing.quantity == "cylinder"
+        assert cell.angle == pytest.approx(degrees(turn), abs=1.0e-4)
+
+
+def test_capacity_by_the_pin() -> None:
+    """Reference: analytic, equilibrium of a rigid boom; resistance 0.6 n A f_up."""
+    tables = rigid()
+    tables["combination"][0]["proofs"] = ["pin"]
+    resistance = 0.3 * pi * PIN["diameter"] ** 2 * PIN["strength"]
+    for cell in cells(tables):
+        turn = acos(cell.radius / cell.length)
+        lug = LUG * cos(turn) - FRONT, LUG * sin(turn) + BELOW
+        direction = lug[0] / hypot(*lug), lug[1] / hypot(*lug)
+        arm = LUG * cos(turn) * direction[1] - LUG * sin(turn) * direction[0]
+        assert cell.capacity is not None
+        dead, hung = DEAD * MASS * sum(LENGTHS), PAYLOAD * cell.capacity
+        moment = DEAD * moment_of_boom(cell.length) * cos(turn) + hung * cell.radius
+        push = G * moment / arm
+        foot = hypot(push * direction[0], push * direction[1] - G * (dead + hung))
+        assert foot == pytest.approx(resistance, rel=1.0e-6)
+
+
+def test_capacity_by_tipping() -> None:
+    """Reference: analytic, moments about the nearest tipping line."""
+    tables = rigid(radii=[4.0, 6.0, 9.0]) | {"chassis": CHASSIS}
+    tables["combination"][0]["proofs"] = ["tipping"]
+    found = cells(tables)
+    assert [cell.reason for cell in found] == ["", "", OUT_OF_REACH, "", "", ""]
+    for cell in (cell for cell in found if not cell.reason):
+        turn = acos((cell.radius - CHASSIS["foot_ahead"]) / cell.length)
+        lines = {
+            "front": (CHASSIS["front"], CHASSIS["centre"]),
+            "rear": (CHASSIS["rear"], -CHASSIS["centre"]),
+            "side": (CHASSIS["side"], 0.0),
+        }
+        capacities = {}
+        for name, (line, centre) in lines.items():
+            mass = MASS * sum(LENGTHS)
+            boom = CHASSIS["foot_ahead"] + moment_of_boom(cell.length) / mass * cos(turn) - line
+            resisting = CHASSIS["mass"] * (line - centre)
+            resisting += CHASSIS["counterweight"] * (line + CHASSIS["behind"])
+            capacities[name] = (resisting - DEAD * mass * boom) / (PAYLOAD * (cell.radius - line))
+        name = min(capacities, key=lambda key: capacities[key])
+        assert cell.capacity == pytest.approx(capacities[name], rel=1.0e-6)
+        assert cell.governing is not None
+        assert cell.governing.place == f"{name} line"
+
+
+def test_the_capacity_agrees_with_the_proofs_of_its_case() -> None:
+    """Reference: the definition of a capacity, for a flexible boom with play."""
+    tables = flexible()
+    case = pt.load_case(tables)
+    (configuration,) = run.plan(case, "case")
+    found = solve(case, configuration)
+    capacities = [cell.capacity for cell in found]
+    assert capacities == sorted(capacities, reverse=True)
+    for cell in found:
+        lifted = tables | {"gravity": {"angle": cell.angle, "acceleration": 9.81}}
+        lifted["load_case"] = [{"name": "lift", "payload": cell.capacity}]
+        rows = [
+            row
+            for state in combination_states(pt.load_case(lifted))
+            for row in proofs_of(state, state.combined.case)
+        ]
+        assert max(row.utilisation or 0.0 for row in rows) == pytest.approx(1.0, abs=1.0e-3)
+
+
+def flexible() -> dict[str, Any]:
+    """Return a flexible boom of boxes with play, and its chart of one length."""
+    tables = rigid(radii=[5.0, 7.0, 10.0], lengths=[14.0])
+    tables["material"]["yield_strength"] = 3.55e8
+    for segment, height in zip(tables["segment"], (0.4, 0.35), strict=True):
+        del segment["mass_per_length"], segment["second_moment_of_area"]
+        segment["section"] = {
+            "height": height,
+            "width": 0.7 * height,
+            "flange": 0.006,
+            "web": 0.006,
+        }
+    tables["gravity"]["acceleration"] = 9.81
+    tables["cylinder"][0] |= {"stiffness": 5.0e7, "capacity": 9.0e5}
+    tables["joint"][0] |= {"bonded": False, "play": 0.004, "stiffness": 1.0e9}
+    tables["combination"][0]["proofs"] = ["yield"]
+    return tables
+
+
+def test_the_tip_hangs_at_the_radius() -> None:
+    """Reference: analytic, rotation of the straight boom and its deflection."""
+    case = pt.load_case(flexible())
+    (configuration,) = run.plan(case, "case")
+    for cell in solve(case, configuration):
+        assert cell.tip is not None
+        assert cell.angle is not None
+        assert cell.droop is not None
+        assert cell.tip < -0.02
+        turn = radians(cell.angle)
+        assert cell.length * cos(turn) - cell.tip * sin(turn) == pytest.approx(
+            cell.radius, abs=1.0e-5
+        )
+        assert turn + atan2(cell.tip, cell.length) == pytest.approx(
+            acos(cell.radius / hypot(cell.length, cell.tip)), abs=1.0e-6
+        )
+        assert cell.droop == pytest.approx(-cell.tip * sin(turn), abs=1.0e-5)
+
+
+@pytest.mark.parametrize("radius", [6.0, 10.0])
+def test_the_drooped_radius_is_near_that_of_elasticas(radius: float) -> None:
+    """Reference: analytic, two elasticas with play; small deflections miss (w/L)² of the radius."""
+    tables = rigid(radii=[radius], lengths=[14.0])
+    del tables["cylinder"]
+    tables["gravity"]["acceleration"] = 9.81
+    tables["joint"][0] |= {"bonded": False, "play": 0.01, "stiffness": 1.0e10}
+    for segment in tables["segment"]:
+        segment["second_moment_of_area"] = 2.0e-5
+    tables["segment"][0]["supports"] = [{"x": 0.0, "kind": "clamped"}]
+    case = pt.load_case(tables)
+    (configuration,) = run.plan(case, "case")
+    table, states = Search(case, configuration, radius).point(1000.0)
+    assert table.angle is not None
+    stiffness, weight = 2.1e11 * 2.0e-5, MASS * 9.81
+    rods = (Rod(length, stiffness, weight) for length in LENGTHS)
+    exact = Telescope(*rods, 2.0, 0.01, 1000.0 * 9.81, radians(table.angle)).rest()
+    ratio = abs(exact.tip) / 14.0
+    assert 0.05 < ratio < 0.2
+    assert 0.3 * ratio**2 < radius / exact.radius - 1.0 < 0.9 * ratio**2
+    assert states.observed("tip").min() == pytest.approx(exact.tip, rel=2.0 * ratio**2)
+
+
+def test_cells_without_a_governing_proof() -> None:
+    """Reference: by construction, reach, lift and weight of the boom."""
+    tables = rigid(largest_payload=10.0, angles=[0.0, 60.0])
+    found = cells(tables)
+    assert [cell.reason for cell in found] == [
+        OUT_OF_REACH, LARGEST, LARGEST, OUT_OF_REACH, OUT_OF_REACH, LARGEST,
+    ]  # fmt: skip
+    assert [cell.capacity for cell in found] == [None, 10.0, 10.0, None, None, 10.0]
+    heavy = cells(tables, capacity=0.1)[1]
+    assert heavy.capacity is None
+    assert heavy.reason.startswith("cylinder force ")
+    assert heavy.reason.endswith("% without payload")
+
+
+def test_envelope_of_a_rated_payload() -> None:
+    """Reference: analytic, moments about the foot pin, as for the capacity."""
+    found = cells(rigid(payload=5000.0))
+    for cell in found:
+        turn = acos(cell.radius / cell.length)
+        lug = LUG * cos(turn) - FRONT, LUG * sin(turn) + BELOW
+        arm = (LUG * cos(turn) * lug[1] - LUG * sin(turn) * lug[0]) / hypot(*lug)
+        moment = DEAD * moment_of_boom(cell.length) * cos(turn) + PAYLOAD * 5000.0 * cell.radius
+        assert cell.proofs[0].utilisation == pytest.approx(moment * G / arm / CAPACITY, rel=1.0e-6)
+
+
+def test_configurations() -> None:
+    """Reference: by construction, in proportion and one after the other."""
+    tables = rigid()
+    tables["segment"].append(tables["segment"][1] | {"name": "tip"})
+    tables["joint"].append(tables["joint"][0] | {"outer": "fly", "inner": "tip", "extension": 3.0})
+    tables["chart"] |= {"lengths": [8.0, 11.0, 17.0], "radii": [4.0]}
+    shared = [one.extension for one in run.plan(pt.load_case(tables), "case")]
+    assert [one["fly"] for one in shared] == pytest.approx([0.0, 2.0, 6.0])
+    assert [one["tip"] for one in shared] == pytest.approx([0.0, 1.0, 3.0])
+    tables["chart"]["order"] = ["tip", "fly"]
+    ordered = [one.extension for one in run.plan(pt.load_case(tables), "case")]
+    assert [one["tip"] for one in ordered] == pytest.approx([0.0, 3.0, 3.0])
+    assert [one["fly"] for one in ordered] == pytest.approx([0.0, 0.0, 6.0])
+    del tables["chart"]["lengths"], tables["chart"]["order"]
+    tables["chart"]["extensions"] = [{"fly": 4.0}, {}]
+    lengths = [one.length for one in run.plan(pt.load_case(tables), "case")]
+    assert lengths == pytest.approx([15.0, 17.0])
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"chart": {"load_case": "x", "radii": [4.0]}},
+         "chart.load_case: 'x' is no load case; give 'lift'"),
+        ({"chart": {"load_case": "lift", "radii": [15.0]}},
+         "chart.radii[1]: must be at most 14 m, the reach of the longest boom, got 15 m"),
+        ({"chart": {"load_case": "lift", "radii": [4.0], "lengths": [15.0]}},
+         "chart.lengths[1]: must be from 8 m, with all segments retracted, to 14 m, got 15 m"),
+        ({"chart": {"load_case": "lift", "radii": [4.0], "order": ["base"]}},
+         "chart.order: 'base' extends in no joint; give 'fly'"),
+        ({"chart": {"load_case": "lift", "radii": [4.0], "combinations": ["B"]}},
+         "chart.combinations: 'B' is no combination; give 'A'"),
+        ({"combination": []},
+         "chart.combinations: no combination has the payload of 'lift'; "
+         "its proofs limit the chart"),
+        ({"axial": [{"falls": 4, "mass": 100.0}]},
+         "axial[1].mass: the rope of a chart carries the payload that is searched; leave it out"),
+        ({"gravity": None}, "gravity: missing; the payload of a chart weighs by it"),
+        ({"chart": None}, "chart: missing; give its load_case and radii"),
+    ],
+)  # fmt: skip
+def test_bad_charts(changes: dict[str, Any], message: str) -> None:
+    tables = {key: value for key, value in (rigid() | changes).items() if value is not None}
+    with pytest.raises(BadInput) as error:
+        run.plan(pt.load_case(tables), "case")
+    assert str(error.value) == f"case: {message}"
+
+
+def test_tipping_needs_a_chassis() -> None:
+    tables = rigid()
+    tables["combination"][0]["proofs"] = ["tipping"]
+    with pytest.raises(BadInput) as error:
+        pt.load_case(tables)
+    assert str(error.value) == (
+        "case: combination[1].proofs: tipping needs the tipping lines of a chassis; give [chassis]"
+    )
+
+
+def test_outrigger_forces() -> None:
+    """Reference: analytic, a rigid plate on four springs, of which one may lift, in a full turn."""
+    chassis = Chassis(**CHASSIS)
+    corners = np.array(
+        [[x, y] for x in (chassis.front, -chassis.rear) for y in (chassis.side, -chassis.side)]
+    )
+    for load in (0.02, 0.3):
+        weights = [CraneForce(load, 4.0), CraneForce(0.03, 1.0, 0.005, 8.0)]
+        largest = np.zeros(4)
+        for turn in np.linspace(0.0, 2.0 * np.pi, 3601):
+            radius = sum(one.overturning(0.0) for one in weights)
+            radius -= chassis.counterweight * G * chassis.behind
+            weight = chassis.mass * G
+            moment = radius * np.array([np.cos(turn), np.sin(turn)]) + [weight * chassis.centre, 0]
+            down = sum(one.down for one in weights) + weight + chassis.counterweight * G
+            resultant = np.array([down, *moment])
+            forces = plate(corners, resultant)
+            largest = np.maximum(largest, forces)
+        found = dict(chassis.outrigger_forces(weights, G))
+        assert found["front"] == pytest.approx(largest[:2].max(), rel=1.0e-5)
+        assert found["rear"] == pytest.approx(largest[2:].max(), rel=1.0e-5)
+
+
+def plate(corners: Array, resultant: Array) -> Array:
+    """Return the forces of equal springs under a rigid plate; a spring that would pull lifts."""
+    held = np.ones(4, dtype=bool)
+    while True:
+        shape = np.vstack([np.ones(4), corners.T])[:, held]
+        forces = np.zeros(4)
+        forces[held] = shape.T @ np.linalg.solve(shape @ shape.T, resultant)
+        if (forces >= -1.0e-9).all():
+            return forces
+        held[forces.argmin()] = False
+
+
+def test_table_page_and_files(tmp_path: Path) -> None:
+    """Reference: by construction, the governing letters, and the anchors of cells."""
+    case = pt.load_case(rigid(largest_payload=20000.0))
+    planned = run.plan(case, "case")
+    weak = (replace(case.cylinders[0], capacity=CAPACITY),)
+    case = case.model_copy(update={"cylinders": weak})
+    chart = run.solve_all(case, planned, None, Cache(tmp_path / "cache"))
+    output.write(chart, tmp_path / "chart", False)
+    names = {path.name for path in (tmp_path / "chart").iterdir()}
+    assert {"chart.csv", "chart.html", "capacities.png", "range.png"} <= names
+    text = (tmp_path / "chart" / "chart.html").read_text("utf-8")
+    assert text.count('<section class="cell"') == 6
+    assert 'href="#cell-1-1"' in text
+    table = output.chart_table(chart)
+    assert table.headings == ("radius\nm", "9 m", "14 m")
+    assert {row[1][-1] for row in table.rows} <= {"L", "M"}
+    again = run.solve_all(case, planned, None, Cache(tmp_path / "cache"))
+    assert again.cells == chart.cells
+
+
+@pytest.mark.slow
+def test_a_shell_agrees_at_the_capacity_of_beams() -> None:
+    """Reference: other code, a shell of the flexible boom at three radii."""
+    tables = flexible()
+    tables["model"].append({"name": "shell", "kind": "shell", "mesh_size": 0.2})
+    tables["combination"][0]["proofs"] = ["cylinder"]
+    tables["cylinder"][0]["capacity"] = 2.0e5
+    case = pt.load_case(tables)
+    context = BuildContext(single_rank(1))
+    for cell in run.chart(case).cells[0]:
+        one = run.Chart(case, [[cell]])
+        ((_, row),) = run.utilisations_by_shell(one, case.models[1], context)
+        assert row.utilisation == pytest.approx(1.0, abs=5.0e-3)
