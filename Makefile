@@ -80,6 +80,8 @@ snapshots: $(REPORTS) ## pictures of the verify cases with a shell
 	@set -e; for case in $(SHELL_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
 
 gallery: $(REPORTS) $(SWEEPS) ## the pictures of docs/gallery.md, from the verify cases
+	@set -e; for case in paper spatial; do $(BIN)/protractile snapshot runs/out/$$case; done
+	$(BIN)/protractile report --figures runs/out/paper > /dev/null
 	$(BIN)/python -m studies.gallery
 
 bench: $(READY) ## what integrators, reductions and other programs cost, into runs/out/bench

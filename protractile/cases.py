@@ -152,12 +152,13 @@ def run_case(
     return run.results
 
 
-def report(folder: str | Path, *, excel: bool = False) -> Results:
+def report(folder: str | Path, *, excel: bool = False, figures: bool = False) -> Results:
     """Render the report of a run again from the data of the run, as ``protractile report``.
 
     Args:
-        folder: folder of a run, or of :meth:`Results.save`, for ``report.html`` and figures.
+        folder: folder of a run, or of :meth:`Results.save`, for ``report.html``.
         excel: whether the folder also receives ``results.xlsx``, a workbook of the design results.
+        figures: whether the folder also receives all figures as PNG files.
 
     Returns:
         The results of the run.
@@ -167,7 +168,8 @@ def report(folder: str | Path, *, excel: bool = False) -> Results:
     """
     from protractile.runs.report.output import rerender_report
 
-    with rerender_report(str(folder), "excel" if excel else None) as (results, _, _):
+    option = "excel" if excel else None
+    with rerender_report(str(folder), option, figures) as (results, _, _):
         return results
 
 

@@ -145,6 +145,10 @@ def report(
         bool,
         typer.Option("--excel", help="Also write results.xlsx, a workbook of design results."),
     ] = False,
+    figures: Annotated[
+        bool,
+        typer.Option("--figures", help="Also write all figures as PNG, and show them on paper."),
+    ] = False,
     brief: Annotated[
         bool,
         typer.Option(
@@ -169,7 +173,8 @@ def report(
     from protractile.runs.report.terminal_tables import print_runs
 
     for folder in folders:
-        with rerender_report(folder, "--excel" if excel else None) as (results, addition, _):
+        option = "--excel" if excel else None
+        with rerender_report(folder, option, figures) as (results, addition, _):
             runs[folder], judged[folder] = results, addition
     return print_runs(runs, judged)
 
@@ -196,7 +201,10 @@ def snapshot(
         try:
             times = sorted(set(time)) if time else None
             motion = Path(folder) / TRAJECTORIES
-            with snapshots.start_rendering(results, shells, motion, part, times) as gather:
+            more = snapshots.ON_REQUEST
+            with snapshots.start_rendering(
+                results, shells, motion, part, times, more=more
+            ) as gather:
                 names_of_pictures = gather()
         except RenderingUnavailable as reason:
             raise BadInput(folder, snapshots.SNAPSHOTS, f"cannot be made: {reason}") from None

@@ -14,51 +14,40 @@ from collections.abc import Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from importlib import import_module
+from itertools import chain
 from pathlib import Path
 from time import perf_counter
 
-from matplotlib import rc_context
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure as Sheet
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter
+import numpy as np
 from rich.console import Console
 
 from protractile.geometry.typography import fixed, number
-from protractile.runs.folder.files import atomic_folder, write_atomically
+from protractile.runs.folder.files import write_atomically
 from protractile.runs.process.terminal import show_notices
 from protractile.runs.report import theme
+from protractile.runs.report.charts import Chart, Curve
+from protractile.runs.report.document import embed
 from protractile.runs.report.figure_context import Figure
+from protractile.runs.report.figures import write_pictures
 from protractile.runs.report.pages import page
 from protractile.runs.report.tables import Table, write
 from studies.study import Plot, Study, Verification, wide_console
 
 
-def draw(plot: Plot, folder: Path) -> Figure:
-    """Draw a plot of a study as ``NAME.png`` in a folder."""
-    with rc_context(theme.RC):
-        sheet = Sheet(figsize=(theme.WIDTH, 4.2 + 0.16 * len(plot.curves)))
-        FigureCanvasAgg(sheet)
-        axes = sheet.add_subplot()
-        line_styles = theme.line_styles(list(plot.curves), [])
-        for label, (x, y) in plot.curves.items():
-            # Many points are drawn as a curve, few points as markers.
-            marker, style = "o" if len(x) <= 20 else "", line_styles[label]
-            color, dashes = style.color, style.linestyle
-            axes.plot(x, y, color, ls=dashes, marker=marker, markersize=5.0, label=label)
-        axes.set(xlabel=plot.x, ylabel=plot.y)
-        if plot.logarithmic:
-            axes.set(xscale="log", yscale="log")
-            # The axis has labels at the sizes, which span a decade or less.
-            sizes = sorted({float(value) for x, _ in plot.curves.values() for value in x})
-            axes.xaxis.set_major_locator(FixedLocator(sizes))
-            axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axes.xaxis.set_minor_formatter(NullFormatter())
-        if len(plot.curves) > 1:
-            sheet.legend(loc="outside lower left", ncols=1 if len(plot.curves) < 4 else 2)
-        sheet.suptitle(plot.title, x=0.02, ha="left", fontsize=12.0, fontweight="bold", wrap=True)
-        path = folder / f"{plot.name}.png"
-        sheet.savefig(path)
-    return Figure(path, plot.title, plot.caption)
+def figure(plot: Plot) -> Figure:
+    """Return the figure of a plot of a study."""
+    line_styles = theme.line_styles(list(plot.curves), [])
+    curves = [
+        # Many points are shown as a curve, few points also as markers.
+        Curve(label, np.array(y), line_styles[label].color, line_styles[label].linestyle,
+              at=np.array(x), marker="o" if len(x) <= 20 else "")
+        for label, (x, y) in plot.curves.items()
+    ]  # fmt: skip
+    ends = np.concatenate([curve.at for curve in curves if curve.at is not None])
+    logarithmic = [0] * plot.logarithmic
+    chart = Chart(np.sort(ends)[[0, -1]], curves, [plot.y], along=plot.x,
+                  logarithmic=logarithmic, decades=plot.logarithmic)  # fmt: skip
+    return Figure(plot.name, plot.title, plot.caption, chart=chart, main=True)
 
 
 INTRODUCTION = """\
@@ -204,18 +193,19 @@ def main() -> None:
 
 
 def _write_report(studies: Sequence[Study], folder: Path) -> None:
-    with atomic_folder(folder / "figures") as pictures:
-        drawn = {one.name: [draw(plot, pictures) for plot in one.plots] for one in studies}
-        content = page(
-            "convergence.html",
-            [figure.path for figures in drawn.values() for figure in figures],
-            title=TITLE,
-            studies=studies,
-            figures=drawn,
-            verifications={
-                one.name: verification_table(one) for one in studies if one.verifications
-            },
-        )
+    figures = {one.name: [*map(figure, one.plots)] for one in studies}
+    everything = [*chain(*figures.values())]
+    write_pictures(everything, folder)
+    uris, plots = embed(everything, pictures=False)
+    content = page(
+        "convergence.html",
+        uris,
+        title=TITLE,
+        studies=studies,
+        figures=figures,
+        verifications={one.name: verification_table(one) for one in studies if one.verifications},
+        **plots,
+    )
     write_atomically(folder / "report.html", content)
 
 

@@ -160,9 +160,9 @@ def few_figures(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.fixture
 def unprinted(monkeypatch: pytest.MonkeyPatch) -> None:
     """Make figures without their layout and printing, which take most of the time."""
-    from protractile.runs.report import theme
+    from matplotlib.figure import Figure
 
-    monkeypatch.setattr(theme.Canvas, "print_figure", blank)
+    monkeypatch.setattr(Figure, "savefig", blank)
 
 
 @pytest.fixture(scope="session")

@@ -147,7 +147,7 @@ def write(chart: Chart, folder: Path, excel: bool) -> None:
         BadInput: openpyxl is not installed.
     """
     from protractile.runs.chart import figures
-    from protractile.runs.report.pages import page
+    from protractile.runs.report.pages import file_uris, page
 
     with atomic_folder(folder) as part:
         chart.frame.to_csv(part / CSV, index=False, float_format="%.9g", lineterminator="\r\n")
@@ -169,5 +169,6 @@ def write(chart: Chart, folder: Path, excel: bool) -> None:
             "proofs": proof_table,
             "figures": pictures,
         }
-        text = page(Path(__file__).parent / "chart.html", [one.path for one in pictures], **content)
+        uris = file_uris({one.title: one.path for one in pictures})
+        text = page(Path(__file__).parent / "chart.html", uris, **content)
         (part / PAGE).write_text(text, encoding="utf-8")

@@ -6,14 +6,12 @@ If the cache has a shell of the same geometry, the beam is calibrated by it.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
 import xarray as xr
-from matplotlib.path import Path
 
 from protractile.analysis.curves import Curves, diagrams
 from protractile.analysis.equilibria import extended_equilibria
@@ -22,7 +20,6 @@ from protractile.analysis.rows import REST, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.trajectory import Trajectory
-from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.typography import TO_MILLI, number
 from protractile.runs.case.build import build_boom
@@ -43,9 +40,11 @@ from protractile.runs.pipeline.models import MotionPlan, build_on, complete_syst
 from protractile.runs.pipeline.results import Results, label
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.process.bad_input import BadInput
-from protractile.runs.report import symbols, theme
+from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve
+from protractile.runs.report.marks import SYMBOL, elevation
 from protractile.runs.report.rest_figures import chart_along, rest_curves
+from protractile.runs.report.scene import Scene
 from protractile.runs.report.summary_table import summary_table, utilisation_verdict
 
 if TYPE_CHECKING:
@@ -66,25 +65,6 @@ _LAST: dict[str, Calibration] = {}
 
 # Smallest deflection of the tip in the figure, as a fraction of the length of the boom.
 _SHOWN = 0.03
-
-# Plotly marker of each symbol, and clockwise rotation of the marker in degrees.
-_MARKERS: Mapping[Path, tuple[str, float]] = {
-    symbols.FORCE_DOWN: ("arrow", 180.0),
-    symbols.FORCE_UP: ("arrow", 0.0),
-    symbols.FORCE_BACK: ("arrow", 270.0),
-    symbols.FORCE_ON: ("arrow", 90.0),
-    symbols.AWAY: ("circle-x-open", 0.0),
-    symbols.TOWARDS: ("circle-open-dot", 0.0),
-    symbols.MOMENT: ("star-triangle-up-open", 0.0),
-    symbols.CLOCKWISE: ("star-triangle-down-open", 0.0),
-    symbols.PAYLOAD: ("circle", 0.0),
-    symbols.HUNG: ("square", 0.0),
-    symbols.PINNED: ("triangle-up", 0.0),
-    symbols.CLAMPED: ("line-ns-open", 0.0),
-    symbols.ELASTIC: ("diamond-tall-open", 0.0),
-    symbols.REST_ABOVE: ("square-open", 0.0),
-    symbols.REST_BELOW: ("square-open", 0.0),
-}
 
 
 def beam_results(
@@ -165,7 +145,7 @@ def _tip_chart(trajectory: Trajectory) -> Any:
         for k, name in enumerate(("tip", "tip_lateral"))
         if name in trajectory.data
     ]
-    return _plotly_figure(Chart(trajectory.time, "tip deflection (mm)", curves))
+    return _plotly_figure(Chart(trajectory.time, curves, ["tip deflection (mm)"]))
 
 
 def _check_cost(cost: Cost, case: Case, file: str) -> None:
@@ -256,97 +236,20 @@ def boom_figure(case: Case, boom: Boom, shown: Curves, tip: float) -> dict[str, 
     """
     visible = _SHOWN * boom.length / max(abs(tip), 1e-12)
     factor = max(1.0, float(f"{min(visible, 1e6):.1g}"))
+    scene = Scene.at_rest(case, boom, shown)
+    places = scene.points + factor * scene.displacement(0.0) * [0.0, 0.0, 1.0]
     angle = 0.0 if case.gravity is None else case.gravity.angle
-    traces = [
-        *_segments(boom, shown, factor),
-        *_cylinders(boom),
-        *_symbols(case, boom, shown, factor),
-    ]
-    turn = np.radians(angle)
-    matrix = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
-    for trace in traces:
-        trace["x"], trace["y"] = matrix @ np.array([trace.pop("along"), trace.pop("across")])
-        if "marker" in trace:
-            trace["marker"]["angle"] -= angle * trace.pop("turns")
+    figure = elevation(scene, places, factor, angle, SYMBOL).plain
+    for trace in figure["data"]:
+        trace |= {"text": trace["name"], "hoverinfo": "text", "hovertemplate": None}
     title = "to scale" if factor == 1.0 else f"to scale, deflection × {factor:g}"
-    axis = {"showgrid": False, "zeroline": False, "ticksuffix": " m"}
-    layout = {
+    figure["layout"] |= {
         "title": {"text": f"At rest under the maximum load, {title}", "font": {"size": 14}},
-        "template": "none",
-        "font": {"family": "system-ui, sans-serif", "size": 13, "color": theme.INK},
+        "hovermode": "closest",
         "showlegend": False,
         "margin": {"l": 50, "r": 12, "t": 36, "b": 30},
-        "xaxis": axis,
-        "yaxis": axis | {"scaleanchor": "x"},
         "height": 380,
     }
-    return {"data": traces, "layout": layout}
-
-
-def _segments(boom: Boom, shown: Curves, factor: float) -> Iterator[dict[str, Any]]:
-    """Yield the traces of the undeformed axis, then of each segment from tip to base."""
-    yield {
-        "along": [boom.segments[0].start, boom.tip],
-        "across": [0.0, 0.0],
-        "mode": "lines",
-        "line": {"color": theme.FAINT, "dash": "dash", "width": 1},
-        "hoverinfo": "skip",
-    }
-    for index in reversed(range(len(boom.segments))):
-        segment, x = boom.segments[index], shown[index].x
-        ends = np.array([symbols.edges(boom, segment, end) for end in segment.ends])
-        axis = _deflections(shown, index, factor)
-        low, high = (axis + np.interp(x, segment.ends, z) for z in ends.T)
-        color = theme.segment_color(index)
-        yield {
-            "along": [*x, *x[::-1], x[0]],
-            "across": [*low, *high[::-1], low[0]],
-            "mode": "lines",
-            "fill": "toself",
-            "fillcolor": f"{color}40",
-            "line": {"color": color, "width": 1.2},
-            "name": segment.name,
-            "text": segment.name,
-            "hoverinfo": "text",
-            "hoveron": "fills",
-        }
-
-
-def _deflections(shown: Curves, index: int, factor: float) -> Array:
-    curve = shown[index]
-    return factor * curve.values.get("deflection", np.zeros(curve.x.size))
-
-
-def _cylinders(boom: Boom) -> Iterator[dict[str, Any]]:
-    for cylinder in boom.cylinders:
-        yield {
-            "along": [cylinder.x, cylinder.ground[0]],
-            "across": [-cylinder.depth, cylinder.ground[1]],
-            "mode": "lines",
-            "line": {"color": theme.INK, "width": 4},
-            "text": f"cylinder, {number(cylinder.length, 4)} m",
-            "hoverinfo": "text",
-        }
-
-
-def _symbols(case: Case, boom: Boom, shown: Curves, factor: float) -> Iterator[dict[str, Any]]:
-    for symbol in symbols.boom_symbols(case, boom):
-        number, x = symbol.segment, np.array(symbol.places)
-        shift = np.interp(
-            x, shown[number].x, _deflections(shown, number, 0.0 if symbol.grounded else factor)
-        )
-        shape, rotation = _MARKERS[symbol.path]
-        yield {
-            "along": x,
-            "across": shift + np.array([symbol.z(boom, place) for place in symbol.places]),
-            "mode": "markers",
-            "marker": {
-                "symbol": shape,
-                "angle": rotation,
-                "size": 18 if len(x) == 1 else 10,
-                "color": symbol.color,
-            },
-            "turns": symbol.turns,
-            "text": symbol.meaning,
-            "hoverinfo": "text",
-        }
+    for axis in ("xaxis", "yaxis"):
+        figure["layout"][axis] |= {"showgrid": False, "zeroline": False, "ticksuffix": " m"}
+    return figure

@@ -240,9 +240,9 @@ class Ensembles(EnsembleTable):
 
 
 class Snapshots(SummaryTable):
-    """Names of the ``written`` pictures, or the reason why they are ``skipped``."""
+    """Titles and captions of the ``written`` pictures by file name, or why they are ``skipped``."""
 
-    written: list[str]
+    written: dict[str, tuple[str, str]]
     skipped: str | None
 
 
@@ -262,7 +262,7 @@ class Summary(SummaryTable):
     design: DesignResults = DesignResults({})
     cautions: list[str] = []
     comparisons: Comparisons | None = None
-    snapshots: Snapshots = Snapshots(written=[], skipped=None)
+    snapshots: Snapshots = Snapshots(written={}, skipped=None)
 
     @classmethod
     def load(cls, path: Path) -> Summary:

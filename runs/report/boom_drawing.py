@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +17,6 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.path import Path as Sign
 from matplotlib.ticker import MaxNLocator
-from matplotlib.transforms import Affine2D, Transform
 from matplotlib.typing import HashableList
 
 from protractile.geometry import typography
@@ -29,12 +29,14 @@ from protractile.runs.case.schema import Case
 from protractile.runs.folder.files import atomic_path
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import theme
-from protractile.runs.report.figure_context import LEGEND_CHARACTERS, Figure, FigureContext
+from protractile.runs.report.charts import Chart
+from protractile.runs.report.figure_context import Figure, FigureContext
+from protractile.runs.report.marks import elevation
+from protractile.runs.report.scene import Scene
+from protractile.runs.report.static_charts import LEGEND_CHARACTERS, draw_curves
 from protractile.runs.report.symbols import (
-    PINNED,
     Symbol,
     abbreviate,
-    boom_symbols,
     edges,
     marker_style,
 )
@@ -43,6 +45,8 @@ from protractile.runs.report.symbols import (
 SECTION_SHARE = 0.2
 # Sizes of symbols in pt: standard, and if there are many.
 SIGN, SMALL = 15.0, 9.0
+# Size of the symbols of the whole boom, over its length.
+WHOLE_SIGN = 0.04
 # Heights in inches: panel along the boom, panel to scale (maximum, minimum), sections, line of the
 # legend.
 ALONG_HEIGHT, MAX_HEIGHT, MIN_HEIGHT, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
@@ -61,34 +65,28 @@ CAPTION = (
 
 @dataclass(slots=True)
 class Panel:
-    """Panel with a drawing of the boom, and the meanings of its symbols."""
+    """Panel with a drawing along the boom, and the meanings of its symbols."""
 
     axes: Axes  #: axes of the drawing
     boom: Boom  #: the boom
-    angle: float  #: angle of the boom in degrees
     height_factor: float  #: factor by which heights are exaggerated
-    whole: bool  #: True for the whole boom without details
     meanings: dict[str, Line2D] = field(default_factory=dict)  #: symbol of each legend text
-
-    @property
-    def turn(self) -> Transform:
-        """The transform from x and z in m to coordinates of the panel."""
-        return Affine2D().scale(1.0, self.height_factor).rotate_deg(self.angle)
 
     def outline(self, corners: Sequence[tuple[float, float]] | Array, **style: Any) -> None:
         """Draw a filled polygon from the x and z of its corners in m."""
-        self.axes.add_patch(Polygon(self.turn.transform(np.array(corners)), closed=True, **style))
+        places = np.array(corners) * [1.0, self.height_factor]
+        self.axes.add_patch(Polygon(places, closed=True, **style))
 
     def line(self, places: Sequence[Sequence[float] | Array] | Array, **style: Any) -> None:
         """Draw a line through x and z in m."""
-        self.axes.plot(*self.turn.transform(np.array(places)).T, **style)
+        x, z = np.array(places).T
+        self.axes.plot(x, self.height_factor * z, **style)
 
     def draw_symbol(self, symbol: Symbol) -> None:
         """Draw the symbol of a support or load at its places."""
         places = [(x, symbol.z(self.boom, x)) for x in symbol.places]
         size = SIGN if len(places) == 1 else SMALL
-        style = marker_style(symbol.rotated(self.angle), symbol.color, size)
-        self.line(places, clip_on=False, zorder=5, **style)
+        self.line(places, clip_on=False, zorder=5, **marker_style(symbol.path, symbol.color, size))
         corners = np.asarray(symbol.path.vertices)
         centred = corners - 0.5 * (corners.min(axis=0) + corners.max(axis=0))
         in_legend = marker_style(Sign(centred, symbol.path.codes), symbol.color, SMALL)
@@ -96,11 +94,9 @@ class Panel:
 
 
 def boom(run: FigureContext) -> list[Figure]:
-    """Draw the boom of a run."""
-    path = run.folder / "boom.png"
-    if not path.exists():
-        draw_boom_of(run.case, path)
-    return [Figure(path, "The boom", CAPTION, part="case")]
+    """Return the drawing of the boom of a run."""
+    drawing = partial(boom_sheet, run.case, build_boom(run.case))
+    return [Figure("boom", "The boom", CAPTION, "case", drawing=drawing, main=True)]
 
 
 def draw_boom_of(case: Case, path: Path) -> None:
@@ -129,7 +125,11 @@ def save_drawing(case: Case, file: str, picture: str) -> None:
 def boom_sheet(case: Case, boom: Boom) -> Sheet:
     """Return the sheet with the drawing of a boom."""
     angle = 0.0 if case.gravity is None else case.gravity.angle
-    low, high = _extent(boom, angle)
+    scene = Scene.at_rest(case, boom)
+    alone = replace(scene, symbols=[one for one in scene.symbols if len(one.places) == 1])
+    whole = elevation(alone, alone.points, 1.0, angle, WHOLE_SIGN)
+    heights = np.concatenate([curve.values for curve in whole.curves])
+    width, height = np.ptp(whole.time), np.nanmax(heights) - np.nanmin(heights)
     sections = [
         (number, segment.section)
         for number, segment in enumerate(boom.segments)
@@ -137,28 +137,26 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     ][:MOST]
     beside = abs(angle) > STEEP and 0 < len(sections) <= BESIDE
     room = (0.45 if beside else 1.0) * theme.WIDTH
-    whole_height = min(max(MIN_HEIGHT, room * (high - low)[1] / (high - low)[0]), MAX_HEIGHT)
+    whole_height = min(max(MIN_HEIGHT, room * height / width), MAX_HEIGHT)
     rows: list[HashableList[str]] = [
         ["whole", "sections" if beside else "whole"],
         ["along", "along"],
     ]
-    heights = [whole_height, ALONG_HEIGHT]
+    heights_of_rows = [whole_height, ALONG_HEIGHT]
     if sections and not beside:
         rows.append(["sections", "sections"])
-        heights.append(SECTIONS)
+        heights_of_rows.append(SECTIONS)
     sheet = Sheet(figsize=(theme.WIDTH, 1.0))
-    theme.Canvas(sheet)
-    panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights)
-    symbols = list(boom_symbols(case, boom))
-    _draw_whole(Panel(panels["whole"], boom, angle, 1.0, whole=True), symbols)
-    detailed = Panel(panels["along"], boom, 0.0, _height_factor(boom), whole=False)
-    _draw_along(detailed, symbols)
+    panels: dict[str, Axes] = sheet.subplot_mosaic(rows, height_ratios=heights_of_rows)
+    _draw_whole(panels["whole"], whole, boom, angle)
+    detailed = Panel(panels["along"], boom, _height_factor(boom))
+    _draw_along(detailed, scene.symbols)
     if sections:
         _draw_sections(panels["sections"], boom, sections)
     entries = detailed.meanings | dict.fromkeys(_remarks(case, boom), Line2D([], [], linestyle=""))
     columns = 2 if max(map(len, entries)) <= LEGEND_CHARACTERS else 1
     lines = -(-len(entries) // columns)
-    sheet.set_size_inches(theme.WIDTH, sum(heights) + 0.4 + LEGEND_LINE * (lines + 1))
+    sheet.set_size_inches(theme.WIDTH, sum(heights_of_rows) + 0.4 + LEGEND_LINE * (lines + 1))
     sheet.legend(
         [*entries.values()],
         [*entries],
@@ -172,14 +170,11 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
     return sheet
 
 
-def _draw_whole(panel: Panel, symbols: Sequence[Symbol]) -> None:
+def _draw_whole(axes: Axes, whole: Chart, boom: Boom, angle: float) -> None:
     """Draw the boom to scale at its angle, with its supports and loads."""
-    _draw(panel, [symbol for symbol in symbols if len(symbol.places) == 1])
-    boom, axes, angle = panel.boom, panel.axes, panel.angle
-    low, high = _extent(boom, angle)
-    margin = MARGIN * boom.length
-    (left, bottom), (right, top) = low - margin, high + margin
-    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
+    draw_curves([axes], whole)
+    axes.set_aspect("equal")
+    axes.margins(MARGIN)
     axes.set_axis_off()
     degrees = typography.with_minus_signs(f"{angle:g}°")
     axes.set_title(f"at {degrees}, to scale" if angle else "to scale", fontsize=10.0)
@@ -227,7 +222,7 @@ def _draw(panel: Panel, symbols: Sequence[Symbol]) -> None:
     """Draw the boom with its supports and loads."""
     for number in reversed(range(len(panel.boom.segments))):
         _draw_segment(panel, number)
-    for joint in () if panel.whole else panel.boom.joints:
+    for joint in panel.boom.joints:
         _draw_stations(panel, joint)
     for symbol in (symbol for symbol in symbols if symbol.grounded):
         panel.draw_symbol(symbol)
@@ -243,13 +238,11 @@ def _draw_segment(panel: Panel, number: int) -> None:
     (bottom, top), (last_bottom, last_top) = (edges(boom, segment, x) for x in segment.ends)
     tail, head = segment.ends
     box = [(tail, bottom), (head, last_bottom), (head, last_top), (tail, top)]
-    panel.outline(box, facecolor=(*theme.tint(color, 0.25), 0.75), edgecolor=color, linewidth=1.0)
+    panel.outline(box, facecolor=f"{theme.tint(color, 0.25)}bf", edgecolor=color, linewidth=1.0)
     if travel := farthest_travel(boom, number):
         dashed: dict[str, Any] = {"linewidth": 0.9, "linestyle": "--"}
         panel.outline(np.add(box, [travel, 0.0]), facecolor="none", edgecolor=color, **dashed)
         panel.meanings["extended position"] = Line2D([], [], color=theme.PLAY_FREE, **dashed)
-    if panel.whole:
-        return
     for collar in segment.collars:
         ends = collar.span
         walls = {strip.wall for strip in collar.strips(segment.widest)}
@@ -275,26 +268,14 @@ def _draw_stations(panel: Panel, joint: Joint) -> None:
 
 
 def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
-    """Draw a cylinder from lug to ground, without its lower part in the detailed panel."""
+    """Draw a cylinder from its lug, without its lower part."""
     lug, ground = np.array([cylinder.x, -cylinder.depth]), np.array(cylinder.ground)
-    if not panel.whole:
-        ground = lug + (ground - lug) * min(1.0, 0.6 / panel.height_factor)
+    ground = lug + (ground - lug) * min(1.0, 0.6 / panel.height_factor)
     panel.line([lug * [1.0, 0.0], lug], color=theme.INK, linewidth=1.0)
     panel.line([lug, ground], color=theme.INK, linewidth=1.6)
     panel.line([0.5 * (lug + ground), ground], color=theme.INK, linewidth=4.0)
-    if panel.whole:
-        panel.line([ground], **marker_style(PINNED, theme.INK, SIGN))
     thick = Line2D([], [], color=theme.INK, linewidth=4.0)
     panel.meanings[f"cylinder, {abbreviate(cylinder.axial_stiffness, 'N/m')}"] = thick
-
-
-def _extent(boom: Boom, angle: float) -> tuple[Array, Array]:
-    """Return the corners (2,) in m of the box around a boom at an angle in degrees."""
-    ends = [(x, z) for s in boom.segments for x in s.ends for z in edges(boom, s, x)]
-    ends.append((boom.tip + _farthest(boom), 0.0))
-    places = np.array([*ends, *(cylinder.ground for cylinder in boom.cylinders)])
-    turned = Affine2D().rotate_deg(angle).transform(places)
-    return turned.min(axis=0), turned.max(axis=0)
 
 
 def _farthest(boom: Boom) -> float:

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,8 +15,8 @@ from PIL import Image
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import join_words, number
 from protractile.runs.report import theme
+from protractile.runs.report.marks import marks_of
 from protractile.runs.report.scene import (
-    SAME_PLACE,
     SECTION_DRAWN,
     Instant,
     Numbers,
@@ -28,16 +28,16 @@ from protractile.runs.report.sheet import (
     UNLIT,
     Camera,
     Sheet,
+    Snapshot,
     sharp_edges,
     stage,
     surface,
 )
-from protractile.runs.report.symbols import marker_style
 
 PIXELS = (SHEET[0], 470)
 
-# Size of symbols in pt, and length of a cylinder in the picture in pixels.
-SIGN, CYLINDER = 30.0, 70.0
+# Percentile of the stresses at the end of the colour scale.
+PERCENTILE = 99.0
 
 # Pictures of buckling modes: size in pixels; length of the picture, and largest displacement in it,
 # over the height of the section.
@@ -51,7 +51,8 @@ class BoomView:
 
     scene: Scene  #: scene of the boom in motion
     scale: float  #: magnification of displacements and play
-    largest: float  #: largest magnitude of the deflection in mm
+    stresses: Mapping[float, Array]  #: stresses (num_points,) in MPa at each time in s
+    largest: float  #: end of the colour scale of stresses in MPa
     camera: Camera  #: camera whose view contains the boom at every instant
     span: tuple[float, float]  #: smallest and largest x of the boom in m
     rest: Any  #: pyvista surface of the undeformed boom
@@ -63,6 +64,7 @@ class BoomView:
         times = [instant.time for instant in instants]
         heights = [displacement[:, 2] for displacement in scene.displacements(times)]
         low, high = min(0.0, np.min(heights)), max(0.0, np.max(heights))
+        stresses = dict(zip(times, scene.point_stresses(times), strict=True))
         scale = scene.fitting_scale(times)
         rest = surface(scene.magnify(np.zeros_like(scene.points), scale), scene.triangles)
         begin, end = scene.reach(times)
@@ -74,8 +76,9 @@ class BoomView:
         return cls(
             scene=scene,
             scale=scale,
-            # The ends of a colour scale must differ, even without deflection.
-            largest=1.0e3 * max(high, -low, SAME_PLACE),
+            stresses=stresses,
+            # The ends of a colour scale must differ, even without stress.
+            largest=float(np.percentile([*stresses.values()], PERCENTILE)) or 1.0,
             camera=Camera(centre, width, PIXELS, elevation=10.0),
             span=(begin, end),
             rest=rest,
@@ -95,29 +98,12 @@ class BoomView:
         return edges
 
     def draw_marks(self, sheet: Sheet, places: Array) -> str:
-        """Draw the symbols of supports and loads on a sheet, and return their legend."""
-        scene, axes = self.scene, sheet.picture
-        symbols = [symbol for symbol in scene.symbols if len(symbol.places) == 1]
-        for symbol in symbols:
-            (x,) = symbol.places
-            around = self.rest.points if symbol.grounded else places
-            place, _ = scene.at(around, symbol.segment, x, symbol.z(scene.boom, x))
-            place[2] += (1.0 if symbol.edge == "top" else -1.0) * self.scale * symbol.clearance
-            sign = marker_style(symbol.path, symbol.color, SIGN)
-            sheet.show_once(*axes.plot(*self.camera.project(place), clip_on=False, **sign))
-        cylinders = () if scene.from_above else scene.boom.cylinders
-        for cylinder in cylinders:
-            side = 0 if cylinder.direction[1] > 0.0 else 1
-            edge = scene.edges(cylinder.segment, cylinder.x)[side]
-            lug, _ = scene.at(places, cylinder.segment, cylinder.x, edge)
-            start = self.camera.project(lug)
-            rod = np.array([start, start - CYLINDER * np.array(cylinder.direction)])
-            black: dict[str, Any] = {"color": theme.INK, "clip_on": False}
-            sheet.show_once(*axes.plot(*rod.T, linewidth=4.0, **black))
-            rod[0] = rod.mean(axis=0)
-            sheet.show_once(*axes.plot(*rod.T, linewidth=9.0, **black))
-        kinds = [str(symbol.kind) for symbol in symbols]
-        return join_words(dict.fromkeys(kinds + ["cylinders"] * bool(cylinders))) if kinds else ""
+        """Draw symbols and cylinders on a sheet, and return their legend."""
+        marks = marks_of(self.scene, self.rest.points, self.scale, 0.0)
+        for mark in marks:
+            line = self.camera.project(mark.at(places))
+            sheet.show_once(*sheet.picture.plot(*line.T, color=mark.color, linewidth=mark.width))
+        return join_words(dict.fromkeys(mark.kind for mark in marks)) if marks else ""
 
 
 def draw_boom(
@@ -132,8 +118,8 @@ def draw_boom(
     time, tip = scene.motion["time"].values, 1.0e3 * scene.motion["tip"].values
     sheet = Sheet(camera.pixels, 325, part)
     sheet.mark_x(camera, *view.span)
-    bar = sheet.colour_bar((1110, 150, 420, 40), view.largest, theme.DEFLECTION)
-    bar.set_label("lateral deflection (mm)" if scene.from_above else "deflection (mm)")
+    bar = sheet.colour_bar((1110, 150, 420, 40), view.largest, theme.STRESS)
+    bar.set_label("von Mises stress (MPa)")
     crane = scene.crane
     curve = sheet.axes(150, 85, 820 if crane is None else 500, 150)
     if crane is not None:
@@ -147,16 +133,16 @@ def draw_boom(
         behind = view.edges_at(view.rest.points + np.array([0.0, 0.02, 0.0]))
         plotter.add_mesh(behind, color=theme.FAINT, line_width=3.0 * part, **UNLIT)
         boom = view.rest.copy()
-        boom["deflection"] = np.zeros(boom.n_points)
-        colours = {"cmap": theme.DEFLECTION, "clim": (0.0, view.largest)}
-        plotter.add_mesh(boom, scalars="deflection", **colours, **MATTE)
+        boom["stress"] = np.zeros(boom.n_points)
+        colours = {"cmap": theme.STRESS, "clim": (0.0, view.largest)}
+        plotter.add_mesh(boom, scalars="stress", **colours, **MATTE)
         edges = view.edges_at(boom.points)
         plotter.add_mesh(edges, color=theme.INK, line_width=2.4 * part, **UNLIT)
         displacements = scene.displacements([instant.time for instant in instants])
         for instant, displacement in zip(instants, displacements, strict=True):
             places = view.places(displacement, instant.time)
             boom.points, edges.points = places, places[edges["number"]]
-            boom["deflection"] = 1.0e3 * np.abs(displacement[:, 2])
+            boom["stress"] = view.stresses[instant.time]
             sheet.show(camera.render(plotter))
             symbols = view.draw_marks(sheet, places)
             last = int(np.abs(time - instant.time).argmin())
@@ -179,7 +165,7 @@ def draw_boom(
 
 def render_buckling(
     views: Sequence[Scene], folder: Path, times: Sequence[float] | None = None
-) -> list[Path]:
+) -> list[Snapshot]:
     """Draw the first buckling mode of each segment: ``buckling-NUMBER.png``, from 1 on.
 
     If there are requested times, no modes are drawn, since they have no time.
@@ -187,7 +173,7 @@ def render_buckling(
     scene = views[0]
     if scene.buckling is None or times is not None:
         return []
-    data, paths = scene.buckling, []
+    data, snapshots = scene.buckling, []
     with rc_context(theme.PAGE_RC):
         for segment, factor in zip(
             data["buckled"].values.tolist(), data["buckling_factor"].values.tolist(), strict=True
@@ -196,15 +182,21 @@ def render_buckling(
                 data["buckling_segment"].values == segment
             ]
             used, triangles = np.unique(point_numbers, return_inverse=True)
-            paths.append(folder / f"buckling-{segment + 1}.png")
+            path, name = folder / f"buckling-{segment + 1}.png", scene.boom.segments[segment].name
             _draw_mode(
-                f"{scene.boom.segments[segment].name}: buckling factor {number(factor)}",
+                f"{name}: buckling factor {number(factor)}",
                 data["buckling_points"].values[used],
                 triangles.reshape(-1, 3).astype(np.int32),
                 data["buckling_shape"].values[used].astype(float),
-                paths[-1],
+                path,
             )
-    return paths
+            caption = (
+                f"The first buckling mode of the walls of {name!r} in {scene.model!r}, where they "
+                "move most, in the static state with the largest tip deflection. The amplitude is "
+                "arbitrary."
+            )
+            snapshots.append(Snapshot(path, f"Buckling of {name}", caption))
+    return snapshots
 
 
 def _draw_mode(heading: str, points: Array, triangles: Numbers, shape: Array, path: Path) -> None:

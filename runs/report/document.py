@@ -6,6 +6,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
 from itertools import chain
+from typing import Any
+
+import matplotlib
 
 from protractile.geometry.typography import number, percent
 from protractile.runs.case import toml
@@ -15,10 +18,12 @@ from protractile.runs.report.additions import Addition
 from protractile.runs.report.charts import pack_charts, pack_plotly
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.model_tables import model_tables
-from protractile.runs.report.pages import page
+from protractile.runs.report.pages import file_uris, page
 from protractile.runs.report.predictability import comparison_tables, predictability_tables
 from protractile.runs.report.proof_tables import governing_proof
 from protractile.runs.report.result_tables import result_tables
+from protractile.runs.report.sheet import Snapshot
+from protractile.runs.report.static_charts import svg_uri
 from protractile.runs.report.summary_table import (
     deviation_note,
     limit_table,
@@ -45,30 +50,34 @@ def render(
     results: Results,
     addition: Addition,
     figures: Sequence[Figure],
-    snapshots: Sequence[Figure],
+    snapshots: Sequence[Snapshot],
     viewer: str = "",
+    pictures: bool = False,
 ) -> str:
     """Return the report as one HTML text, which includes all pictures and scripts.
 
-    It has interactive charts only if plotly is installed. Figures and snapshots have existing
-    files; ``viewer`` is the file name of the interactive viewer, empty for none.
+    The main figures, with ``pictures`` all figures, are pictures on paper and for readers without
+    JavaScript; so are all if plotly is not installed, which makes figures interactive. Snapshots
+    have existing files; ``viewer`` is the file name of the interactive viewer, empty for none.
     """
     texts, proofs = tables_by_part(results), results.proofs
-    pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
-    pictures |= {"snapshots": [*snapshots]}
-    charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
+    shown: dict[str, list[Figure | Snapshot]] = {
+        part: [figure for figure in figures if figure.part == part] for part in PARTS
+    }
+    shown |= {"snapshots": [*snapshots]}
+    uris, plots = embed(figures, pictures)
     names = list(results.summary.models)
     line_styles = theme.line_styles(names, [m.name for m in results.case.models if m.bonded])
     return page(
         addition.template,
-        [figure.path for figure in (*figures, *snapshots)],
+        uris | file_uris({snapshot.anchor: snapshot.path for snapshot in snapshots}),
         title=results.case.title,
         duration=f"{results.case.time.duration:g}",
         cautions=results.summary.cautions,
         remarks=addition.remarks,
         labels={
             thing.anchor: f"{kind}\N{NO-BREAK SPACE}{i}"
-            for kind, several in (("Table", texts), ("Figure", pictures))
+            for kind, several in (("Table", texts), ("Figure", shown))
             for i, thing in enumerate(chain(*several.values()), start=1)
         },
         colors={name: line_styles[name].color for name in names},
@@ -79,17 +88,42 @@ def render(
         deviation=deviation_note(results),
         quality=[note.line for note in results.summary.design.quality_notes],
         viewer=viewer,
-        charts=pack_charts(charts) if charts else "",
-        plotly=pack_plotly() if charts else "",
         skipped=results.summary.snapshots.skipped,
         versions={k: v for k, v in results.summary.versions.items() if v is not None},
         case_hash=results.summary.case_hash,
         costs=_costs(results),
         case_text=toml.dumps(results.case),
+        **plots,
         **texts,
-        **pictures,
+        **shown,
         **addition.content,
     )
+
+
+def figure_page(title: str, figures: Sequence[Figure]) -> str:
+    """Return a page of figures as one HTML text."""
+    uris, plots = embed(figures, pictures=False)
+    return page("figures.html", uris, title=title, figures=figures, **plots)
+
+
+def embed(figures: Sequence[Figure], pictures: bool) -> tuple[dict[str, str], dict[str, Any]]:
+    """Return the data URIs of pictures of figures by their anchors, and the data of their charts.
+
+    The charts are variables of templates. Without ``pictures`` only the main figures and those
+    without an interactive chart have pictures.
+    """
+    charts = {f.name: f.chart for f in figures if f.chart} if find_spec("plotly") else {}
+    with matplotlib.rc_context(theme.RC):
+        uris = {
+            figure.anchor: svg_uri(figure.draw())
+            for figure in figures
+            if pictures or figure.main or figure.name not in charts
+        }
+    return uris, {
+        "interactive": [*charts],
+        "charts": pack_charts(charts) if charts else "",
+        "plotly": pack_plotly() if charts else "",
+    }
 
 
 def tables_by_part(results: Results) -> dict[str, list[Table]]:

@@ -3,29 +3,19 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from matplotlib.axes import Axes
 
 from protractile.dynamics.energy import DRIVEN_ENERGIES, energy_residual
 from protractile.dynamics.predictability import SHARES
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import TO_MILLI, fixed, scientific
 from protractile.runs.report import theme
-from protractile.runs.report.charts import Chart, Curve
-from protractile.runs.report.figure_context import (
-    Figure,
-    FigureContext,
-    highest,
-    new_sheet,
-)
+from protractile.runs.report.charts import Chart, Curve, Vertical
+from protractile.runs.report.figure_context import Figure, FigureContext, highest
 from protractile.runs.report.labels import farthest
 
 # Lower and upper percentile of the band of an ensemble.
 BAND = (5.0, 95.0)
-# Opacity of overlapping bands.
-SHADE = 0.8
 # Line style of each share of the range.
 DASHES = ("-", ":", "--")
 # Relative energy that counts as zero.
@@ -40,52 +30,39 @@ DIRECTIONS = {"tip": ", vertical (z)", "tip_lateral": ", lateral (y)"}
 
 
 def tip(run: FigureContext) -> list[Figure]:
-    """Draw the tip deflection of all models, with a panel for each direction."""
+    """Show the tip deflection of all models, in a figure for each direction."""
     figures = []
     for place in run.tips:
-        sheet, (axes,) = run.over_time(1, 3.9)
-        axes.set_ylabel("deflection (mm)")
-        for name in run.models:
-            run.line(axes, name, run.time, TO_MILLI * run.result(name, place))
-            _members(run, axes, name, place)
-        if limit := _limit(run, place):
-            axes.axhline(limit, label="limit", **theme.LIMIT)
         way = DIRECTIONS[place] * (len(run.tips) > 1)
         caption = f"Deflection of the tip{way}, all models.{_accuracy_note(run, place)}"
-        title, stem = f"Tip{way}: {_largest_deflection(run, place)}", place.replace("_", "-")
-        figures.append(run.finish(sheet, axes, stem, title, caption, chart=_chart(run, place)))
+        title, name = f"Tip{way}: {_largest_deflection(run, place)}", place.replace("_", "-")
+        figures.append(Figure(name, title, caption, chart=_chart(run, place), main=True))
     return figures
 
 
 def close_up(run: FigureContext) -> list[Figure]:
-    """Draw a close-up of the first peak of the tip; nothing if no model has a peak."""
+    """Show the first peak of the tip; nothing if no model has a peak."""
     place = run.tips[0]
     if not any(run.summary[name].first_peak[place].time for name in run.models):
         return []
     end = run.first_peak_window
     in_window = run.time <= end
-    sheet, (axes,) = run.over_time(1, 3.9, end)
-    contacts, peakless = [], []
-    circle: dict[str, Any] = {"mfc": "white", "ms": 7, "mew": 1.6}
+    curves, contacts, peaks, peakless = [], {}, {}, []
     for name in run.models:
         deflection = TO_MILLI * run.result(name, place)
-        run.line(axes, name, run.time[in_window], deflection[in_window])
-        color = run.line_styles[name].color
+        curves.append(run.curve(name, deflection[in_window], at=run.time[in_window]))
         contact = run.summary[name].first_contact
         if contact and contact <= end:
-            contacts.append(contact)
-            touching = np.interp(contact, run.time, deflection)
-            axes.plot(contact, touching, "o", color=color, zorder=4, **circle)
+            contacts[contact] = float(np.interp(contact, run.time, deflection))
         peak, height = run.summary[name].first_peak[place]
         if peak is None or height is None:
             peakless.append(name)
         elif peak <= end:
-            axes.plot(peak, TO_MILLI * height, "v", color=color, ms=8, zorder=4)
-    if contacts:
-        axes.plot([], [], "o", color=theme.INK, label="first contact", **circle)
-    axes.plot([], [], "v", color=theme.INK, ms=8, label="first peak")
-    axes.set_ylabel("deflection (mm)")
-    axes.margins(y=0.08)
+            peaks[peak] = TO_MILLI * height
+    for label, marker, marks in (("first contact", "o", contacts), ("first peak", "v", peaks)):
+        if marks:
+            times, heights = np.array([*marks.items()]).T
+            curves.append(Curve(label, heights, theme.INK, "", at=times, marker=marker))
     way = DIRECTIONS[place] * (len(run.tips) > 1)
     title, marked = f"Tip{way}, first {end:g} s", "Triangles mark each model's"
     if contacts:
@@ -94,51 +71,45 @@ def close_up(run: FigureContext) -> list[Figure]:
     caption = f"Close-up of the tip{way}. {marked} first peak."
     if peakless:
         caption += f" No peak within {run.case.time.duration:g} s: {', '.join(peakless)}."
-    return [run.finish(sheet, axes, "tip-close-up", title, caption)]
+    chart = run.over_time(["deflection (mm)"], curves, window=(0.0, end))
+    return [Figure("tip-close-up", title, caption, chart=chart)]
 
 
 def heads(run: FigureContext) -> list[Figure]:
-    """Draw the deflection of the heads of outer segments, with a panel for each model."""
+    """Show the deflection of the heads of outer segments."""
     joints = range(1, len(run.case.joints) + 1)
     places = ["head", *(f"head-{number}" for number in joints if number > 1)]
     return [_head(run, place) for place in places if place in run.data]
 
 
 def _head(run: FigureContext, place: str) -> Figure:
-    models = run.with_play or run.models
-    # A single panel has room for the names of its axes.
-    height = 1.1 + max(1.25 * len(models), 2.2)
-    sheet, panels = run.over_time(len(models), height, share_y=True)
-    curves = {name: TO_MILLI * run.result(name, place) for name in run.models}
-    for axes, name in zip(panels, models, strict=True):
-        for other in run.bonded:
-            if other != name:
-                run.line(axes, other, run.time, curves[other], linewidth=0.9)
-        run.line(axes, name, run.time, curves[name], linewidth=1.1, alone=True)
-        _members(run, axes, name, place)
-        axes.set_title(name, color=run.line_styles[name].color)
-    sheet.supylabel("deflection (mm)", fontsize=theme.RC["font.size"])
     number = int(place.partition("-")[2] or 1)
     which = run.case.joints[number - 1].outer if run.case.joints else run.case.segments[0].name
     bonded = [run.labels[name] for name in run.bonded if name in run.models]
     dashed = f" Dashed: {', '.join(bonded)}, without play." if bonded else ""
     caption = (
-        f"Deflection of the head of the segment {which!r}, model by model.{dashed}"
-        f"{_accuracy_note(run, place)}"
+        f"Deflection of the head of the segment {which!r}.{dashed}{_accuracy_note(run, place)}"
     )
     title = f"Head of {which!r}: {_largest_deflection(run, place)}"
-    return run.finish(sheet, panels[0], place, title, caption, chart=_chart(run, place))
+    return Figure(place, title, caption, chart=_chart(run, place))
 
 
 def _chart(run: FigureContext, place: str) -> Chart:
-    """Return the chart of an output in all models, with bands of ensembles."""
+    """Return the chart of an output in all models, with bands and horizons of ensembles."""
     curves = [
         run.curve(name, TO_MILLI * run.result(name, place), band=_band(run, name, place))
         for name in run.models
     ]
     if limit := _limit(run, place):
         curves.append(Curve("limit", np.full(run.time.size, limit), theme.INK, ":"))
-    return Chart(run.time, "deflection (mm)", curves)
+    horizons = [
+        Vertical(horizon, curve.color, dashes)
+        for name, curve in zip(run.models, curves, strict=False)
+        if curve.band is not None and (ensemble := run.summary[name].ensemble)
+        for share, dashes in zip(SHARES, (":", "--"), strict=True)
+        if (horizon := ensemble.horizon(share)) is not None
+    ]
+    return run.over_time(["deflection (mm)"], curves, verticals=horizons)
 
 
 def _limit(run: FigureContext, place: str) -> float | None:
@@ -156,21 +127,6 @@ def _largest_deflection(run: FigureContext, place: str) -> str:
     name = max(reaches, key=lambda candidate: np.nan_to_num(abs(reaches[candidate]), nan=-1.0))
     most = fixed(reaches[name], 0, TO_MILLI)
     return f"largest deflection {most} mm" + (f" in {name}" if len(reaches) > 1 else "")
-
-
-def _members(run: FigureContext, axes: Axes, name: str, place: str) -> None:
-    """Draw the band of a model's ensemble, and its horizons of predictability."""
-    band = _band(run, name, place)
-    if band is None:
-        return
-    color = run.line_styles[name].color
-    low, high = band
-    shade = min(0.25, SHADE / len(run.with_play))
-    axes.fill_between(run.time, low, high, color=color, alpha=shade, linewidth=0, zorder=1)
-    for share, dashes in zip(SHARES, (":", "--"), strict=True):
-        ensemble = run.summary[name].ensemble
-        if ensemble and (horizon := ensemble.horizon(share)) is not None:
-            axes.axvline(horizon, color=color, linestyle=dashes, linewidth=0.9)
 
 
 def _band(run: FigureContext, name: str, place: str) -> tuple[Array, Array] | None:
@@ -211,7 +167,7 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
 
 
 def slow_peaks(run: FigureContext) -> list[Figure]:
-    """Draw the slow-motion peaks of ensembles, with their spreads over the members."""
+    """Show the slow-motion peaks of ensembles, with their spreads over the members."""
     peaks_of_models = {
         name: peaks
         for name in run.with_play
@@ -221,23 +177,16 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
     }
     if not peaks_of_models:
         return []
-    sheet, (axes,) = new_sheet(1, 3.9)
-    for name, peaks in peaks_of_models.items():
-        style = run.line_styles[name]
-        axes.errorbar(
-            peaks.time,
+    curves = [
+        run.curve(
+            name,
             TO_MILLI * np.array(peaks.height),
-            xerr=peaks.time_spread,
-            yerr=TO_MILLI * np.array(peaks.height_spread),
-            color=style.color,
-            linestyle=style.linestyle,
-            linewidth=0.7,
-            elinewidth=1.6,
+            at=np.array(peaks.time),
             marker="o",
-            markersize=4.0,
-            label=name,
+            spread=(np.array(peaks.time_spread), TO_MILLI * np.array(peaks.height_spread)),
         )
-    axes.set(xlabel="time (s)", ylabel="height (mm)", xlim=(0.0, run.time[-1]))
+        for name, peaks in peaks_of_models.items()
+    ]
     counts = [len(peaks.time) for peaks in peaks_of_models.values()]
     number = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
     caption = (
@@ -245,11 +194,12 @@ def slow_peaks(run: FigureContext) -> list[Figure]:
         "their range in time and height. Points end with the last peak that all members have."
     )
     title = f"Slow peaks: {number} are common to all members"
-    return [run.finish(sheet, axes, "slow-peaks", title, caption, "horizons")]
+    chart = Chart(run.time, curves, ["height (mm)"])
+    return [Figure("slow-peaks", title, caption, "horizons", chart)]
 
 
 def horizons(run: FigureContext) -> list[Figure]:
-    """Draw each model's predictability horizon over the relative perturbation of its data."""
+    """Show each model's predictability horizon over the relative perturbation of its data."""
     measured = {
         name: horizons_of_model
         for name in run.with_play
@@ -257,35 +207,33 @@ def horizons(run: FigureContext) -> list[Figure]:
     }
     if not measured:
         return []
-    sheet, (axes,) = new_sheet(1, 3.9)
-    shares: dict[float, str] = {}
+    curves = []
     for name, horizons_of_model in measured.items():
         color = run.line_styles[name].color
-        logs = np.log10(horizons_of_model.relatives)
+        relatives = np.array(horizons_of_model.relatives)
         times = np.array(horizons_of_model.times, dtype=float)
         for i, (share, dashes) in enumerate(zip(horizons_of_model.shares, DASHES, strict=False)):
-            shares[share] = dashes
-            axes.plot(logs, times[:, i], color=color, linestyle=dashes, marker="o", markersize=4.5)
+            label = f"{name}, {100.0 * share:g} %"
+            curves.append(Curve(label, times[:, i], color, dashes, at=relatives, marker="o"))
             of_step = horizons_of_model.of_step[i]
             if of_step is not None:
-                axes.plot(logs[0], of_step, "s", color=color, mfc="white", ms=7, mew=1.4, zorder=4)
-        axes.plot([], [], color=color, marker="o", markersize=4.5, label=name)
-    for share, dashes in shares.items():
-        axes.plot([], [], color=theme.INK, linestyle=dashes, label=f"{100.0 * share:g} %")
-    axes.plot([], [], "s", color=theme.INK, mfc="white", ms=7, mew=1.4, label="finer step")
-    axes.set(xlabel="log₁₀ of the relative change", ylabel="horizon (s)")
-    axes.set_ylim(bottom=0.0)
+                finer = f"{label}, finer step"
+                step = np.array([of_step])
+                curves.append(Curve(finer, step, color, "", at=relatives[:1], marker="s"))
     caption = (
         "Time at which members of an ensemble differ by a fraction of the tip's range, over the "
         "relative change of their data. The flatter a line, the smaller the benefit of better "
         "data. Squares: a run with a finer step; below the line a finer step would help."
     )
     title = "Horizons: how long a motion can be predicted"
-    return [run.finish(sheet, axes, "horizons", title, caption, "horizons")]
+    chart = Chart(
+        relatives, curves, ["horizon (s)"], along="relative change of the data", decades=True
+    )
+    return [Figure("horizons", title, caption, "horizons", chart)]
 
 
 def energies(run: FigureContext) -> list[Figure]:
-    """Draw the energies of the last model with play."""
+    """Show the energies of the last model with play."""
     name = (run.with_play or run.models)[-1]
     columns = dict(zip(DRIVEN_ENERGIES, _energies(run, name).T, strict=False))
     drive_work = columns.pop("drive_work", None)
@@ -297,49 +245,39 @@ def energies(run: FigureContext) -> list[Figure]:
     color = run.line_styles[name].color
     tints = [theme.tint(color, strength) for strength in STORED.values()]
     tints += [theme.tint(theme.LOSS, strength) for strength in DISSIPATED[: len(lost)]]
-    sheet, (axes,) = run.over_time(1, 3.9)
-    areas = axes.stackplot(
-        run.time,
-        *parts.values(),
-        labels=[_energy_name(energy) for energy in parts],
-        colors=tints,
-        linewidth=0,
-    )
-    for area in areas[len(held) :]:
-        # Losses have the same colour in all models.
-        area.set(hatch="///", edgecolor="white")
+    areas = [
+        Curve(_energy_name(energy), values, tint, stacked=True, width=0.0)
+        for (energy, values), tint in zip(parts.items(), tints, strict=True)
+    ]
     start = float(sum(values[0] for values in parts.values()))
-    total = f"initial energy + {of}" if start else of
-    axes.plot(run.time, start + work, color=theme.INK, linewidth=1.3, label=total)
-    axes.set_ylabel("energy (J)")
+    total = Curve(f"initial energy + {of}" if start else of, start + work, theme.INK)
     losses = " and ".join(_energy_name(energy) for energy in lost)
-    hatched = f"; hatched: {losses}" if lost else ""
+    lossy = f"; brown: {losses}" if lost else ""
     more = " and the initial energy" if start else ""
     caption = (
-        f"Stacked: strain, kinetic and contact energy of {name}{hatched}. Their sum "
+        f"Stacked: strain, kinetic and contact energy of {name}{lossy}. Their sum "
         f"equals the {of}{more}, except for the residual in the next figure."
     )
     title = f"{name}: work of the loads, stored and dissipated energy"
-    return [run.finish(sheet, axes, "energies", title, caption, part="numerics")]
+    chart = run.over_time(["energy (J)"], [*areas, total])
+    return [Figure("energies", title, caption, "numerics", chart)]
 
 
 def residuals(run: FigureContext) -> list[Figure]:
-    """Draw the running maximum of the energy residual of each model."""
-    sheet, (axes,) = new_sheet(1, 3.9)
-    worst = []
+    """Show the running maximum of the energy residual of each model."""
+    worst, curves = [], []
     for name in run.models:
         so_far = np.fmax.accumulate(np.abs(energy_residual(_energies(run, name))))
         worst.append(float(so_far[-1]))
-        run.line(axes, name, run.time, np.maximum(so_far, ROUND_OFF))
-    axes.set_yscale("log")
-    axes.set(xlabel="time (s)", ylabel="residual / largest work (–)", xlim=(0.0, run.time[-1]))
+        curves.append(run.curve(name, np.maximum(so_far, ROUND_OFF)))
     caption = (
         "Energy residual: (kinetic + strain + contact energy + losses − initial energy − work), "
         "divided by the largest work or, if larger, the initial energy. Plotted: its largest "
         "magnitude so far."
     )
     title = f"Energy residual: up to {scientific(highest(worst), 2)} of the largest work"
-    return [run.finish(sheet, axes, "energy-residual", title, caption, part="numerics")]
+    chart = Chart(run.time, curves, ["residual / largest work (–)"], logarithmic=[0])
+    return [Figure("energy-residual", title, caption, "numerics", chart)]
 
 
 def _energies(run: FigureContext, name: str) -> Array:

@@ -26,8 +26,7 @@ from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import snapshots
 from protractile.runs.report.additions import Addition, judge
 from protractile.runs.report.document import render, tables_by_part
-from protractile.runs.report.figure_context import Figure
-from protractile.runs.report.figures import draw_in_folder
+from protractile.runs.report.figures import FOLDER, figures_of, write_pictures
 from protractile.runs.report.opengl import RenderingUnavailable
 from protractile.runs.report.tables import as_json
 from protractile.runs.report.viewer import VIEWER, viewer
@@ -42,12 +41,13 @@ WIDEST, ABOVE = 60, 2
 
 @contextmanager
 def rerender_report(
-    folder: str, excel: str | None = None
+    folder: str, excel: str | None = None, pictures: bool = False
 ) -> Iterator[tuple[Results, Addition, Path]]:
     """Yield results, additions of the client, and a copy of the folder of a run.
 
     Afterwards the report is rendered in the copy, and the copy replaces the folder. With ``excel``,
-    the name of the option in messages, a workbook is written, too.
+    the name of the option in messages, a workbook is written, too; with ``pictures``, all figures
+    as PNG files.
     """
     path = Path(folder)
     with folder_lock(path):
@@ -56,7 +56,7 @@ def rerender_report(
         addition_of_client = judge(results)
         with modified_folder(path) as part:
             yield results, addition_of_client, part
-            write_report(results, addition_of_client, part)
+            write_report(results, addition_of_client, part, pictures)
             if excel is not None:
                 write_workbook(results, part, folder, excel)
 
@@ -68,7 +68,7 @@ def write_in_two_steps(
     """Write the motion of a run, and yield a function that writes all other files.
 
     The folder must be empty. While the caller evaluates the run, another process draws snapshots,
-    unless ``snapshots_now`` is False: the helper, which also draws figures, or else a new one.
+    unless ``snapshots_now`` is False: the helper, or else a new one.
     """
     results = run.results
     results.write(folder)
@@ -78,7 +78,7 @@ def write_in_two_steps(
         run.shells[name].fields.to_netcdf(path, engine="scipy")
     picture_files = [*files.values()] if snapshots_now else []
     later = LATER if files and not picture_files else None
-    results.summary.snapshots = Snapshots(written=[], skipped=later)
+    results.summary.snapshots = Snapshots(written={}, skipped=later)
     motion = folder / TRAJECTORIES
     with snapshots.start_rendering(results, picture_files, motion, folder, helper=helper) as gather:
 
@@ -89,12 +89,11 @@ def write_in_two_steps(
                 run.shells[name].write_files(folder, prefix)
             if viewer_page := viewer(run):
                 write_atomically(folder / VIEWER, viewer_page)
-            figures = draw_in_folder(results, folder, helper if picture_files else None)
             try:
                 gather()
             except RenderingUnavailable as reason:
-                results.summary.snapshots = Snapshots(written=[], skipped=str(reason))
-            write_report(results, addition, folder, figures)
+                results.summary.snapshots = Snapshots(written={}, skipped=str(reason))
+            write_report(results, addition, folder)
 
         yield write_others
 
@@ -106,15 +105,20 @@ def write(run: Run, addition: Addition, folder: Path) -> None:
 
 
 def write_report(
-    results: Results, addition: Addition, folder: Path, figures: Sequence[Figure] | None = None
+    results: Results, addition: Addition, folder: Path, pictures: bool = False
 ) -> None:
-    """Write results, tables and report, and the figures unless they are given."""
-    if figures is None:
-        figures = draw_in_folder(results, folder)
-    pictures = snapshots.describe(results, folder)
+    """Write results, tables and report.
+
+    With ``pictures``, or if the folder has PNG files of figures, these files are written, and the
+    report has a picture of each figure for paper and for readers without JavaScript.
+    """
+    figures = figures_of(results)
+    if pictures := pictures or (folder / FOLDER).is_dir():
+        write_pictures(figures, folder)
+    stills = snapshots.describe(results, folder)
     viewer_file = VIEWER if (folder / VIEWER).is_file() else ""
     texts = {
-        REPORT: render(results, addition, figures, pictures, viewer_file),
+        REPORT: render(results, addition, figures, stills, viewer_file, pictures),
         **addition.files,
     }
     if cards := {

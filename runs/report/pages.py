@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Sequence
+from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
 from io import BytesIO
 from pathlib import Path
@@ -19,11 +19,11 @@ _WEBP: dict[str, Any] = {"format": "WEBP", "quality": 85, "method": 1}
 TONES = {"✓": "yes", "✗": "no", "?": "open"}
 
 
-def page(template: str | Path, pictures: Sequence[Path] = (), **content: Any) -> str:
+def page(template: str | Path, uris: Mapping[str, str] | None = None, **content: Any) -> str:
     """Return a page as HTML, with escaped content.
 
     The template is a name of this package, or the path of one that extends it; ``content`` has its
-    variables. The pictures are the files of all pictures in the page.
+    variables. ``uris`` has the data URIs of its pictures by their anchors.
     """
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -35,10 +35,14 @@ def page(template: str | Path, pictures: Sequence[Path] = (), **content: Any) ->
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    with ThreadPoolExecutor() as threads:
-        uris = dict(zip(pictures, threads.map(_data_uri, pictures), strict=True))
-    environment.globals |= {"tones": TONES, "remarks": {}, "data_uris": uris}
+    environment.globals |= {"tones": TONES, "remarks": {}, "interactive": (), "uris": uris or {}}
     return environment.get_template(path.name).render(**content)
+
+
+def file_uris(paths: Mapping[str, Path]) -> dict[str, str]:
+    """Return the data URIs of picture files."""
+    with ThreadPoolExecutor() as threads:
+        return dict(zip(paths, threads.map(_data_uri, paths.values()), strict=True))
 
 
 def _data_uri(path: Path) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
@@ -21,7 +20,6 @@ from protractile.runs.report.figure_context import (
     Figure,
     FigureContext,
     initial_position_note,
-    new_sheet,
 )
 from protractile.runs.report.labels import extension_note
 
@@ -44,7 +42,7 @@ MODES = 4
 
 
 def at_rest(run: FigureContext) -> list[Figure]:
-    """Draw static deflection and section forces, with and without play."""
+    """Show static deflection and section forces, with and without play."""
     farthest = run.rows.where(state=FARTHEST, model=run.main_models)
     tips = {row.model: row for row in farthest.where(quantity="tip")}
     if not tips:
@@ -75,11 +73,11 @@ def at_rest(run: FigureContext) -> list[Figure]:
     both += [f"lateral {TO_MILLI * lateral.value:.1f} mm"] if lateral and lateral.value else []
     tip_text = with_minus_signs(", ".join(both))
     title = f"Static state under the loads at {far.time:g} s: tip at {tip_text} in {far.model}"
-    return _draw_panels(run, curves, "at-rest", title, caption)
+    return _figure(curves, "at-rest", title, caption, main=True)
 
 
 def envelopes(run: FigureContext) -> list[Figure]:
-    """Draw the envelopes of the section forces in motion."""
+    """Show the envelopes of the section forces in motion."""
     curves = [
         _curve(what, curve.model, curve.x, curve.values[what], run.line_styles[curve.model].color)
         for curve in run.curves.where(model=run.main_models, play=True, state=[LOW, HIGH])
@@ -90,11 +88,11 @@ def envelopes(run: FigureContext) -> list[Figure]:
         "Minimum and maximum of the section forces over the run, along each segment; signs as in "
         "the figure of the static state." + initial_position_note(run.case)
     )
-    return _draw_panels(run, curves, "envelopes", "Section forces in motion", caption)
+    return _figure(curves, "envelopes", "Section forces in motion", caption)
 
 
 def mode_shapes(run: FigureContext) -> list[Figure]:
-    """Draw the first modes of the first main model that has modes."""
+    """Show the first modes of the first main model that has modes."""
     of_models = run.rows.where(
         model=run.main_models, state=INITIAL, play=True, quantity="frequency"
     )
@@ -102,21 +100,19 @@ def mode_shapes(run: FigureContext) -> list[Figure]:
         return []
     name = of_models[0].model
     modes = of_models.where(model=name)[:MODES]
-    sheet, panels = new_sheet(len(modes), 0.9 + 1.15 * len(modes))
-    for count, (axes, mode) in enumerate(zip(panels, modes, strict=True), start=1):
-        for place, shape in enumerate(run.curves.where(model=name, state=f"mode {count}")):
-            if (values := shape.values.get(_DISPLACED[mode.part])) is not None:
-                axes.plot(shape.x, values, color=theme.segment_color(place), linewidth=1.8)
-        axes.set_title(f"{number(mode.value, 4)} Hz, {mode.part}")
-        axes.set_yticks([0.0])
-    panels[-1].set_xlabel("x along the boom (m)")
+    curves = [
+        Curve(shape.segment, values, theme.segment_color(place), panel=panel, at=shape.x)
+        for panel, mode in enumerate(modes)
+        for place, shape in enumerate(run.curves.where(model=name, state=f"mode {panel + 1}"))
+        if (values := shape.values.get(_DISPLACED[mode.part])) is not None
+    ]
+    panels = [f"{number(mode.value, 4)} Hz, {mode.part}" for mode in modes]
     caption = (
         f"First modes of {name!r} in the static state at t = 0, with the contacts that are closed "
         "there. Each segment has its colour; the amplitude is arbitrary."
     )
-    return [
-        run.finish(sheet, None, "modes", "Mode shapes with closed contacts", caption, part="rest")
-    ]
+    chart = _chart(curves, panels)
+    return [Figure("modes", "Mode shapes with closed contacts", caption, "rest", chart)]
 
 
 def rest_curves(static: Curves, name: str, color: str) -> list[Curve]:
@@ -135,22 +131,13 @@ def _curve(what: str, name: str, x: Array, values: Array, color: str) -> Curve:
     return Curve(name, in_units, color, linestyle, panel=panel, at=x)
 
 
-def _draw_panels(
-    run: FigureContext, curves: Sequence[Curve], stem: str, title: str, caption: str
+def _figure(
+    curves: Sequence[Curve], name: str, title: str, caption: str, main: bool = False
 ) -> list[Figure]:
-    """Draw the figure of :func:`chart_along`; nothing if all quantities are zero."""
+    """Return the figure of :func:`chart_along`; nothing if all quantities are zero."""
     if not any(curve.values.any() for curve in curves):
         return []
-    chart = chart_along(curves)
-    sheet, panels = new_sheet(len(chart.panels), 1.2 + 1.4 * len(chart.panels))
-    for axes, heading in zip(panels, chart.panels, strict=True):
-        axes.set_title(heading)
-    for curve in chart.curves:
-        look: dict[str, Any] = {"color": curve.color, "linestyle": curve.linestyle}
-        assert curve.at is not None
-        panels[curve.panel].plot(curve.at, curve.values, label=curve.name, **look)
-    panels[-1].set_xlabel(chart.along)
-    return [run.finish(sheet, panels[0], stem, title, caption, part="rest", chart=chart)]
+    return [Figure(name, title, caption, "rest", chart_along(curves), main=main)]
 
 
 def chart_along(curves: Sequence[Curve]) -> Chart:
@@ -166,6 +153,10 @@ def chart_along(curves: Sequence[Curve]) -> Chart:
         for curve in curves
         if curve.panel == old
     ]
-    x = np.sort(np.concatenate([curve.at for curve in shown if curve.at is not None]))
     titles = [title for title, _ in _PANELS.values()]
-    return Chart(x[[0, -1]], "", shown, [titles[old] for old in kept], along="x along the boom (m)")
+    return _chart(shown, [titles[old] for old in kept])
+
+
+def _chart(curves: Sequence[Curve], panels: Sequence[str]) -> Chart:
+    x = np.sort(np.concatenate([curve.at for curve in curves if curve.at is not None]))
+    return Chart(x[[0, -1]], curves, panels, along="x along the boom (m)")

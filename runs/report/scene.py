@@ -12,7 +12,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import pairwise, repeat
+from itertools import chain, pairwise, repeat
 from operator import attrgetter
 from typing import Any, NamedTuple
 
@@ -20,14 +20,17 @@ import numpy as np
 import numpy.typing as npt
 import xarray as xr
 
+from protractile.analysis.curves import Curves
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.contact_places import pads
 from protractile.geometry.section import Direction
 from protractile.geometry.station import Station
 from protractile.geometry.telescoping import drives_below
-from protractile.geometry.typography import with_minus_signs
+from protractile.geometry.typography import TO_MEGA, with_minus_signs
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import select_kind
+from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion
 from protractile.runs.report.crane_position import CranePosition
@@ -97,6 +100,8 @@ class Scene:
     #: first buckling modes of a shell, see :class:`.analysis.wall_buckling.BuckledShell`; None
     #: without any
     buckling: xr.Dataset | None = None
+    model: str = ""  #: name of the model
+    surface_contact: bool = False  #: True if the contact of the model is over surfaces
     crane: CranePosition | None = None  #: positions of the crane and its load; None for other booms
 
     @classmethod
@@ -107,7 +112,8 @@ class Scene:
         those of :mod:`.stress.fields`, with ``state`` (time, mode); ``motion`` has the
         trajectories of the shell.
         """
-        boom = build_boom(case)
+        boom, model = build_boom(case), str(motion["model"].item())
+        lines = {shell.name: shell.contact_line for shell in select_kind(Shell, case.models)}
         side = cls(
             boom=boom,
             symbols=list(boom_symbols(case, boom)),
@@ -120,6 +126,8 @@ class Scene:
             stress=ShellStress.from_fields(fields),
             buckling=fields if "buckled" in fields else None,
             crane=CranePosition.of(case, boom, motion),
+            model=model,
+            surface_contact=lines.get(model) == "surface",
         )
         if not boom.spatial:
             return [side]
@@ -132,6 +140,22 @@ class Scene:
             from_above=True,
         )
         return [side, above]
+
+    @classmethod
+    def at_rest(cls, case: Case, boom: Boom, curves: Curves | None = None) -> Scene:
+        """Return the scene of a boom in one state, as at t = 0 without ``curves`` of segments."""
+        symbols, shapes = list(boom_symbols(case, boom)), []
+        for number, segment in enumerate(boom.segments):
+            marked = [symbol.places for symbol in symbols if symbol.segment == number]
+            lugs = [cylinder.x for cylinder in boom.cylinders if cylinder.segment == number]
+            x = np.unique([*segment.ends, *chain(*marked), *lugs])
+            shapes.append(SegmentMotion(x, {"deflection": np.zeros((1, x.size))}))
+        for number, curve in enumerate(curves or []):
+            # Where a section force jumps, a curve has two values.
+            x, first = np.unique(curve.x, return_index=True)
+            deflection = curve.values.get("deflection", np.zeros(curve.x.size))[first]
+            shapes[number] = SegmentMotion(x, {"deflection": deflection[None]})
+        return cls.of_beam(case, boom, BeamOutput(np.zeros(1), shapes), xr.Dataset())[0]
 
     @classmethod
     def of_beam(
@@ -198,6 +222,18 @@ class Scene:
         for begin in range(0, len(states), BATCH):
             displacement = np.tensordot(states[begin : begin + BATCH], self.modes, axes=1)
             yield from displacement.astype(np.float64)
+
+    def point_stresses(self, times: Sequence[float]) -> Iterator[Array]:
+        """Yield the von Mises stress (num_points,) of a shell in MPa at output times in s.
+
+        It is the larger stress of both faces, averaged over the triangles around a point.
+        """
+        assert self.stress is not None
+        weights, around = np.repeat(self.stress.areas, 3), self.triangles.ravel()
+        total = np.maximum(np.bincount(around, weights, len(self.points)), 1e-300)
+        for stress in self.stress.instants(times):
+            sums = weights * np.repeat(stress.largest(), 3)
+            yield TO_MEGA * np.bincount(around, sums, len(self.points)) / total
 
     def travel(self, segment: int) -> Array:
         """Return the travel (num_times,) of a segment by drives in m, at the output times."""

@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -127,6 +128,24 @@ def sharp_edges(mesh: Any) -> Any:
     """Return free and sharp edges of a surface, with the point numbers of the surface."""
     mesh["number"] = np.arange(mesh.n_points)
     return mesh.extract_feature_edges(feature_angle=SHARP)
+
+
+class Snapshot(NamedTuple):
+    """Picture of a shell in the folder of a run."""
+
+    path: Path  #: path of the PNG or GIF file
+    title: str  #: title of one line
+    caption: str  #: caption in sentences
+
+    @property
+    def name(self) -> str:
+        """The file name without suffix."""
+        return self.path.stem
+
+    @property
+    def anchor(self) -> str:
+        """The target of links in the report."""
+        return f"figure-{self.name}"
 
 
 class Sheet:

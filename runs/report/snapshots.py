@@ -3,8 +3,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import Executor, Future
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, nullcontext
@@ -18,8 +17,6 @@ from PIL import Image
 
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.typography import TO_MILLI, with_minus_signs
-from protractile.runs.case.kinds.model import select_kind
-from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.results import FIELDS, Results, read_fields
 from protractile.runs.pipeline.summary import Snapshots
@@ -27,10 +24,9 @@ from protractile.runs.process import workers
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import opengl, theme
 from protractile.runs.report.boom_pictures import BoomView, draw_boom, render_buckling
-from protractile.runs.report.crane_position import CranePosition
-from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.overlap_pictures import draw_overlap
 from protractile.runs.report.scene import Instant, Scene
+from protractile.runs.report.sheet import Snapshot
 
 SNAPSHOTS = "snapshots"
 
@@ -39,26 +35,34 @@ SNAPSHOTS = "snapshots"
 ANIMATION = "motion.gif"
 ANIMATED, FRAMES, SHOWN, SMALL = 2.5, 50, 5.0, 0.6
 
-# Meaning of an arrow if a station has several contact points.
+# Parts of captions: what a picture shows; meaning of an arrow if a station has several contact
+# points.
+BOOM = (
+    "Colour: von Mises stress, to the 99th percentile of the film; grey: undeformed; symbols: "
+    "supports, cylinders, masses and loads. Displacements and play are magnified by the factor "
+    "above the picture."
+)
+OVERLAP = (
+    "the overlap with the largest contact force, cut open. Blue: outer segment; orange: inner one; "
+    "arrows: forces of the inner one on the outer one. The factor above the picture magnifies play "
+    "and displacements relative to the outer segment."
+)
 ON_SURFACES = (
     " Contact is over surfaces: each arrow is the sum of the forces at the points nearest to its "
     "station."
 )
 
-# File name of a time that the user requests.
-_GIVEN = re.compile(r"[0-9.e+-]+s")
-_NAME = re.compile(r"(?P<view>boom|overlap)(?P<above>-above)?-(?P<when>.+)")
-_BUCKLING = re.compile(r"buckling-(?P<segment>\d+)\.png")
-
 Times = Sequence[float] | None
-Render = Callable[[Sequence[Scene], Path, Times], list[Path]]
 
 
-def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw a shell at times in s, by default at the first peak of the tip.
+Render = Callable[[Sequence[Scene], Path, Times], list[Snapshot]]
 
-    The files are ``boom-WHEN.png``, in 3-D also ``boom-above-WHEN.png``, and of the overlap with
-    the largest contact force ``overlap-WHEN.png``.
+
+def render_motion(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Snapshot]:
+    """Draw a shell at times in s, by default at the first peak of the tip, and its film.
+
+    The view is the one in which the tip moves most. The files are ``boom-WHEN.png``; of the overlap
+    with the largest contact force ``overlap-WHEN.png``; without given times also ``motion.gif``.
 
     Raises:
         ValueError: a time lies outside the run.
@@ -67,52 +71,94 @@ def render_stills(views: Sequence[Scene], folder: Path, times: Times = None) -> 
     for t in times or ():
         if not begin <= t <= end:
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
-    paths: list[Path] = []
+    scene = _main_view(views)
+    snapshots: list[Snapshot] = []
     with rc_context(theme.PAGE_RC):
-        for seen in views:
-            above = "-above" if seen.from_above else ""
-            instants = _instants(seen.motion, times)
-            view = BoomView.of(seen, [*instants.values(), *_film(seen)])
-            pictures = draw_boom(view, [*instants.values()], end)
-            for name, picture in zip(instants, pictures, strict=True):
-                paths.append(folder / f"boom{above}-{name}.png")
-                picture.save(paths[-1], compress_level=1)
+        instants, film = _instants(scene.motion, times), _film(scene)
+        view = BoomView.of(scene, [*instants.values(), *film])
+        snapshots += _draw_stills(view, instants, folder)
         for name, instant in _instants(views[0].motion, times).items():
             if (overlap := draw_overlap(views, instant)) is not None:
-                paths.append(folder / f"overlap-{name}.png")
-                overlap.save(paths[-1], compress_level=1)
-    return paths
+                when, state = _describe(views[0], instant)
+                caption = f"In {state}: {OVERLAP}{ON_SURFACES * views[0].surface_contact}"
+                path = folder / f"overlap-{name}.png"
+                overlap.save(path, compress_level=1)
+                snapshots.append(Snapshot(path, f"Overlap: {when}", caption))
+        if times is None:
+            snapshots.append(_draw_film(view, film, folder / ANIMATION))
+    return snapshots
 
 
-def render_film(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Path]:
-    """Draw the first seconds of the motion of a shell as ``motion.gif``."""
-    # The view is the one in which the tip moves most.
-    scene = max(views, key=lambda view: float(np.ptp(view.motion["tip"].values)))
-    film = _film(scene)
+def render_other_views(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Snapshot]:
+    """Draw a shell in the other views, at the times of :func:`render_motion`."""
+    snapshots: list[Snapshot] = []
     with rc_context(theme.PAGE_RC):
-        view = BoomView.of(scene, [*_instants(scene.motion, times).values(), *film])
-        begin, last = film[0].time, film[-1].time
-        slow = SHOWN / (last - begin) if last > begin else 1.0
-        pace = f"; {slow:.3g} times slower than real time" if slow > 1.0 else ""
-        pictures = list(draw_boom(view, film, last, pace, SMALL))
+        for scene in views:
+            if scene is not _main_view(views):
+                instants = _instants(scene.motion, times)
+                view = BoomView.of(scene, [*instants.values(), *_film(scene)])
+                snapshots += _draw_stills(view, instants, folder)
+    return snapshots
+
+
+# The functions that draw the pictures of a run, and further pictures on request.
+RENDERED: Sequence[Render] = (render_motion,)
+ON_REQUEST: Sequence[Render] = (render_other_views, render_buckling)
+
+
+def _main_view(views: Sequence[Scene]) -> Scene:
+    return max(views, key=lambda view: float(np.ptp(view.motion["tip"].values)))
+
+
+def _draw_stills(
+    view: BoomView, instants: Mapping[str, Instant], folder: Path
+) -> Iterator[Snapshot]:
+    """Draw a boom at instants, whose names are in the names of files, and yield the pictures."""
+    above, seen = ("-above", ", seen from above") if view.scene.from_above else ("", "")
+    end = float(view.scene.motion["time"].values[-1])
+    pictures = draw_boom(view, [*instants.values()], end)
+    for (name, instant), picture in zip(instants.items(), pictures, strict=True):
+        path = folder / f"boom{above}-{name}.png"
+        picture.save(path, compress_level=1)
+        when, state = _describe(view.scene, instant)
+        yield Snapshot(path, f"Boom{seen}: {when}", f"Boom in {state}. {BOOM}")
+
+
+def _draw_film(view: BoomView, film: Sequence[Instant], path: Path) -> Snapshot:
+    """Draw the first seconds of the motion of a shell."""
+    begin, last = film[0].time, film[-1].time
+    slow = SHOWN / (last - begin) if last > begin else 1.0
+    pace = f"; {slow:.3g} times slower than real time" if slow > 1.0 else ""
+    pictures = list(draw_boom(view, film, last, pace, SMALL))
     # All frames share a palette, since colours would flicker otherwise.
     some = np.concatenate([np.asarray(picture) for picture in pictures[:: len(pictures) // 5 or 1]])
     palette = Image.fromarray(some).quantize(256, Image.Quantize.FASTOCTREE)
     first, *rest = (
         picture.quantize(palette=palette, dither=Image.Dither.NONE) for picture in pictures
     )
-    first.save(
-        folder / ANIMATION,
-        save_all=True,
-        append_images=rest,
-        duration=round(1.0e3 * SHOWN / len(pictures)),
-        loop=0,
+    pause = round(1.0e3 * SHOWN / len(pictures))
+    first.save(path, save_all=True, append_images=rest, duration=pause, loop=0)
+    caption = (
+        f"Animation of the first {last:g} s of {view.scene.model!r}, shown in {SHOWN:g} s. "
+        "Colours and magnification as in the pictures of the boom."
     )
-    return [folder / ANIMATION]
+    return Snapshot(path, f"Boom in motion, first {last:g} s", caption)
 
 
-# A function that draws the pictures of a shell.
-RENDERED: Sequence[Render] = (render_stills, render_film, render_buckling)
+def _describe(scene: Scene, instant: Instant) -> tuple[str, str]:
+    """Return two texts on a picture: its time, and the model at this time with its deflection."""
+    deflection = float(scene.motion["tip"].sel(time=instant.time, method="nearest"))
+    tip = (
+        f"{'lateral ' * scene.from_above}tip {with_minus_signs(f'{TO_MILLI * deflection:+.1f}')} mm"
+    )
+    seen = ", seen from above" * scene.from_above
+    time = f"{instant.time:.3f} s"
+    if instant.title:
+        return (
+            f"{instant.title} at {time}",
+            f"{scene.model!r}{seen}, at the {instant.title} ({time}, {tip})",
+        )
+    return time, f"{scene.model!r}{seen}, at {time} ({tip})"
 
 
 def render_files(
@@ -122,23 +168,17 @@ def render_files(
     case: Case,
     folder: Path,
     times: Times,
-) -> list[Path]:
+) -> list[Snapshot]:
     """Draw the pictures of a shell from the files of its fields and of all trajectories."""
     shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
     views = Scene.views(shell, motion.sel(model=shell.attrs["model"]), case)
-    return [path for render in renders for path in render(views, folder, times)]
+    return [snapshot for render in renders for snapshot in render(views, folder, times)]
 
 
 def _film(scene: Scene) -> list[Instant]:
-    begin, end = scene.motion["time"].values[0], _film_end(scene.motion, scene.crane)
-    times = np.linspace(begin, end, FRAMES)
-    return [Instant(t) for t in times.tolist()]
-
-
-def _film_end(motion: xr.Dataset, crane: CranePosition | None) -> float:
-    """Return the last time in s of the film of a motion."""
-    begin, end = motion["time"].values[[0, -1]].tolist()
-    return float(end if crane else min(end, begin + ANIMATED))
+    begin, end = scene.motion["time"].values[[0, -1]].tolist()
+    last = end if scene.crane else min(end, begin + ANIMATED)
+    return [Instant(t) for t in np.linspace(begin, last, FRAMES).tolist()]
 
 
 def _instants(motion: xr.Dataset, times: Times) -> dict[str, Instant]:
@@ -181,13 +221,14 @@ def start_rendering(
     folder: Path,
     times: Times = None,
     helper: Executor | None = None,
+    more: Sequence[Render] = (),
 ) -> Iterator[Callable[[], list[str]]]:
     """Start rendering in another process, and yield a function that collects the pictures.
 
     The function waits for the pictures, adds them to the summary, and returns their names. It
     raises RenderingUnavailable if rendering is impossible. Pictures of other times stay in the
     folder of the run; times are in s, by default the characteristic ones. The helper is the process
-    that renders, by default a new one.
+    that renders, by default a new one; ``more`` draws further pictures.
     """
     if not shells:
         yield list
@@ -200,31 +241,28 @@ def start_rendering(
             place = Path(temporary) / str(number)
             place.mkdir()
             future = pool.submit(
-                render_files, RENDERED, path, trajectories, results.case, place, times
+                render_files, (*RENDERED, *more), path, trajectories, results.case, place, times
             )
             futures.append((path.name.removesuffix(FIELDS), future))
 
         def gather() -> list[str]:
-            pictures = {
-                f"{prefix}{picture.name}": picture
-                for prefix, several in _collect_pictures(first, futures)
-                for picture in several
-            }
+            drawn, written = _collect_pictures(first, futures), {}
             (folder / SNAPSHOTS).mkdir(exist_ok=True)
-            for name, picture in pictures.items():
-                picture.replace(folder / SNAPSHOTS / name)
+            for prefix, several in drawn:
+                for snapshot in several:
+                    name = f"{prefix}{snapshot.path.name}"
+                    snapshot.path.replace(folder / SNAPSHOTS / name)
+                    written[name] = snapshot.title, snapshot.caption
             earlier = results.summary.snapshots.written
-            results.summary.snapshots = Snapshots(
-                written=list(dict.fromkeys([*earlier, *pictures])), skipped=None
-            )
-            return list(pictures)
+            results.summary.snapshots = Snapshots(written=earlier | written, skipped=None)
+            return list(written)
 
         yield gather
 
 
 def _collect_pictures(
-    first: Future[None], futures: Sequence[tuple[str, Future[list[Path]]]]
-) -> list[tuple[str, list[Path]]]:
+    first: Future[None], futures: Sequence[tuple[str, Future[list[Snapshot]]]]
+) -> list[tuple[str, list[Snapshot]]]:
     """Wait for all pictures, and return the pictures of each shell."""
     try:
         first.result(opengl.PROBE_SECONDS)
@@ -240,74 +278,7 @@ def _collect_pictures(
         raise
 
 
-def describe(results: Results, folder: Path) -> list[Figure]:
+def describe(results: Results, folder: Path) -> list[Snapshot]:
     """Return the snapshots in the folder of a run, with titles and captions."""
-    return [
-        describe_one(results, folder / SNAPSHOTS / name)
-        for name in results.summary.snapshots.written
-    ]
-
-
-def describe_one(results: Results, path: Path) -> Figure:
-    """Return a snapshot with a title and a caption.
-
-    The file name of the picture tells shell, kind and time.
-    """
-    lines = {m.name: m.contact_line for m in select_kind(Shell, results.case.models)}
-    shells = list(lines)
-    several = [shell for shell in shells if path.name.startswith(f"{shell}-")]
-    model = max(several, key=len) if len(shells) > 1 and several else shells[0]
-    name = path.name.removeprefix(f"{model}-" if len(shells) > 1 else "")
-    motion = results.trajectories.sel(model=model)
-    if name == ANIMATION:
-        last = _film_end(motion, CranePosition.of(results.case, results.boom, motion))
-        caption = (
-            f"Animation of the first {last:g} s of {model!r}, shown in {SHOWN:g} s. "
-            "Colours and magnification as in the pictures of the boom."
-        )
-        return Figure(path, f"Boom in motion, first {last:g} s", caption)
-    if mode := _BUCKLING.fullmatch(name):
-        segment = results.boom.segments[int(mode["segment"]) - 1].name
-        caption = (
-            f"The first buckling mode of the walls of {segment!r} in {model!r}, where they move "
-            "most, in the static state with the largest tip deflection. The amplitude is arbitrary."
-        )
-        return Figure(path, f"Buckling of {segment}", caption)
-    seen = _NAME.fullmatch(name.removesuffix(path.suffix))
-    assert seen is not None, f"{path.name} is not a snapshot's name"
-    above, lateral = (", seen from above", "lateral ") if seen["above"] else ("", "")
-    if above:
-        motion = motion.assign(tip=motion["tip_lateral"])
-    when, state = _instant(seen["when"], motion, "lateral tip" if above else "tip")
-    state = f"{model!r}{above}, {state}"
-    if seen["view"] == "overlap":
-        caption = (
-            f"In {state}: the overlap with the largest contact force, cut open. Blue: outer "
-            "segment; orange: inner one; arrows: forces of the inner one on the outer one. The "
-            "factor above the picture magnifies play and displacements relative to the outer "
-            "segment."
-        )
-        if lines[model] == "surface":
-            caption += ON_SURFACES
-        return Figure(path, f"Overlap: {when}", caption)
-    caption = (
-        f"Boom in {state}. Colour: magnitude of {lateral}deflection; grey: undeformed; "
-        "symbols: supports, cylinders, masses and loads. Displacements and play are magnified "
-        "by the factor above the picture."
-    )
-    return Figure(path, f"Boom{above}: {when}", caption)
-
-
-def _instant(name: str, motion: xr.Dataset, tip_name: str) -> tuple[str, str]:
-    """Return two texts on the instant of a picture: for its title, and with the tip's deflection.
-
-    The name is that in the file name. The trajectory ``tip`` of the motion is the displayed
-    deflection, whose name is ``tip_name``.
-    """
-    given = _GIVEN.fullmatch(name)
-    time, title = (float(name[:-1]), "") if given else characteristic_instant(motion)
-    deflection = float(motion["tip"].sel(time=time, method="nearest"))
-    tip = f"{tip_name} {with_minus_signs(f'{TO_MILLI * deflection:+.1f}')} mm"
-    if title:
-        return f"{title} at {time:.3f} s", f"at the {title} ({time:.3f} s, {tip})"
-    return f"{time:.3f} s", f"at {time:.3f} s ({tip})"
+    written = results.summary.snapshots.written.items()
+    return [Snapshot(folder / SNAPSHOTS / name, *texts) for name, texts in written]

@@ -107,9 +107,9 @@ class Symbol:
     clearance: float = 0.0  #: distance between edge and symbol in m
     grounded: bool = False  #: True if the symbol does not move with the boom
 
-    def rotated(self, angle: float) -> Path:
-        """Return the path of the symbol on a boom at an angle in degrees."""
-        return _rotated(self.path, angle) if self.turns else self.path
+    def on_boom(self, angle: float) -> Path:
+        """Return the path of the symbol in the axes of a boom at an angle in degrees."""
+        return self.path if self.turns else _rotated(self.path, -angle)
 
     def z(self, boom: Boom, x: float) -> float:
         """Return z of the edge at x, in m."""

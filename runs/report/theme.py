@@ -8,8 +8,6 @@ from dataclasses import dataclass
 from itertools import cycle
 from typing import Any
 
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.colors import to_rgb
 from matplotlib.patheffects import AbstractPathEffect, withStroke
 
 # Width of a figure in inches. A telephone shows it at half the size, where 11 pt stay readable.
@@ -33,6 +31,10 @@ OUTER, INNER, FORCE = "#56b4e9", "#e69f00", "#b03000"
 OUTLINED: list[AbstractPathEffect] = [withStroke(linewidth=3, foreground="white")]
 # Colour maps of deflections and of stresses; zero is light.
 DEFLECTION, STRESS = "viridis_r", "cividis_r"
+
+# Smooth scale of maps (viridis), and colours between the levels of a scale with levels.
+SCALE = ("#440154", "#3b528b", "#21918c", "#5ec962", "#fde725")
+SHADES = ("#fff3c4", "#f6b26b", "#b8577a", "#3b1f5c")
 
 # Line of a limit.
 LIMIT: dict[str, Any] = {"color": INK, "linewidth": 1.2, "linestyle": ":"}
@@ -69,19 +71,13 @@ RC: dict[Any, Any] = {
     "agg.path.chunksize": 1_000_000,
 }
 
+# Texts in SVG pictures are text, and the same picture has the same bytes.
+SVG_RC: dict[Any, Any] = {"svg.fonttype": "none", "svg.hashsalt": "protractile"}
+
 # Style of sheets with VTK's pictures, which are as wide as a screen.
 PAGE_RC: dict[Any, Any] = {
     name: value for name, value in RC.items() if name.endswith(("color", "top", "right"))
 } | {"font.size": 20.0}
-
-
-class Canvas(FigureCanvasAgg):
-    """Canvas that draws a figure only once when it is saved; matplotlib's own draws it twice."""
-
-    def print_figure(self, filename: Any, *_: Any, **__: Any) -> None:
-        """Write a PNG file, whatever the suffix of its name."""
-        canvas: Any = self
-        canvas.print_png(filename, pil_kwargs={"compress_level": 1})
 
 
 def segment_color(number: int) -> str:
@@ -90,10 +86,10 @@ def segment_color(number: int) -> str:
     return PALETTE[-1 - number % len(PALETTE)]
 
 
-def tint(color: str, strength: float) -> tuple[float, float, float]:
-    """Return a colour mixed with white; strength 1 is the pure colour."""
-    red, green, blue = (strength * part + (1.0 - strength) for part in to_rgb(color))
-    return red, green, blue
+def tint(color: str, strength: float) -> str:
+    """Return a colour ``#rrggbb`` mixed with white; strength 1 is the pure colour."""
+    parts = bytes.fromhex(color[1:])
+    return "#" + bytes(round(255.0 + strength * (part - 255.0)) for part in parts).hex()
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,10 +13,8 @@ from importlib.util import find_spec
 from typing import Any, NamedTuple
 
 import numpy as np
-import numpy.typing as npt
 from matplotlib import colormaps
 from matplotlib.colors import to_hex
-from matplotlib.transforms import Affine2D
 from scipy.spatial.transform import Rotation
 
 from protractile.geometry.arrays import Array
@@ -26,7 +24,9 @@ from protractile.runs.pipeline.model_output import frame_indices
 from protractile.runs.pipeline.model_quality import main_models
 from protractile.runs.pipeline.run import Run
 from protractile.runs.report import theme
+from protractile.runs.report.boom_pictures import PERCENTILE
 from protractile.runs.report.charts import compress, pack_plotly
+from protractile.runs.report.marks import Mark, marks_of
 from protractile.runs.report.pages import page
 from protractile.runs.report.scene import SECTION_DRAWN, Scene
 
@@ -36,13 +36,8 @@ VIEWER = "viewer.html"
 TRUNCATION = 2.0e-3
 # Maximum number of points in a page; finer meshes need other programs.
 MOST_POINTS = 60_000
-# Percentile of the stresses at the end of the colour scale.
-PERCENTILE = 99.0
-# Size of a symbol as a fraction of the length of the boom; size of a small symbol as a fraction of
-# this; margin around the boom as a fraction of its length.
-SYMBOL, SMALL, MARGIN = 0.03, 0.6, 0.02
-# Scale at which matplotlib converts the curves of a symbol into polygons.
-FINE = 100.0
+# Margin around the boom as a fraction of its length.
+MARGIN = 0.02
 # Largest integers of 16 and of 8 bits.
 _SHORT, _BYTE = 32767, 255
 
@@ -63,17 +58,9 @@ class View(NamedTuple):
 
     @classmethod
     def of_shell(cls, model: str, scene: Scene, time: Array) -> View:
-        """Return the view of a shell, with the larger stress of both faces, averaged at points."""
-        stress = scene.stress
-        assert stress is not None
-        # Means over the triangles around a point, weighted by their areas.
-        weights, around = np.repeat(stress.areas, 3), scene.triangles.ravel()
-        total = np.maximum(np.bincount(around, weights), 1e-300)
-        means = [
-            np.bincount(around, weights * np.repeat(stress_field.largest(), 3)) / total
-            for stress_field in stress.instants(time.tolist())
-        ]
-        return cls(model, scene, time, TO_MEGA * np.array(means), "von Mises stress (MPa)")
+        """Return the view of a shell."""
+        stress = np.array([*scene.point_stresses(time.tolist())])
+        return cls(model, scene, time, stress, "von Mises stress (MPa)")
 
 
 def viewer(run: Run) -> str | None:
@@ -129,13 +116,12 @@ def pack_view(view: View, angle: float) -> dict[str, Any]:
     rotation = Rotation.from_euler("y", -angle, degrees=True).as_matrix().T
     shapes = np.concatenate([flat.reshape(len(flat), -1, 3), *along]) @ rotation
     size = np.abs(shapes).max(axis=(1, 2)) + 1.0e-300
-    lines = symbol_lines(scene, rest, rotation, angle, scale)
+    marks = [
+        mark._replace(offset=mark.offset @ rotation) for mark in marks_of(scene, rest, scale, angle)
+    ]
     points = rest @ rotation
     places = points + np.tensordot(parts, shapes, axes=1)
-    fixed_points = [
-        line.offset + points[line.anchor] * (line.anchor >= 0)[:, None] for line in lines
-    ]
-    everything = np.concatenate([places.reshape(-1, 3), *fixed_points])
+    everything = np.concatenate([places.reshape(-1, 3), *(mark.at(points) for mark in marks)])
     return {
         "model": view.model,
         "magnified": scale,
@@ -148,67 +134,16 @@ def pack_view(view: View, angle: float) -> dict[str, Any]:
         "shapes": np.round(shapes / size[:, None, None] * _SHORT).astype("<i2"),
         "colors": np.round(np.minimum(view.stress / view.end, 1.0) * _BYTE).astype(np.uint8),
         "lines": [
-            {"anchor": line.anchor.astype("<i4"), "offset": line.offset.astype("<f4")}
-            for line in lines
+            {"anchor": mark.anchor.astype("<i4"), "offset": mark.offset.astype("<f4")}
+            for mark in marks
         ],
         "figure": _figure(
-            view, lines, np.array([np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)])
+            view, marks, np.array([np.nanmin(everything, axis=0), np.nanmax(everything, axis=0)])
         ),
     }
 
 
-class StyledLines(NamedTuple):
-    """Lines of one style. Each vertex follows a mesh point.
-
-    ``anchor`` has the point numbers, -1 for fixed vertices and for gaps. ``offset``
-    (num_vertices, 3) has the vertices relative to these points in m, NaN for gaps.
-    """
-
-    color: str
-    width: float
-    anchor: npt.NDArray[np.int64]
-    offset: Array
-
-
-def symbol_lines(
-    scene: Scene, rest: Array, rotation: Array, angle: float, scale: float
-) -> list[StyledLines]:
-    """Return the lines of cylinders, and of symbols of supports and loads.
-
-    The boom at rest has displayed points (num_points, 3) in m. The rotation matrix (3, 3) belongs
-    to the angle in degrees; ``scale`` magnifies displacements and play.
-    """
-    lines: dict[tuple[str, float], list[tuple[Array, Array]]] = {}
-    gap = np.full((1, 3), np.nan)
-    for symbol in scene.symbols:
-        size = SYMBOL * scene.boom.length * (1.0 if len(symbol.places) == 1 else SMALL)
-        for x in symbol.places:
-            place, near = scene.at(rest, symbol.segment, x, symbol.z(scene.boom, x))
-            place[2] += (1.0 if symbol.edge == "top" else -1.0) * scale * symbol.clearance
-            if not isinstance(symbol.edge, str):
-                # The symbol lies in front of the wall, which would hide it otherwise.
-                place[1] = 1.02 * rest[scene.owner == symbol.segment, 1].min()
-            fixed = np.zeros(3) if symbol.grounded else rest[near]
-            path = symbol.rotated(angle).transformed(Affine2D().scale(FINE))
-            for outline in path.to_polygons(closed_only=False):
-                corners = np.insert(size / FINE * np.asarray(outline), 1, 0.0, axis=1)
-                offset = np.concatenate([corners + (place - fixed) @ rotation, gap])
-                anchor = np.full(len(offset), -1 if symbol.grounded else near)
-                lines.setdefault((symbol.color, 3.0), []).append((anchor, offset))
-    for cylinder in scene.boom.cylinders:
-        edge = scene.edges(cylinder.segment, cylinder.x)[0 if cylinder.direction[1] > 0.0 else 1]
-        place, near = scene.at(rest, cylinder.segment, cylinder.x, edge)
-        down = np.subtract(cylinder.ground, (cylinder.x, -cylinder.depth))
-        ends = np.array([place - rest[near], place + np.insert(down, 1, 0.0)]) @ rotation
-        anchor = np.array([near, -1, -1])
-        lines.setdefault((theme.INK, 8.0), []).append((anchor, np.concatenate([ends, gap])))
-    return [
-        StyledLines(*look, *(np.concatenate(parts) for parts in zip(*several, strict=True)))
-        for look, several in lines.items()
-    ]
-
-
-def _figure(view: View, lines: Sequence[StyledLines], reach: Array) -> dict[str, Any]:
+def _figure(view: View, marks: Sequence[Mark], reach: Array) -> dict[str, Any]:
     """Return the figure of plotly; ``reach`` (2, 3) has the limits of all points in m."""
     from plotly.graph_objects import Figure
 
@@ -228,11 +163,11 @@ def _figure(view: View, lines: Sequence[StyledLines], reach: Array) -> dict[str,
         {
             "type": "scatter3d",
             "mode": "lines",
-            "line": {"color": line.color, "width": line.width},
+            "line": {"color": mark.color, "width": mark.width},
             "hoverinfo": "skip",
             "showlegend": False,
         }
-        for line in lines
+        for mark in marks
     ]
     reach = reach + MARGIN * np.ptp(reach) * np.array([[-1.0], [1.0]])
     sizes = np.ptp(reach, axis=0)

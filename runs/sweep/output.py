@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Sequence
 from itertools import product
 from pathlib import Path
@@ -15,19 +14,27 @@ from rich.console import Console
 
 from protractile.analysis.quantities import Quantity, declared_quantities
 from protractile.geometry.typography import NONE, number
-from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
+from protractile.runs.folder.files import (
+    atomic_path,
+    folder_lock,
+    modified_folder,
+    write_atomically,
+)
 from protractile.runs.pipeline.quantities import QUANTITIES
 from protractile.runs.pipeline.results import CONVENTIONS
 from protractile.runs.pipeline.summary import ModelSummary
 from protractile.runs.process.terminal import printable
+from protractile.runs.report.document import figure_page
+from protractile.runs.report.figures import write_pictures
 from protractile.runs.report.tables import Table
 from protractile.runs.sweep.distances import DISTANCES, UNTIL
-from protractile.runs.sweep.figures import PERMITTED, draw, draw_distances
+from protractile.runs.sweep.figures import PERMITTED, distance_figures, sweep_figures
 from protractile.runs.sweep.points import Plan
 from protractile.runs.sweep.run import Outcome
 
 NETCDF = "sweep.nc"
 CSV = "sweep.csv"
+REPORT = "report.html"
 
 # Decimals of relative differences: a hundredth of a percent.
 DIGITS = 4
@@ -70,7 +77,10 @@ def gather(plan: Plan, outcomes: Sequence[Outcome]) -> xr.Dataset:
 
 
 def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
-    """Write ``sweep.nc``, ``sweep.csv`` and charts in place of earlier ones; return the dataset."""
+    """Write the files of a sweep in place of earlier ones, and return the dataset.
+
+    The files are ``sweep.nc``, ``sweep.csv``, and charts as PNG and in ``report.html``.
+    """
     data = gather(plan, outcomes)
     with (
         folder_lock(folder),
@@ -78,9 +88,6 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         atomic_path(part / NETCDF) as netcdf,
         atomic_path(part / CSV) as table,
     ):
-        figures = part / "figures"
-        shutil.rmtree(figures, ignore_errors=True)
-        figures.mkdir()
         data.to_netcdf(netcdf, engine="scipy")
         *keys, model = data["failed"].dims
         rows = data.drop_vars("failed").to_dataframe([*keys, model]).reset_index()
@@ -89,9 +96,12 @@ def write(plan: Plan, outcomes: Sequence[Outcome], folder: Path) -> xr.Dataset:
         names = data[model].values
         rows["failure"] = [outcome.failures.get(name, "") for outcome in outcomes for name in names]
         rows.to_csv(table, index=False, float_format="%.9g", lineterminator="\r\n")
-        draw(data, plan.bonded, figures)
+        figures = sweep_figures(data, plan.bonded)
         if plan.reference is not None:
-            draw_distances(data.drop_sel(model=plan.reference), plan.reference, figures)
+            others = data.drop_sel(model=plan.reference)
+            figures += distance_figures(others, plan.reference)
+        write_pictures(figures, part)
+        write_atomically(part / REPORT, figure_page(plan.title, figures))
     return data
 
 

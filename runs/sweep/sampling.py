@@ -29,7 +29,8 @@ from protractile.runs.pipeline.quantities import QUANTITIES
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import printable
 from protractile.runs.report import theme
-from protractile.runs.report.figure_context import new_sheet
+from protractile.runs.report.charts import Chart, Curve
+from protractile.runs.report.static_charts import draw_chart
 from protractile.runs.report.tables import Column, Table
 from protractile.runs.sweep.points import (
     Plan,
@@ -192,26 +193,22 @@ def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Quantity, pd.Serie
 
 
 def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
-    """Draw the cumulative distribution of each main result."""
-    metrics = {metric: None for frame in results.values() for metric, _ in _main_statistics(frame)}
+    """Draw the quantiles of each main result over the share of samples below them."""
+    shown = {one: None for frame in results.values() for one, _ in _main_statistics(frame)}
     line_styles = theme.line_styles(list(results), [])
+    curves = []
+    for panel, one in enumerate(shown):
+        for model, frame in results.items():
+            if one.name in frame:
+                values = np.sort(one.factor * frame[one.name].dropna())
+                shares = (np.arange(values.size) + 0.5) / values.size
+                curves.append(
+                    Curve(model, values, line_styles[model].color, panel=panel, at=shares)
+                )
+    panels = [f"{one.title} ({one.shown_unit})" for one in shown]
+    chart = Chart(np.array([0.0, 1.0]), curves, panels or [""], along="share of samples below")
     with matplotlib.rc_context(theme.RC):
-        sheet, _ = new_sheet(1, 0.9 + 1.7 * max(1, len(metrics)))
-        sheet.clear()
-        panels = sheet.subplots(max(1, len(metrics)), 1, squeeze=False)[:, 0]
-        for axes, metric in zip(panels, metrics, strict=False):
-            for model, frame in results.items():
-                if metric.name in frame:
-                    axes.ecdf(
-                        metric.factor * frame[metric.name].dropna(),
-                        color=line_styles[model].color,
-                        label=model,
-                    )
-            axes.set(
-                xlabel=f"{metric.title} ({metric.shown_unit})", ylabel="share", ylim=(0.0, 1.0)
-            )
-        panels[0].legend()
-        sheet.savefig(path)
+        draw_chart(chart, "").savefig(path)
 
 
 class Change(NamedTuple):

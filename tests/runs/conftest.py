@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Planned sweeps without runs, and saved figures."""
+"""Planned sweeps without runs, and their figures."""
 
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from matplotlib.figure import Figure as Sheet
 
+from protractile.runs.report.figure_context import Figure
+from protractile.runs.sweep import output
 from protractile.runs.sweep.points import Plan, plan
 from tests.runs.sweeping import COARSE, FAST, Planned
 
@@ -24,14 +25,14 @@ def planned(here: Path) -> Planned:
 
 
 @pytest.fixture
-def sheets(monkeypatch: pytest.MonkeyPatch) -> list[Sheet]:
-    """Return the matplotlib figures of the saved files."""
-    saved: list[Sheet] = []
-    save = Sheet.savefig
+def figures(monkeypatch: pytest.MonkeyPatch) -> list[Figure]:
+    """Return the figures of written sweeps."""
+    found: list[Figure] = []
+    write = output.write_pictures
 
-    def keep(sheet: Sheet, path: Path) -> None:
-        saved.append(sheet)
-        save(sheet, path)
+    def keep(figures: list[Figure], folder: Path) -> None:
+        found.extend(figures)
+        write(figures, folder)
 
-    monkeypatch.setattr(Sheet, "savefig", keep)
-    return saved
+    monkeypatch.setattr(output, "write_pictures", keep)
+    return found

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure as Sheet
 
 from protractile.analysis.low_pass import mean_period
 from protractile.cases import change, run_case
@@ -18,6 +17,7 @@ from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.folder.cache import Cache
 from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.report.figure_context import Figure
 from protractile.runs.sweep import output
 from protractile.runs.sweep import run as sweep_run
 from protractile.runs.sweep.distances import (
@@ -140,7 +140,7 @@ def invented(factor: float, until: float = 0.9) -> Outcome:
 
 
 @pytest.mark.usefixtures("unprinted")
-def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
+def test_maps_have_levels(against: Plan, figures: list[Figure]) -> None:
     """Reference: numbers on both sides of the levels. Without values there is no map."""
     keys = ["joint.play=0.008,0.014", "segment.load=20,40"]
     sweeping = plan("case.toml", keys, MODELS, None, "kantorovich-5")
@@ -148,15 +148,14 @@ def test_maps_have_levels(against: Plan, sheets: list[Sheet]) -> None:
     output.write(sweeping, [invented(part) for part in (0.005, 0.03, 0.1, 0.5)], Path("out"))
     drawn = {path.name for path in Path("out/figures").glob("*off.png")}
     assert drawn == {"sweep-first-peak-off.png", "sweep-tip-off.png"}
-    titles = [axes.get_title(loc="left") for axes in sheets[-1].axes[:2]]
-    assert titles == ["kantorovich-4: 0.5 to 50 %", "beam-fe-bonded: 0.05 to 5 %"]
-    labels = {text.get_text() for text in sheets[-1].axes[0].texts}
-    assert labels <= {"1 %", "5 %", "20 %"}
-    assert labels
+    chart = figures[-1].chart
+    assert chart.panels == ["kantorovich-4: 0.5 to 50 %", "beam-fe-bonded: 0.05 to 5 %"]
+    assert chart.keys.levels == (1.0, 5.0, 20.0)
+    assert chart.maps[0].values == pytest.approx(np.array([[0.5, 10.0], [3.0, 50.0]]))
 
 
 @pytest.mark.usefixtures("unprinted")
-def test_maps_over_a_third_key_stand_side_by_side(against: Plan, sheets: list[Sheet]) -> None:
+def test_maps_over_a_third_key_have_both_ends(against: Plan, figures: list[Figure]) -> None:
     """Reference: invented numbers. Times are written at points with a shorter comparison."""
     keys = ["joint.friction=0.1,0.2", "joint.play=0.008,0.014", "segment.load=20,40"]
     sweeping = plan("case.toml", keys, MODELS, None, "kantorovich-5")
@@ -164,20 +163,21 @@ def test_maps_over_a_third_key_stand_side_by_side(against: Plan, sheets: list[Sh
     outcomes += [invented(0.02), invented(0.03, 0.41), invented(0.02), invented(0.03)]
     Path("out").mkdir()
     output.write(sweeping, outcomes, Path("out"))
-    sheet = sheets[-1]
-    assert [axes.get_title(loc="left") for axes in sheet.axes[:4]] == [
-        "friction 0.1\nkantorovich-4: 0.5 to 50 %",
-        "friction 0.2\nkantorovich-4: 2 to 3 %",
-        "beam-fe-bonded: 0.05 to 5 %",
-        "beam-fe-bonded: 0.2 to 0.3 %",
+    chart = figures[-1].chart
+    assert chart.panels == [
+        "kantorovich-4, friction 0.1: 0.5 to 50 %",
+        "beam-fe-bonded, friction 0.1: 0.05 to 5 %",
+        "kantorovich-4, friction 0.2: 2 to 3 %",
+        "beam-fe-bonded, friction 0.2: 0.2 to 0.3 %",
     ]
-    seconds = {
-        (number, text.get_text(), text.get_position())
-        for number, axes in enumerate(sheet.axes[:4])
-        for text in axes.texts
-        if text.get_text().endswith("s")
+    shorter = {
+        (number, *place)
+        for number, cells in enumerate(chart.maps)
+        for place, text in np.ndenumerate(cells.texts)
+        if text.endswith("\n0.4 s")
     }
-    assert seconds == {(1, "0.4 s", (8.0, 40.0)), (3, "0.4 s", (8.0, 40.0))}
+    assert shorter == {(2, 1, 0), (3, 1, 0)}
+    assert (chart.keys.abscissas, chart.keys.ordinates) == (["8", "14"], ["20", "40"])
 
 
 @pytest.mark.parametrize(

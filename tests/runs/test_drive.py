@@ -19,7 +19,7 @@ from protractile.runs.pipeline.models import build
 from protractile.runs.report import theme
 from protractile.runs.report.boom_drawing import boom_sheet
 from protractile.runs.report.drive_tables import drive_table
-from protractile.runs.report.figures import draw
+from protractile.runs.report.figures import figures_of
 from protractile.runs.report.labels import extension_note
 from protractile.runs.report.result_tables import record_tables, rest_tables
 from protractile.runs.report.summary_table import summary_table
@@ -207,7 +207,7 @@ def test_run_reports_its_drive(tmp_path: Path) -> None:
     swing = design["kantorovich-5"].residual_vibration
     told = swing.tip, swing.time, swing.initial, swing.final
     assert [c.cells for c in table.columns] == [["kantorovich-5"], *([value] for value in told)]
-    drawn = {figure.path.stem: figure for figure in draw(results, tmp_path)}
+    drawn = {figure.name: figure for figure in figures_of(results)}
     # By hand, the play's lever, and elements: 7 mm of bending.
     assert (
         drawn["at-rest"].title

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
-from matplotlib.figure import Figure as Sheet
 
 from protractile.analysis.low_pass import SlowPeaks, slow_peaks
 from protractile.cases import change
@@ -25,7 +24,7 @@ from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import Run
 from protractile.runs.pipeline.summary import EnsembleSummary
 from protractile.runs.report.additions import Addition
-from protractile.runs.report.figures import draw
+from protractile.runs.report.figures import figures_of
 from protractile.runs.report.output import write
 from tests.runs.case_texts import shipped
 from tests.runs.summaries import finished
@@ -123,36 +122,20 @@ def test_a_run_without_ensembles_has_no_file_of_them(case: Case, tmp_path: Path)
     assert Results.load(tmp_path).ensembles is None
 
 
-@pytest.fixture
-def sheets(monkeypatch: pytest.MonkeyPatch) -> dict[str, Sheet]:
-    found: dict[str, Sheet] = {}
-    monkeypatch.setattr(Sheet, "savefig", lambda sheet, path, **_: found.update({path.stem: sheet}))
-    return found
-
-
-def test_figures_have_bands_and_horizons(
-    run: Run, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_figures_have_bands_and_horizons(run: Run) -> None:
     """Reference: the ensembles themselves, 5 to 95 % of the members at each time, in mm."""
-    captions = {figure.path.stem: figure.caption for figure in draw(run.results, tmp_path)}
+    figures = {figure.name: figure for figure in figures_of(run.results)}
     ensembles = run.results.ensembles
     for place in ("tip", "head"):
-        assert "5 to 95 % of the 5 members" in captions[place]
-        bands = [b for a in sheets[place].axes for b in a.collections]
-        assert len(bands) == len(SERIES)
-        for name, band in zip(SERIES, bands, strict=True):
+        assert "5 to 95 % of the 5 members" in figures[place].caption
+        chart = figures[place].chart
+        bands = {curve.name: curve.band for curve in chart.curves if curve.band is not None}
+        assert list(bands) == SERIES
+        for name, band in bands.items():
             members = 1000.0 * ensembles[place].sel(model=name).values
-            low, high = np.percentile(members, (5.0, 95.0), axis=0)
-            (outline,) = band.get_paths()
-            assert outline.vertices[:, 1].max() == pytest.approx(high.max(), rel=1e-6)
-            assert outline.vertices[:, 1].min() == pytest.approx(low.min(), rel=1e-6)
-        marks = {
-            float(np.asarray(line.get_xdata())[0])
-            for axes in sheets[place].axes
-            for line in axes.get_lines()
-            if len(np.asarray(line.get_xdata())) == 2
-        }
+            np.testing.assert_allclose(band, np.percentile(members, (5.0, 95.0), axis=0))
         horizons = [ensembles_of(run)[n].horizons for n in SERIES]
+        marks = {vertical.at for vertical in chart.verticals}
         assert marks == {t for h in horizons for t in h.values() if t is not None}
         assert marks
 
@@ -162,23 +145,16 @@ def ensembles_of(run: Run) -> dict[str, EnsembleSummary]:
     return {name: model.ensemble for name, model in models if model.ensemble}
 
 
-def test_slow_peaks_are_drawn_with_their_spreads(
-    run: Run, tmp_path: Path, sheets: dict[str, Sheet]
-) -> None:
+def test_slow_peaks_are_drawn_with_their_spreads(run: Run) -> None:
     """Reference: the numbers of the summary, in mm."""
-    known = {f.path.stem: f for f in draw(run.results, tmp_path) if f.part == "horizons"}
+    known = {f.name: f for f in figures_of(run.results) if f.part == "horizons"}
     assert list(known) == ["slow-peaks", "horizons"]
-    (axes,) = sheets["slow-peaks"].axes
-    for name, container in zip(SERIES, axes.containers, strict=True):
+    for name, curve in zip(SERIES, known["slow-peaks"].chart.curves, strict=True):
         peaks = ensembles_of(run)[name].slow_peaks
-        points, _, (across, along) = container.lines
-        drawn = np.asarray(points.get_xydata(), dtype=float)
-        np.testing.assert_allclose(drawn[:, 0], peaks.time)
-        np.testing.assert_allclose(drawn[:, 1], 1000.0 * np.array(peaks.height))
-        widths = [np.ptp(segment[:, 0]) for segment in across.get_segments()]
-        heights = [np.ptp(segment[:, 1]) for segment in along.get_segments()]
-        np.testing.assert_allclose(widths, 2.0 * np.array(peaks.time_spread), atol=1e-9)
-        np.testing.assert_allclose(heights, 2000.0 * np.array(peaks.height_spread), atol=1e-9)
+        np.testing.assert_allclose(curve.at, peaks.time)
+        np.testing.assert_allclose(curve.values, 1000.0 * np.array(peaks.height))
+        np.testing.assert_allclose(curve.spread[0], peaks.time_spread)
+        np.testing.assert_allclose(curve.spread[1], 1000.0 * np.array(peaks.height_spread))
 
 
 def test_models_are_compared_in_the_summary(run: Run) -> None:

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.figure import Figure as Sheet
 from scipy.stats import norm
 
 from protractile.cases import run_case
@@ -20,6 +19,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.quantities import case_limits, decay_time
 from protractile.runs.process.bad_input import BadInput
+from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.summary_table import limit_faults, limit_table
 from protractile.runs.sweep import output, sampling
 from protractile.runs.sweep.points import Plan, plan, tables_of
@@ -374,7 +374,7 @@ def test_the_exit_status_is_1_beyond_a_limit(capsys: pytest.CaptureFixture[str])
     assert protractile("run", "case.toml", "--out", "out") == 0
 
 
-def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
+def test_a_sweep_draws_and_counts_limits(figures: list[Figure]) -> None:
     """Reference: analytic, static tips of q L⁴/(8 E J)."""
     limit = static_tip(4.5)
     planned = plan(write(f"tip_at_rest = {limit}"), ["segment[1].length=4,4.4,4.6,5"], None, None)
@@ -383,9 +383,10 @@ def test_a_sweep_draws_and_counts_limits(sheets: list[Sheet]) -> None:
     assert data["tip_at_rest"].attrs["permitted"] == limit
     shown = f"beam: static tip deflection (maximum load) ≤ {1e3 * limit:.4g} mm at 2 of 4 points"
     assert shown in printed(output.print_ranges, data, planned, width=80).splitlines()
-    (axes,) = (axes for axes in sheets[0].axes if "dotted: limit" in axes.get_title(loc="left"))
-    line = axes.lines[-1]
-    assert np.asarray(line.get_ydata()) == pytest.approx(1e3 * limit)
+    chart = figures[0].chart
+    (number,) = (i for i, title in enumerate(chart.panels) if title.endswith("dotted: limit"))
+    *_, line = (curve for curve in chart.curves if curve.panel == number)
+    assert line.values == pytest.approx(1e3 * limit)
 
 
 def test_permitted_values_themselves_are_permitted() -> None:

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from matplotlib.figure import Figure as Sheet
+from matplotlib import rc_context
 from PIL import Image
 
 from protractile.analysis.rows import MOTION
@@ -21,6 +21,7 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.quantities import QUANTITIES, settling_time
 from protractile.runs.report import theme
+from protractile.runs.report.figure_context import Figure
 from protractile.runs.sweep import output
 from protractile.runs.sweep import run as sweep
 from protractile.runs.sweep.figures import in_display_units
@@ -305,27 +306,26 @@ def test_charts_fit_number_of_keys(planned: Planned, texts: list[str], names: li
     assert written(planned(*texts)) == names
 
 
-def test_maps_have_labels_at_computed_values(planned: Planned, sheets: list[Sheet]) -> None:
+def test_maps_have_labels_at_computed_values(planned: Planned, figures: list[Figure]) -> None:
     charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40,45"), CHARTED[:1])
-    axes = sheets[0].axes[0]
-    assert axes.get_xlabel() == ""
-    assert sheets[0].axes[1].get_xlabel() == "play (mm)"
-    np.testing.assert_allclose(axes.get_xticks(), [6.0, 10.0, 14.0])
-    assert axes.get_yticks().tolist() != [20.0, 40.0, 45.0]
+    chart = figures[0].chart
+    assert chart.along == "play (mm)"
+    assert chart.keys.abscissas == ["6", "10", "14"]
+    assert chart.keys.ordinates == ["20", "40", "45"]
 
 
-def test_cells_of_a_map_show_their_values(planned: Planned, sheets: list[Sheet]) -> None:
-    """Reference: the invented numbers in kN; the fourth value of one model is missing."""
+def test_cells_of_a_map_show_their_values(planned: Planned, figures: list[Figure]) -> None:
+    """Reference: the invented numbers in kN; the computation of one failed."""
     charts(planned("joint.play=0.006:0.014:3", "segment[2].load=20,40"), ["contact_force"])
-    (sheet,) = sheets
-    assert sheet.axes[-1].get_ylabel() == "contact force (kN)"
-    shown = [sorted(text.get_text() for text in axes.texts) for axes in sheet.axes[:2]]
+    (figure,) = figures
+    assert figure.chart.keys.title == "contact force (kN)"
+    shown = [sorted(filter(None, cells.texts.ravel())) for cells in figure.chart.maps]
     forces = [1e-3 * (1.0 + 0.1 * i) for i in range(6)]
     assert shown[0] == sorted(number(force) for force in forces)
-    assert shown[1] == sorted(number(force) for i, force in enumerate(forces) if i != 2)
+    assert shown[1] == sorted([number(f) for i, f in enumerate(forces) if i != 2] + ["×"])
 
 
-def test_constant_quantity_has_no_panel(planned: Planned, sheets: list[Sheet]) -> None:
+def test_constant_quantity_has_no_panel(planned: Planned, figures: list[Figure]) -> None:
     sweeping = planned("joint.play=0:0.009:4")
     outcomes = [
         Outcome({name: {"mass": 1382.3, "stress": 5e7 + 1e3 * i} for name in FAST}, {})
@@ -333,8 +333,9 @@ def test_constant_quantity_has_no_panel(planned: Planned, sheets: list[Sheet]) -
     ]
     Path("out").mkdir()
     output.write(sweeping, outcomes, Path("out"))
-    assert [axes.get_title(loc="left") for axes in sheets[0].axes] == ["bending stress (MPa)"]
-    (axes,) = sheets[0].axes
+    assert figures[0].chart.panels == ["bending stress (MPa)"]
+    with rc_context(theme.RC):
+        (axes,) = figures[0].draw().axes
     assert axes.yaxis.get_major_formatter().get_offset() == ""
 
 
@@ -358,21 +359,21 @@ def test_keys_are_shown_in_units_of_their_size() -> None:
         assert (shown[name].values.tolist(), shown[name].attrs["units"]) == (values, unit)
 
 
-def test_lines_are_in_shown_units_with_gaps(planned: Planned, sheets: list[Sheet]) -> None:
+def test_lines_are_in_shown_units_with_gaps(planned: Planned, figures: list[Figure]) -> None:
     """Reference: the invented numbers 1.0, 1.1, ... in m and N; one model lacks the third."""
     charts(planned("joint.play=0:0.009:4"))
-    (sheet,) = sheets
-    panels = {axes.get_title(loc="left"): axes for axes in sheet.axes}
-    assert list(panels) == [
+    (figure,) = figures
+    panels = list(figure.chart.panels)
+    assert panels == [
         f"{quantity.title} ({quantity.shown_unit})"
         for quantity in QUANTITIES
         if quantity.name in CHARTED
     ]
-    assert sheet.axes[-1].get_xlabel() == "play (mm)"
+    assert figure.chart.along == "play (mm)"
     for title, factor in (("tip amplitude (mm)", 1e3), ("contact force (kN)", 1e-3)):
-        lines = {str(line.get_label()): line for line in panels[title].get_lines()}
+        lines = {c.name: c for c in figure.chart.curves if c.panel == panels.index(title)}
         assert list(lines) == FAST
         for name, third in zip(FAST, (1.2, math.nan), strict=True):
             expected = factor * np.array([1.0, 1.1, third, 1.3])
-            np.testing.assert_allclose(lines[name].get_ydata(), expected, rtol=1e-12)
-            np.testing.assert_allclose(lines[name].get_xdata(), [0.0, 3.0, 6.0, 9.0])
+            np.testing.assert_allclose(lines[name].values, expected, rtol=1e-12)
+    np.testing.assert_allclose(figure.chart.time, [0.0, 3.0, 6.0, 9.0])

@@ -68,7 +68,7 @@ def test_studies_leave_a_report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch)
         "convergence.json", "convergence.md", "figures", "report.html", "verification.md",
     ]  # fmt: skip
     page = (folder / "report.html").read_text(encoding="utf-8")
-    assert "data:image/webp" in page
+    assert "data:image/svg+xml" in page
     assert page.count("MacNeal and Harder 1985") == 1
 
 

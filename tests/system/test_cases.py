@@ -18,7 +18,7 @@ from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.run import run_case
 from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
-from protractile.runs.report.figures import draw
+from protractile.runs.report.figures import figures_of
 
 pytestmark = pytest.mark.slow
 
@@ -40,9 +40,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     run = run_case(case.model_copy(update={"time": short}), file, means)
     run.evaluate()
     results = run.results
-    figures = draw(results, tmp_path)
-    page = render(results, Addition(), figures, [])
-    assert all(figure.path.exists() for figure in figures)
+    page = render(results, Addition(), figures_of(results), [])
     assert case.title in unescape(page)
     assert ("First vertical and lateral peaks of the tip" in page) == (name == "spatial")
     models = results.summary.models

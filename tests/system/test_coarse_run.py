@@ -16,6 +16,7 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.opengl import RenderingUnavailable, require_opengl
 from protractile.runs.report.scene import Scene
+from protractile.runs.report.sheet import Snapshot
 from protractile.shell_model.stress.stresses import ShellStress, wall_forces
 from tests import at_once
 from tests.short_film import RENDERED
@@ -203,7 +204,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     assert protractile("run", short, "--models", "shell", "--out", again) == 0
     assert "\nno snapshots: no OpenGL\n" in capsys.readouterr().out
     summary = summary_of(again)
-    assert summary["snapshots"] == {"written": [], "skipped": "no OpenGL"}
+    assert summary["snapshots"] == {"written": {}, "skipped": "no OpenGL"}
     assert not (again / "snapshots").exists()
     assert protractile("snapshot", again) == 2
     assert capsys.readouterr().err == (
@@ -227,7 +228,7 @@ def test_pictures_can_be_left_to_later(
     later = "not requested; protractile snapshot draws them"
     assert f"\nno snapshots: {later}\n" in capsys.readouterr().out
     summary = summary_of(out)
-    assert summary["snapshots"] == {"written": [], "skipped": later}
+    assert summary["snapshots"] == {"written": {}, "skipped": later}
 
 
 @pytest.mark.usefixtures("few_figures", "_short_film")
@@ -236,10 +237,10 @@ def test_two_shells_of_a_case_keep_their_files_apart(
 ) -> None:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-    def draw(views: Sequence[Scene], folder: Path, times: None) -> list[Path]:
+    def draw(views: Sequence[Scene], folder: Path, times: None) -> list[Snapshot]:
         path = folder / "boom-end.png"
         Image.new("RGB", (8, 8)).save(path)
-        return [path]
+        return [Snapshot(path, "The end", "The boom at its end.")]
 
     monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", (draw,))
     text = short.read_text(encoding="utf-8").replace("mesh_size = 0.25", "mesh_size = 0.5")

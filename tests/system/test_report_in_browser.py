@@ -73,7 +73,8 @@ def test_a_report_is_whole_on_a_telephone(page: Page, folder: Path) -> None:
     page.open(folder / "report.html", WIDTH)
     assert page.complaints == []
     assert page.evaluate("innerWidth") == WIDTH
-    assert page.evaluate("document.images.length") == len(list((folder / "figures").iterdir()))
+    # The boom, the tip, the state at rest.
+    assert page.evaluate("document.images.length") == 3
     assert page.evaluate(BROKEN) == []
     assert page.evaluate(DEAD) == []
     assert page.evaluate("document.documentElement.scrollWidth") <= WIDTH
@@ -115,7 +116,7 @@ def test_a_curve_says_the_number_of_the_file(page: Page, folder: Path) -> None:
 
 
 def test_a_curve_is_hidden_by_its_name(page: Page, folder: Path) -> None:
-    """Reference: the clicked legend. On paper a picture replaces the chart."""
+    """Reference: the clicked legend. On paper a picture replaces the chart of a main figure."""
     page.open(folder / "report.html", 1000)
     page.evaluate(MIDDLE.format("#figure-tip"))
     page.wait_for(f"{PLOT}.querySelector('.legendtoggle')")

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from PIL import Image
 
 from protractile.runs.case.reading import load
 from protractile.runs.paper.rules import judge
@@ -62,10 +63,10 @@ def refusal(capsys: pytest.CaptureFixture[str]) -> Refusal:
 
 def test_every_file_of_a_series_run_opens(series: Path) -> None:
     check_common_files(series, SERIES)
-    assert {name for name in files(series) if not name.startswith("figures/")} == {
+    assert files(series) == {
         "case.toml", "results.csv", "curves.nc", "trajectories.nc", "trajectories.csv",
         "summary.json", "verdicts.json",
-        "report.html", "viewer.html", ".manifest", ".drawn-of",
+        "report.html", "viewer.html", ".manifest",
     }  # fmt: skip
 
 
@@ -80,6 +81,7 @@ def test_a_run_reads_back(series: Path) -> None:
 @pytest.mark.usefixtures("unprinted")
 def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, again: Path) -> None:
     """Reference: the first run. Equal arithmetic gives equal numbers."""
+    (again / "figures").mkdir()
     (again / "figures" / "stale.png").write_bytes(b"of an earlier version")
     (again / "fields.nc").write_bytes(b"of a shell that is not run now")
     with (again / ".manifest").open("a") as manifest:
@@ -94,21 +96,22 @@ def test_a_repeated_run_leaves_the_same_and_nothing_else(series: Path, again: Pa
 @pytest.mark.usefixtures("unprinted")
 def test_a_report_is_rendered_again_from_the_data(series: Path, again: Path) -> None:
     (again / "report.html").unlink()
-    shutil.rmtree(again / "figures")
     assert protractile("report", again) == 0
     assert files(again) == files(series)
 
 
-def test_figures_are_drawn_again_of_other_numbers_alone(again: Path) -> None:
-    (again / ".manifest").unlink()
-    tip, other = (again / "figures" / name for name in ("tip.png", "head.png"))
-    drawn = tip.read_bytes()
-    shutil.copy(other, tip)
+def test_pictures_of_figures_are_kept_up_to_date(again: Path) -> None:
+    """Reference: the figures of the report; without a request there are no files."""
+    report = again / "report.html"
+    few = report.read_text("utf-8").count("data:image/svg+xml")
+    assert protractile("report", "--figures", again) == 0
+    names = {path.stem for path in (again / "figures").iterdir()}
+    assert {"boom", "tip", "head", "energies"} < names
+    assert report.read_text("utf-8").count("data:image/svg+xml") == len(names) > few > 1
+    (again / "figures" / "tip.png").unlink()
     assert protractile("report", again) == 0
-    assert tip.read_bytes() == other.read_bytes()
-    (again / ".drawn-of").write_text("of an earlier version")
-    assert protractile("report", again) == 0
-    assert tip.read_bytes() == drawn
+    with Image.open(again / "figures" / "tip.png") as image:
+        image.verify()
 
 
 def test_files_of_two_runs_are_not_mixed(again: Path, refusal: Refusal) -> None:

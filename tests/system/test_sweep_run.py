@@ -54,7 +54,7 @@ def test_a_sweep_leaves_its_files_and_is_taken_up(
     shutil.copytree(swept, "out")
     before = stamps("out")
     assert len(before) == 3
-    expected = {".manifest", "sweep.nc", "sweep.csv"}
+    expected = {".manifest", "report.html", "sweep.nc", "sweep.csv"}
     expected |= {"figures/sweep-lines.png", *(f"points/{name}" for name in before)}
     assert files(Path("out")) == expected
     with Image.open("out/figures/sweep-lines.png") as image:
