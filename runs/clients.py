@@ -14,7 +14,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
 
-CLIENTS = "paper", "live", "export", "chart"
+CLIENTS = "paper", "live", "export", "chart", "measured"
 
 
 def modules(name: str) -> list[ModuleType]:

@@ -1,0 +1,181 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Comparison of a model with the measured channels of a case."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import TO_PERCENT, number
+from protractile.runs.case.schema import Case
+from protractile.runs.measured.experiment import Experiment
+from protractile.runs.measured.keys import Channel
+from protractile.runs.measured.residuals import Residuals, features_of
+from protractile.runs.measured.signals import decay, even, main_frequency
+from protractile.runs.report.tables import Cell, Table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# Root mean square of the residuals up to which model and readings agree: the factor of an expanded
+# uncertainty of 95 % (Guide to the Expression of Uncertainty in Measurement, 2008).
+AGREES = 2.0
+
+
+class Agreement(NamedTuple):
+    """Differences of the model from the readings of a channel, in SI units.
+
+    Vibrations have a pair of numbers, of the readings and of the model. They are NaN for a single
+    value. Curves are compared up to the end of predictability, vibrations over all readings.
+    """
+
+    channel: str  #: name of the channel
+    quantity: str  #: measured quantity
+    unit: str  #: its SI unit
+    until: float  #: end in s of the comparison of curves; infinite without an end
+    bias: float  #: mean of model less reading
+    rms: float  #: root mean square of the difference
+    correlation: float  #: correlation of model and readings; NaN for a single value
+    misfit: float  #: root mean square of the residuals, over their uncertainty
+    range: Sequence[float]  #: range of the readings, and of the model
+    frequency: Sequence[float]  #: main frequency in Hz
+    decay: Sequence[float]  #: damping ratio by the decay of the peaks
+    slow: Sequence[float]  #: standard deviation below the cut-off
+    fast: Sequence[float]  #: standard deviation above it
+
+    @property
+    def agrees(self) -> bool:
+        """True if the model differs by no more than the uncertainty explains."""
+        return self.misfit <= AGREES
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A model of a case and its measured channels."""
+
+    residuals: Residuals
+    values: Array  #: values (num_unknowns,) of the unknowns of the residuals
+
+    @property
+    def settings(self) -> dict[str, float]:
+        """The values of the unknowns by key."""
+        return dict(zip(self.residuals.keys, map(float, self.values), strict=True))
+
+    @cached_property
+    def evaluated(self) -> list[tuple[Channel, Array]]:
+        """The channels with their values (num_motions, num_times) by the model."""
+        return self.residuals.experiment.evaluate(self.settings)
+
+    @cached_property
+    def agreements(self) -> list[Agreement]:
+        """The differences of each channel."""
+        return [*self._agreements()]
+
+    def _agreements(self) -> Iterator[Agreement]:
+        parts, horizons = self.residuals.parts(self.evaluated), self.residuals.horizons
+        for (one, (model, *_)), off, end in zip(self.evaluated, parts, horizons, strict=True):
+            readings, correlation = one.readings, np.nan
+            compared, vibrations = np.full(readings.size, True), [[np.nan, np.nan]] * 5
+            if one.table is not None:
+                compared = one.times <= end
+                correlation = float(np.corrcoef(model[compared], readings[compared])[0, 1])
+                both = np.array([readings, model])
+                time, curves = even(one.times, both)
+                cut = features_of(one, both, self.residuals.cutoff)
+                vibrations = [
+                    np.ptp(both, axis=1).tolist(),
+                    [main_frequency(time, row) for row in curves],
+                    [decay(time, row) for row in curves],
+                    [one.slow for one in cut],
+                    [one.fast for one in cut],
+                ]
+            apart = (model - readings)[compared]
+            yield Agreement(
+                one.name, one.quantity, one.measures.unit, end, float(apart.mean()),
+                float(np.sqrt(np.mean(apart**2))), correlation,
+                float(np.sqrt(np.mean(off**2))), *vibrations,
+            )  # fmt: skip
+
+    @property
+    def agrees(self) -> bool:
+        """True if the model agrees with all channels."""
+        return all(one.agrees for one in self.agreements)
+
+    @property
+    def frame(self) -> pd.DataFrame:
+        """The differences of all channels in SI units, a row for each."""
+        import pandas as pd
+
+        return pd.DataFrame(self.agreements).set_index("channel")
+
+    def table(self, title: str = "Model and readings") -> Table:
+        """Return a table of the differences of all channels."""
+        rows: list[tuple[Cell, ...]] = []
+        for one, (channel, _) in zip(self.agreements, self.evaluated, strict=True):
+            factor, unit = channel.measures.factor, channel.measures.shown_unit
+            end = "" if np.isinf(one.until) else f"\nup to {number(one.until)} s"
+            rows.append(
+                (
+                    f"{one.channel}{end}",
+                    unit,
+                    None if channel.relative else factor * one.bias,
+                    factor * one.rms,
+                    None if np.isnan(one.correlation) else one.correlation,
+                    one.misfit,
+                    "✓" if one.agrees else "✗",
+                )
+            )
+        notes = [
+            "Bias: mean of model less reading. Misfit: difference over its uncertainty, 1 if "
+            f"the model is right; ✓ up to {AGREES:g}."
+        ]
+        if np.isfinite(self.residuals.horizons).any():
+            notes.append(
+                "Impacts make the motion unpredictable: curves are compared up to the time in the "
+                "first column, and the misfit is that of features of the whole motion."
+            )
+        heads = {"channel": "", "unit": "", "bias": ".3g", "RMS": ".3g"}
+        heads |= {"corre-\nlation": ".3f", "misfit": ".2f", "agrees": ""}
+        return Table.of_rows("measured", title, heads, rows, notes)
+
+    def vibrations(self) -> Table:
+        """Return a table of range, frequency, decay and parts of the vibration of each channel."""
+        rows: list[tuple[Cell, ...]] = []
+        for one, (channel, _) in zip(self.agreements, self.evaluated, strict=True):
+            factor, unit = channel.measures.factor, channel.measures.shown_unit
+            factors = factor, 1.0, TO_PERCENT, factor, factor
+            pairs = one.range, one.frequency, one.decay, one.slow, one.fast
+            for k, source in enumerate(("readings", "model")) if channel.table else ():
+                numbers = (size * pair[k] for size, pair in zip(factors, pairs, strict=True))
+                rows.append(("" if k else f"{one.channel} ({unit})", source, *numbers))
+        heads = ("channel", "of", "range", "frequency\nHz", "decay\n%", "slow", "fast")
+        columns = {head: ".3g" if index > 1 else "" for index, head in enumerate(heads)}
+        notes = [
+            "Decay: damping ratio by the heights of the peaks. Slow and fast: standard deviations "
+            f"below and above {number(self.residuals.cutoff)} Hz."
+        ]
+        return Table.of_rows("vibrations", "Vibrations", columns, rows, notes)
+
+
+def compare(case: Case, model: str | None = None, file: str = "case") -> Comparison:
+    """Return the comparison of a model of a case with its measured channels.
+
+    >>> comparison = compare(case)
+    >>> comparison.frame[["bias", "misfit"]]
+
+    Args:
+        case: a checked case with ``measured``.
+        model: name of a beam; the last beam with play unless given.
+        file: name of the case in messages.
+
+    Raises:
+        BadInput: the case has no measured channel or no beam, or a channel does not fit it.
+        NumericsError: the model cannot be computed.
+    """
+    none = np.zeros(0)
+    return Comparison(Residuals.of(Experiment(case, file, model), (), none), none)

@@ -1,0 +1,284 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Identification of unknown numbers of a case from its measured channels."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from protractile.geometry.arrays import Array
+from protractile.geometry.typography import number, percent
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.measured.compare import Comparison
+from protractile.runs.measured.experiment import Experiment
+from protractile.runs.measured.fit import STEP, Fit, fit, jacobian, profile
+from protractile.runs.measured.keys import Channel
+from protractile.runs.measured.residuals import Residuals, reduce_shared, shared_errors
+from protractile.runs.process.bad_input import BadInput
+from protractile.runs.report.tables import Cell, Table
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+# Number of readings of a possible channel, its relative uncertainty, and those of properties.
+READINGS, UNCERTAINTY = 100, 0.01
+_OF_PROPERTIES = {"damping_ratio": 0.1, "free_travel": 0.05}
+# Places of possible gauges as fractions of the length of a segment, and their names.
+_PLACES = {"tail": 0.1, "middle": 0.5, "head": 0.9}
+# Number of possible channels in the report, and largest ratio of errors with one of them.
+MOST_ROWS, HELPS = 8, 0.9
+
+
+def parse(text: str, file: str) -> tuple[str, tuple[float, float]]:
+    """Return the key and the bounds of an option KEY=LOW:HIGH.
+
+    Raises:
+        BadInput: the option is invalid.
+    """
+    key, _, bounds = (part.strip() for part in text.partition("="))
+    try:
+        low, high = map(float, bounds.split(":"))
+    except ValueError:
+        what = "not understood; give KEY=LOW:HIGH, such as joint.play=0:0.03"
+        raise BadInput(file, f"--unknown {text}", what) from None
+    return key, (low, high)
+
+
+@dataclass(frozen=True)
+class Identification:
+    """Unknown numbers of a case, identified from its measured channels."""
+
+    keys: Sequence[str]  #: keys of the unknowns
+    residuals: Residuals  #: residuals as a function of the unknowns
+    start: Array  #: values (num_unknowns,) of the case
+    found: Fit  #: values, errors and correlation of the unknowns
+
+    @property
+    def before(self) -> Comparison:
+        """The comparison of the case as it was given."""
+        return Comparison(self.residuals, self.start)
+
+    @cached_property
+    def after(self) -> Comparison:
+        """The comparison of the identified case."""
+        return Comparison(self.residuals, self.found.values)
+
+    @property
+    def case(self) -> Case:
+        """The case with the identified numbers."""
+        experiment = self.residuals.experiment
+        update = {
+            name: getattr(experiment.case, name) for name in ("models", "observe", "ensemble")
+        }
+        return experiment.changed(self.after.settings).model_copy(update=update)
+
+    @property
+    def frame(self) -> pd.DataFrame:
+        """A row for each unknown in the units of the case: value, standard error, bounds, marks."""
+        import pandas as pd
+
+        columns = {
+            "value": self.found.values, "error": self.found.errors, "before": self.start,
+            "low": self.found.low, "high": self.found.high, "determined": self.found.determined,
+        }  # fmt: skip
+        return pd.DataFrame(columns, index=[*self.keys])
+
+    @property
+    def correlation(self) -> pd.DataFrame:
+        """The correlation between the unknowns."""
+        import pandas as pd
+
+        return pd.DataFrame(self.found.correlation, [*self.keys], [*self.keys])
+
+    def profile(self, key: str) -> tuple[Array, Array]:
+        """Return values of an unknown, and the increase of χ²; 3.84 bounds the interval of 95 %.
+
+        All other unknowns are fitted to each value.
+        """
+        return profile(self.residuals, self.found, self.keys.index(key))
+
+    @cached_property
+    def helpful(self) -> list[tuple[str, Array]]:
+        """Possible channels with the errors that they leave, as fractions of the errors without.
+
+        The first ones help most. Each has 100 readings over the run, with an uncertainty of 1 %.
+        """
+        experiment, span = self.residuals.experiment, self.found.high - self.found.low
+        own, channels = experiment.case, experiment.channels
+        possible = [*_possible_channels(own, any(one.relative for one in channels))]
+        wider = own.model_copy(update={"measured": (*channels, *possible)})
+        other = Experiment(wider, experiment.file, experiment.model, experiment.keys)
+
+        def compute(u: Array) -> Array:
+            values = self.found.low + span * u
+            settings = dict(zip(self.keys, map(float, values), strict=True))
+            parts = other.evaluate(settings)[-len(possible) :]
+            return np.concatenate([part[0] for _, part in parts])
+
+        u = (self.found.values - self.found.low) / span
+        sizes = [len(one.table or (0,)) for one in possible]
+        ends = np.cumsum(sizes)[:-1]
+        at, slopes = (np.split(part, ends) for part in (compute(u), jacobian(compute, u, STEP)))
+        systematic = max(one.systematic for one in channels)
+        alone = np.diag(self.found.covariance_with())
+        helpful = []
+        for channel, values, slope in zip(possible, at, slopes, strict=True):
+            part = _OF_PROPERTIES.get(channel.quantity, UNCERTAINTY)
+            size = np.abs(values).max() if channel.table is None else np.ptp(values)
+            if size > 0.0:
+                known = {"uncertainty": part * size, "systematic": systematic}
+                errors = shared_errors(channel.model_copy(update=known), values[None])
+                left = self.found.covariance_with(reduce_shared(slope / (part * size), errors))
+                helpful.append((channel.name, np.sqrt(np.diag(left) / alone)))
+        return sorted(helpful, key=lambda one: float(one[1].min()))
+
+    def table(self) -> Table:
+        """Return a table of the unknowns with their standard errors."""
+        found, rows = self.found, list[tuple[Cell, ...]]()
+        for k, key in enumerate(self.keys):
+            marks = ["not determined by the readings"] * (not found.determined[k])
+            marks += ["at its bound"] * bool(found.at_bound[k])
+            error = found.errors[k] if found.determined[k] else None
+            value = found.values[k]
+            part = None if error is None or value == 0.0 else 100.0 * error / abs(value)
+            unit = self.residuals.experiment.number(key)[1]
+            rows.append((key, unit, self.start[k], value, error, part, "\n".join(marks)))
+        notes = [f"{found.agreeing} of {found.starts.size} starts reach this minimum."]
+        notes.append(f"The misfit of all readings is {number(found.misfit)}, 1 for a right model.")
+        if found.misfit > 1.0:
+            notes.append("The standard errors are larger by this factor.")
+        if not any(one.systematic for one in self.residuals.experiment.channels):
+            notes.append(
+                "The errors are those of independent readings: systematic says how far readings "
+                "and model share an error."
+            )
+        heads = {
+            "unknown": "",
+            "unit": "",
+            "case": ".4g",
+            "identified": ".4g",
+            "standard\nerror": ".2g",
+        }
+        heads |= {"in %": ".2g", "": ""}
+        return Table.of_rows("unknowns", "Identified numbers", heads, rows, notes)
+
+    def correlation_table(self) -> Table:
+        """Return a table of the correlation between the unknowns."""
+        rows = [
+            (key, *(None if np.isnan(part) else float(part) for part in row))
+            for key, row in zip(self.keys, self.found.correlation, strict=True)
+        ]
+        heads = {"": ""} | dict.fromkeys((key.replace(".", ".\n") for key in self.keys), ".2f")
+        return Table.of_rows("correlation", "Correlation of the unknowns", heads, rows)
+
+    def helpful_table(self) -> Table:
+        """Return a table of the channels that would determine the unknowns better."""
+        rows = list[tuple[Cell, ...]]()
+        for name, ratios in self.helpful[:MOST_ROWS]:
+            if ratios.min() < HELPS:
+                rows.append((name, *map(float, ratios)))
+        notes = [
+            f"Standard error of each unknown with {READINGS} readings of one more channel, whose "
+            f"uncertainty is {percent(UNCERTAINTY)} of its range (damping ratio 10 %, free travel "
+            "5 %), over the error without it."
+        ]
+        if rows:
+            name, ratios = self.helpful[0]
+            best = int(np.argmin(ratios))
+            notes.insert(
+                0,
+                f"{name} would leave {percent(ratios[best], 2)} of the error of {self.keys[best]}.",
+            )
+        heads = {"one more channel": ""} | dict.fromkeys(
+            (key.replace(".", ".\n") for key in self.keys), ".2f"
+        )
+        return Table.of_rows("helpful", "What else to measure", heads, rows, notes)
+
+
+def _possible_channels(case: Case, relative: bool) -> Iterator[Channel]:
+    """Yield channels that could be measured: over time, ``relative`` or not, and single values."""
+    times = np.linspace(0.0, case.time.duration, READINGS).tolist()
+    over_time: dict[str, Any] = {"table": [(time, 0.0) for time in times], "relative": relative}
+    kinds: list[dict[str, Any]] = []
+    boom = build_boom(case)
+    for segment, (place, part) in product(boom.segments, _PLACES.items()):
+        at = {"segment": segment.name, "x": segment.start + part * segment.length} | over_time
+        quantities = ["strain"] * (segment.section is not None)
+        quantities += ["rotation", "acceleration"] * (place == "head")
+        kinds += [
+            {"name": f"{one} at {place} of {segment.name}", "quantity": one} | at
+            for one in quantities
+        ]
+    kinds += [
+        {"name": f"force of cylinder {k}", "quantity": "cylinder_force", "number": k} | over_time
+        for k in range(1, 1 + len(boom.cylinders))
+    ]
+    kinds.append({"name": "tip over time", "quantity": "tip"} | over_time)
+    kinds += [
+        {"name": name, "quantity": quantity, "number": mode, "value": 0.0}
+        for name, quantity, mode in (
+            ("tip at rest", "tip", 1), ("first frequency", "frequency", 1),
+            ("second frequency", "frequency", 2), ("damping ratio", "damping_ratio", 1),
+            ("free travel", "free_travel", 1),
+        )
+    ]  # fmt: skip
+    yield from (Channel.model_validate(keys | {"uncertainty": 1.0}) for keys in kinds)
+
+
+def identify(
+    case: Case,
+    unknown: Mapping[str, tuple[float, float]],
+    model: str | None = None,
+    *,
+    starts: int = 4,
+    file: str = "case",
+    progress: Callable[[float], None] = lambda part: None,
+) -> Identification:
+    """Identify unknown numbers of a case by bounded least squares from its measured channels.
+
+    >>> found = identify(case, {"joint.play": (0.0, 0.03), "damping.modal": (0.0, 0.1)})
+    >>> found.frame[["value", "error"]]
+
+    Args:
+        case: a checked case with ``measured``.
+        unknown: lower and upper bound by key, in the units of the case; also
+            ``measured.time_offset``.
+        model: name of a beam; the last beam with play unless given.
+        starts: number of searches; the first one starts from the numbers of the case.
+        file: name of the case in messages.
+        progress: callback that receives the completed fraction, 0 to 1.
+
+    Raises:
+        BadInput: a key or a bound is invalid, or the channels do not fit the case.
+        NumericsError: the model cannot be computed anywhere between the bounds.
+    """
+    for key, (least, most) in unknown.items():
+        if not (np.isfinite([least, most]).all() and least < most):
+            what = f"must have a lower bound below the upper one, got {least:g} and {most:g}"
+            raise BadInput(file, f"--unknown {key}", what)
+    keys = [*unknown]
+    low, high = np.array([*unknown.values()], dtype=float).T
+    experiment = Experiment(case, file, model, keys)
+    start = np.array([experiment.number(key)[0] for key in keys])
+    start = np.where(np.isfinite(start), np.clip(start, low, high), 0.5 * (low + high))
+    for k, bound in product(range(len(keys)), (low, high)):
+        values = np.where(np.arange(len(keys)) == k, bound, start)
+        try:
+            experiment.check(dict(zip(keys, values.tolist(), strict=True)))
+        except BadInput as fault:
+            what = f"{bound[k]:g} is not valid ({fault.what}); give other bounds"
+            raise BadInput(file, f"--unknown {keys[k]}", what) from None
+    residuals = Residuals.of(experiment, keys, start)
+    found = fit(residuals, low, high, start, starts, progress, residuals.step)
+    at_solution = Residuals.of(experiment, keys, found.values)
+    if [one is None for one in at_solution.features] != [one is None for one in residuals.features]:
+        # The identified boom moves otherwise: curves give way to features, or features to curves.
+        residuals = at_solution
+        found = fit(residuals, low, high, found.values, starts, progress, residuals.step)
+    return Identification(keys, residuals, start, found)

@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Residuals of all channels: (model − reading)/uncertainty, of curves or of their features.
+
+A channel whose motion is predictable is compared at each reading. If slightly changed loads make
+its motion diverge before the last reading, its features are compared instead, as means over an
+ensemble. Their uncertainty is that of the readings, from repeated noise, and the scatter of the
+ensemble.
+
+An error that all readings of a channel share makes their covariance V = σ² (1 + U Uᵀ), with columns
+of U for an error of the size and one of the frequency. The residuals are those of generalised least
+squares, V^(−½) (model − reading) (Aitken 1935).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from protractile.analysis.low_pass import CUTOFF_SHARE
+from protractile.dynamics.predictability import SHARES, horizon
+from protractile.geometry.arrays import Array
+from protractile.runs.measured.experiment import Experiment
+from protractile.runs.measured.fit import STEP
+from protractile.runs.measured.keys import Channel
+from protractile.runs.measured.signals import Features, even
+from protractile.runs.sweep.distances import CHANGE
+
+# Relative changes of the loads of an ensemble, and number of repetitions of the noise.
+MEMBERS = (0.0, CHANGE, -CHANGE, 0.5 * CHANGE, -0.5 * CHANGE)
+NOISES = 20
+# Step of differences for features, whose scatter hides small changes.
+COARSE = 2.0e-2
+# Least uncertainty of a feature, as a fraction of itself, and residual of a feature that only the
+# readings have.
+LEAST, MISSING = 1.0e-3, 10.0
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """Residuals of all channels as a function of unknowns."""
+
+    experiment: Experiment
+    keys: Sequence[str]  #: keys of the unknowns
+    cutoff: float  #: cut-off in Hz of the slow part of a motion
+    horizons: Sequence[float]  #: end of predictability in s of each channel; infinite for none
+    #: features of the readings and their uncertainties, of chaotic channels; None for others
+    features: Sequence[tuple[Array, Array] | None]
+    #: directions (num_residuals, num_errors) of shared errors, and the part of each that is left
+    shared: Sequence[tuple[Array, Array]]
+
+    @classmethod
+    def of(cls, experiment: Experiment, keys: Sequence[str], values: Array) -> Residuals:
+        """Return the residuals, which curves or features have at these values of the unknowns."""
+        settings = dict(zip(keys, map(float, values), strict=True))
+        cutoff = CUTOFF_SHARE * experiment.first_frequency(settings)
+        several = replace(experiment, perturbations=MEMBERS)
+        computed = several.evaluate(settings)
+        horizons = [
+            np.inf
+            if one.table is None
+            else float(np.nan_to_num(horizon(both[:2], one.times, SHARES[0]), nan=np.inf))
+            for one, both in computed
+        ]
+        features = [
+            None if np.isinf(end) else _noisy_features(one, members, cutoff)
+            for (one, members), end in zip(computed, horizons, strict=True)
+        ]
+        shared = [
+            shared_errors(one, members, known, cutoff)
+            for (one, members), known in zip(computed, features, strict=True)
+        ]
+        chosen = several if any(one is not None for one in features) else experiment
+        return cls(chosen, keys, cutoff, horizons, features, shared)
+
+    @property
+    def step(self) -> float:
+        """The step of differences for a Jacobian, as a fraction of the range of each unknown."""
+        return STEP if all(one is None for one in self.features) else COARSE
+
+    def __call__(self, values: Array) -> Array:
+        """Return the residuals (num_residuals,) at values (num_unknowns,) of the unknowns."""
+        settings = dict(zip(self.keys, map(float, values), strict=True))
+        return np.concatenate(self.parts(self.experiment.evaluate(settings)))
+
+    def parts(self, evaluated: Sequence[tuple[Channel, Array]]) -> list[Array]:
+        """Return the residuals of each channel from their values."""
+        plain = [
+            (members[0] - one.readings) / one.uncertainty
+            if known is None
+            else _feature_residuals(one, members, self.cutoff, *known)
+            for (one, members), known in zip(evaluated, self.features, strict=True)
+        ]
+        return [reduce_shared(off, errors) for off, errors in zip(plain, self.shared, strict=True)]
+
+
+def reduce_shared(off: Array, errors: tuple[Array, Array]) -> Array:
+    """Return differences (num_readings, ...) over uncertainties, less those by shared errors.
+
+    ``errors`` are those of :func:`shared_errors`.
+    """
+    directions, left = errors
+    return np.asarray(off - ((1.0 - left) * directions) @ (directions.T @ off))
+
+
+def shared_errors(
+    channel: Channel,
+    members: Array,
+    known: tuple[Array, Array] | None = None,
+    cutoff: float = np.inf,
+) -> tuple[Array, Array]:
+    """Return orthonormal directions of errors that all readings share, and 1/√(1 + λ) of each.
+
+    λ are the eigenvalues of U Uᵀ.
+    """
+    if known is not None:
+        errors = [np.nan_to_num(np.mean(features_of(channel, members, cutoff), axis=0)) / known[1]]
+    else:
+        zero = members[0].mean() if channel.relative else 0.0
+        errors = [(members[0] - zero) / channel.uncertainty]
+        if channel.table is not None:
+            time = channel.times
+            errors.append(time * np.gradient(members[0], time) / channel.uncertainty)
+    columns = channel.systematic * np.array(errors).T
+    directions, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    return directions, 1.0 / np.sqrt(1.0 + sizes**2)
+
+
+def features_of(channel: Channel, curves: Array, cutoff: float) -> list[Features]:
+    """Return the features of curves (num_curves, num_times) at the times of a channel."""
+    time, rows = even(channel.times, curves)
+    return [Features.of(time, row, cutoff) for row in rows]
+
+
+def _noisy_features(channel: Channel, members: Array, cutoff: float) -> tuple[Array, Array]:
+    """Return features of readings without the part of their noise, and their uncertainties."""
+    readings = channel.readings
+    noise = np.random.default_rng(0).normal(0.0, channel.uncertainty, (NOISES, readings.size))
+    noisy = np.array(features_of(channel, readings + noise, cutoff))
+    (clean,) = np.array(features_of(channel, readings[None], cutoff))
+    # The noise of the readings changes a feature as much as the same noise once more.
+    target = 2.0 * clean - noisy.mean(axis=0)
+    scatter = np.std(features_of(channel, members, cutoff), axis=0, ddof=1)
+    spread = noisy.std(axis=0, ddof=1)
+    least = LEAST * np.abs(target)
+    return target, np.sqrt(np.nan_to_num(scatter) ** 2 + spread**2 + least**2)
+
+
+def _feature_residuals(
+    channel: Channel, members: Array, cutoff: float, target: Array, uncertainty: Array
+) -> Array:
+    computed = np.mean(features_of(channel, members, cutoff), axis=0)
+    known = np.isfinite(target) & np.isfinite(uncertainty)
+    with np.errstate(invalid="ignore"):
+        off = (computed - target) / uncertainty
+    return np.where(known, np.nan_to_num(off, nan=MISSING), 0.0)
