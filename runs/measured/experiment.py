@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from copy import deepcopy
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -55,8 +54,8 @@ if TYPE_CHECKING:
 #: numbers of the case by key, in the units of the case
 Settings = Mapping[str, float]
 
-# Number of a channel that may be unknown.
-_OF_CHANNELS = {"time_offset"}
+# Start of the keys of channels.
+_OWN = "measured"
 
 
 @dataclass
@@ -99,8 +98,8 @@ class Experiment:
         return channels
 
     @cached_property
-    def whole(self) -> Case:
-        """The case with the beam alone, an output for each channel, and plates as they are.
+    def _of_beam(self) -> Case:
+        """The case with the beam alone, and an output for each channel.
 
         Raises:
             BadInput: the case has no such beam.
@@ -115,7 +114,7 @@ class Experiment:
             for one in self.channels
             if one.quantity in KINDS
         ]
-        case = self.case.model_copy(
+        return self.case.model_copy(
             update={
                 "models": tuple(one for one in self.case.models if one.name in names),
                 "observe": (*self.case.observe, *outputs),
@@ -123,21 +122,37 @@ class Experiment:
                 "ensemble": None,
             }
         )
-        places = [place for key in self.keys for place in self._find(key, tables_of(case))]
-        if any(place.steps[0] != "measured" and place.shapes_sections for place in places):
-            return case
-        return hold_plates(case, infer_plates(case))
+
+    @cached_property
+    def whole(self) -> Case:
+        """The case with the beam alone, and with plates as they are."""
+        if any(place.shapes_sections for key in self.keys for place in self.places(key)):
+            return self._of_beam
+        return hold_plates(self._of_beam, infer_plates(self._of_beam))
 
     @cached_property
     def _tables(self) -> Tables:
         return tables_of(self.whole)
 
-    def _find(self, key: str, tables: Tables) -> Sequence[Place]:
-        own = [one.model_dump(include=_OF_CHANNELS) for one in self.channels]
+    @property
+    def _own(self) -> Tables:
+        """The numbers of channels that may be unknown."""
+        return {_OWN: [one.model_dump(include={"time_offset"}) for one in self.channels]}
+
+    def places(self, key: str) -> tuple[Place, ...]:
+        """Return the places of the numbers at a key.
+
+        Raises:
+            BadInput: the case has no such number.
+        """
         try:
-            return find(key, {**tables, "measured": own})
+            places = find(key, tables_of(self._of_beam) | self._own)
+            return tuple(with_size(place, self._of_beam) for place in places)
         except InvalidVariation as reason:
             raise BadInput(self.file, key, str(reason)) from None
+        except (LookupError, AttributeError):
+            what = "is not a number of the case; give a key such as joint[1].play"
+            raise BadInput(self.file, key, what) from None
 
     def number(self, key: str) -> tuple[float, str]:
         """Return the number at a key in the unit of the case, and this unit.
@@ -145,23 +160,21 @@ class Experiment:
         Raises:
             BadInput: the case has no such number.
         """
-        place = self._find(key, self._tables)[0]
-        own = [one.model_dump(include=_OF_CHANNELS) for one in self.channels]
-        known = {one.steps: value for one, value in numbers({**self._tables, "measured": own})}
+        place = self.places(key)[0]
+        known = {one.steps: value for one, value in numbers(self._tables | self._own)}
         if place.steps not in known:
             what = "is not a number of the case; give it a value, from which the search starts"
             raise BadInput(self.file, key, what)
-        unit, system = unit_of(place, self.whole) or "1", self.case.system
+        unit, system = unit_of(place, self._of_beam) or "1", self.case.system
         return system.of(known[place.steps], unit), system.label(unit)
 
     def variations(self, settings: Settings) -> list[tuple[Variation, float]]:
-        """Return the numbers of the case itself, without those of channels, with their places."""
-        found = [
-            (Variation(key, (value,), tuple(with_size(one, self.whole) for one in places)), value)
+        """Return the numbers of the boom with their places, without those of channels."""
+        return [
+            (Variation(key, (value,), self.places(key)), value)
             for key, value in settings.items()
-            for places in [self._find(key, self._tables)]
+            if not key.startswith(_OWN)
         ]
-        return [one for one in found if one[0].places[0].steps[0] != "measured"]
 
     def changed(self, settings: Settings) -> Case:
         """Return the case with other numbers, also of channels.
@@ -170,14 +183,13 @@ class Experiment:
             BadInput: a key is unknown, or a number exceeds its limits.
         """
         case = set_numbers(self.file, self.whole, self._tables, self.variations(settings))
-        own = {"measured": [one.model_dump(include=_OF_CHANNELS) for one in self.channels]}
-        for key, value in settings.items():
-            for place in self._find(key, self._tables):
-                if place.steps[0] == "measured":
-                    with_size(place, self.whole).put(own, value)
+        own = self._own
+        for key in (key for key in settings if key.startswith(_OWN)):
+            for place in self.places(key):
+                place.put(own, settings[key])
         channels = (
-            one.model_copy(update=numbers_of)
-            for one, numbers_of in zip(self.channels, deepcopy(own["measured"]), strict=True)
+            channel.model_copy(update=numbers_of_channel)
+            for channel, numbers_of_channel in zip(self.channels, own[_OWN], strict=True)
         )
         return case.model_copy(update={"measured": tuple(channels)})
 

@@ -38,7 +38,7 @@ PART = 0.3
 # Relative difference of χ² up to which two starts have the same minimum.
 SAME = 1.0e-2
 # Increase of χ² over s² at the ends of an interval of 95 %.
-CHI_SQUARE_95 = 3.841
+CHI_SQUARE_95 = 3.8415
 # Number of values of a profile, and their farthest distance in standard errors.
 PROFILE, FARTHEST = 9, 3.0
 
