@@ -86,10 +86,10 @@ class Channel(CaseTable):
     """the time in s of the run at which the time of the readings is 0"""
     relative: Flag = False
     """whether the zero of the readings is unknown, so that only their changes count"""
-    changes: dict[str, Number] = Field(default_factory=dict)
+    changes: Annotated[dict[str, Number], In("1")] = Field(default_factory=dict)
     """key = value of each number of the case that was another one in this measurement, in the
     units of the case: { "payload.mass" = 200.0 }"""
-    since: dict[str, Number] = Field(default_factory=dict)
+    since: Annotated[dict[str, Number], In("1")] = Field(default_factory=dict)
     """key = value of each number of the case in the state in which a single value was set to 0;
     unless given, the value is absolute"""
 
