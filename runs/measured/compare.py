@@ -61,15 +61,10 @@ class Comparison:
     residuals: Residuals
     values: Array  #: values (num_unknowns,) of the unknowns of the residuals
 
-    @property
-    def settings(self) -> dict[str, float]:
-        """The values of the unknowns by key."""
-        return dict(zip(self.residuals.keys, map(float, self.values), strict=True))
-
     @cached_property
     def evaluated(self) -> list[tuple[Channel, Array]]:
         """The channels with their values (num_motions, num_times) by the model."""
-        return self.residuals.experiment.evaluate(self.settings)
+        return self.residuals.experiment.evaluate(self.residuals.settings(self.values))
 
     @cached_property
     def agreements(self) -> list[Agreement]:
@@ -178,4 +173,5 @@ def compare(case: Case, model: str | None = None, file: str = "case") -> Compari
         NumericsError: the model cannot be computed.
     """
     none = np.zeros(0)
-    return Comparison(Residuals.of(Experiment(case, file, model), (), none), none)
+    residuals = Residuals.of(Experiment(case, file, model), (), none)
+    return Comparison(residuals.with_shared_errors(none), none)

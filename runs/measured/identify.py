@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from typing import TYPE_CHECKING, Any
@@ -26,9 +26,10 @@ from protractile.runs.report.tables import Cell, Table
 if TYPE_CHECKING:
     import pandas as pd
 
-# Number of readings of a possible channel, its relative uncertainty, and those of properties.
+# Number of readings of a possible channel, and their uncertainty as a fraction of their range.
 READINGS, UNCERTAINTY = 100, 0.01
-_OF_PROPERTIES = {"damping_ratio": 0.1, "free_travel": 0.05}
+# Uncertainty of a damping ratio as a fraction of itself, and of a tape measure in m.
+OF_DAMPING, OF_TAPE = 0.1, 1.0e-3
 # Places of possible gauges as fractions of the length of a segment, and their names.
 _PLACES = {"tail": 0.1, "middle": 0.5, "head": 0.9}
 # Number of possible channels in the report, and largest ratio of errors with one of them.
@@ -76,7 +77,9 @@ class Identification:
         update = {
             name: getattr(experiment.case, name) for name in ("models", "observe", "ensemble")
         }
-        return experiment.changed(self.after.settings).model_copy(update=update)
+        return experiment.changed(self.residuals.settings(self.found.values)).model_copy(
+            update=update
+        )
 
     @property
     def frame(self) -> pd.DataFrame:
@@ -107,7 +110,7 @@ class Identification:
     def helpful(self) -> list[tuple[str, Array]]:
         """Possible channels with the errors that they leave, as fractions of the errors without.
 
-        The first ones help most. Each has 100 readings over the run, with an uncertainty of 1 %.
+        The first ones help most.
         """
         experiment, span = self.residuals.experiment, self.found.high - self.found.low
         own, channels = experiment.case, experiment.channels
@@ -117,8 +120,7 @@ class Identification:
 
         def compute(u: Array) -> Array:
             values = self.found.low + span * u
-            settings = dict(zip(self.keys, map(float, values), strict=True))
-            parts = other.evaluate(settings)[-len(possible) :]
+            parts = other.evaluate(self.residuals.settings(values))[-len(possible) :]
             return np.concatenate([part[0] for _, part in parts])
 
         u = (self.found.values - self.found.low) / span
@@ -129,12 +131,13 @@ class Identification:
         alone = np.diag(self.found.covariance_with())
         helpful = []
         for channel, values, slope in zip(possible, at, slopes, strict=True):
-            part = _OF_PROPERTIES.get(channel.quantity, UNCERTAINTY)
-            size = np.abs(values).max() if channel.table is None else np.ptp(values)
+            size = UNCERTAINTY * (np.abs(values).max() if channel.value == 0.0 else np.ptp(values))
+            size = {"damping_ratio": OF_DAMPING * values[0]}.get(channel.quantity, size)
+            size = OF_TAPE if channel.value == 0.0 and channel.measures.unit == "m" else size
             if size > 0.0:
-                known = {"uncertainty": part * size, "systematic": systematic}
+                known = {"uncertainty": size, "systematic": systematic}
                 errors = shared_errors(channel.model_copy(update=known), values[None])
-                left = self.found.covariance_with(reduce_shared(slope / (part * size), errors))
+                left = self.found.covariance_with(reduce_shared(slope / size, errors))
                 helpful.append((channel.name, np.sqrt(np.diag(left) / alone)))
         return sorted(helpful, key=lambda one: float(one[1].min()))
 
@@ -184,9 +187,9 @@ class Identification:
             if ratios.min() < HELPS:
                 rows.append((name, *map(float, ratios)))
         notes = [
-            f"Standard error of each unknown with {READINGS} readings of one more channel, whose "
-            f"uncertainty is {percent(UNCERTAINTY)} of its range (damping ratio 10 %, free travel "
-            "5 %), over the error without it."
+            f"Standard error of each unknown with {READINGS} readings of one more channel over the "
+            f"error without it. The uncertainty of a reading is {percent(UNCERTAINTY)} of the range, "
+            f"of a damping ratio {percent(OF_DAMPING)}, of a tape measure 1 mm."
         ]
         if rows:
             name, ratios = self.helpful[0]
@@ -276,9 +279,8 @@ def identify(
             raise BadInput(file, f"--unknown {keys[k]}", what) from None
     residuals = Residuals.of(experiment, keys, start)
     found = fit(residuals, low, high, start, starts, progress, residuals.step)
-    at_solution = Residuals.of(experiment, keys, found.values)
-    if [one is None for one in at_solution.features] != [one is None for one in residuals.features]:
-        # The identified boom moves otherwise: curves give way to features, or features to curves.
-        residuals = at_solution
-        found = fit(residuals, low, high, found.values, starts, progress, residuals.step)
-    return Identification(keys, residuals, start, found)
+    # Near the solution it is known what errors the readings share, and which motions are chaotic.
+    residuals = Residuals.of(experiment, keys, found.values).with_shared_errors(found.values)
+    searched = found.starts
+    found = fit(residuals, low, high, found.values, 1, progress, residuals.step)
+    return Identification(keys, residuals, start, replace(found, starts=searched))

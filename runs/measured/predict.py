@@ -35,7 +35,7 @@ def predict(found: Identification, count: int, folder: Path, progress: Progress)
     points = normal_points(fit.values.size, count, experiment.file)
     values = np.clip(fit.values + points @ root.T, fit.low, fit.high)
     # The time offset of a channel does not change the boom.
-    settings = experiment.variations(found.after.settings)
+    settings = experiment.variations(found.residuals.settings(fit.values))
     of_boom = [found.keys.index(variation.key) for variation, _ in settings]
     plan, samples = plan_points(
         found.case, experiment.file, [experiment.whole.models[0].name], None,

@@ -47,8 +47,9 @@ class Residuals:
     horizons: Sequence[float]  #: end of predictability in s of each channel; infinite for none
     #: features of the readings and their uncertainties, of chaotic channels; None for others
     features: Sequence[tuple[Array, Array] | None]
-    #: directions (num_residuals, num_errors) of shared errors, and the part of each that is left
-    shared: Sequence[tuple[Array, Array]]
+    #: directions (num_residuals, num_errors) of the shared errors of each channel, and the part of
+    #: each that is left; empty without shared errors
+    shared: Sequence[tuple[Array, Array]] = ()
 
     @classmethod
     def of(cls, experiment: Experiment, keys: Sequence[str], values: Array) -> Residuals:
@@ -67,12 +68,21 @@ class Residuals:
             None if np.isinf(end) else _noisy_features(one, members, cutoff)
             for (one, members), end in zip(computed, horizons, strict=True)
         ]
-        shared = [
-            shared_errors(one, members, known, cutoff)
-            for (one, members), known in zip(computed, features, strict=True)
-        ]
         chosen = several if any(one is not None for one in features) else experiment
-        return cls(chosen, keys, cutoff, horizons, features, shared)
+        return cls(chosen, keys, cutoff, horizons, features)
+
+    def with_shared_errors(self, values: Array) -> Residuals:
+        """Return the residuals of generalised least squares near these values of the unknowns."""
+        evaluated = self.experiment.evaluate(self.settings(values))
+        shared = [
+            shared_errors(one, members, known, self.cutoff)
+            for (one, members), known in zip(evaluated, self.features, strict=True)
+        ]
+        return replace(self, shared=shared)
+
+    def settings(self, values: Array) -> dict[str, float]:
+        """Return the values (num_unknowns,) of the unknowns by key."""
+        return dict(zip(self.keys, map(float, values), strict=True))
 
     @property
     def step(self) -> float:
@@ -81,8 +91,7 @@ class Residuals:
 
     def __call__(self, values: Array) -> Array:
         """Return the residuals (num_residuals,) at values (num_unknowns,) of the unknowns."""
-        settings = dict(zip(self.keys, map(float, values), strict=True))
-        return np.concatenate(self.parts(self.experiment.evaluate(settings)))
+        return np.concatenate(self.parts(self.experiment.evaluate(self.settings(values))))
 
     def parts(self, evaluated: Sequence[tuple[Channel, Array]]) -> list[Array]:
         """Return the residuals of each channel from their values."""
@@ -92,6 +101,8 @@ class Residuals:
             else _feature_residuals(one, members, self.cutoff, *known)
             for (one, members), known in zip(evaluated, self.features, strict=True)
         ]
+        if not self.shared:
+            return plain
         return [reduce_shared(off, errors) for off, errors in zip(plain, self.shared, strict=True)]
 
 
