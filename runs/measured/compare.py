@@ -160,8 +160,12 @@ class Comparison:
 def compare(case: Case, model: str | None = None, file: str = "case") -> Comparison:
     """Return the comparison of a model of a case with its measured channels.
 
-    >>> comparison = compare(case)
-    >>> comparison.frame[["bias", "misfit"]]
+    >>> import tomllib
+    >>> tables = tomllib.loads((pt.CASES / "paper.toml").read_text())
+    >>> hammer = {"name": "hammer", "quantity": "frequency", "value": 2.0, "uncertainty": 0.05}
+    >>> comparison = compare(pt.load_case({**tables, "measured": [hammer]}), "kantorovich-5")
+    >>> comparison.agrees, comparison.frame.loc["hammer", "bias"].round(2)
+    (False, 0.34)
 
     Args:
         case: a checked case with ``measured``.

@@ -28,6 +28,9 @@ Marks = npt.NDArray[np.bool_]
 STEP = 1.0e-3
 # Relative change of χ² and of unknowns at which a search ends, and its largest number of steps.
 TOLERANCE, MOST_STEPS = 1.0e-5, 30
+# Residual of an unknown at a distance of its range from the start of the first search. It holds
+# unknowns without effect where they are, and moves others by far less than their errors.
+HOLD = 1.0e-2
 # Seed of the starts, by which all runs have the same.
 SEED = 0
 # Standard error of a combination of unknowns, over their ranges, from which the readings do not
@@ -153,8 +156,10 @@ def fit(
     lower, upper = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
     span = upper - lower
 
+    begins = [np.clip((np.asarray(start, dtype=float) - lower) / span, 1e-3, 1.0 - 1e-3)]
+
     def scaled(u: Array) -> Array:
-        return residuals(lower + span * u)
+        return np.append(residuals(lower + span * u), HOLD * (u - begins[0]))
 
     def attempt(u: Array) -> Array:
         # A trial point that cannot be computed is rejected by its infinite residuals.
@@ -163,7 +168,6 @@ def fit(
         except NUMERICAL_ERRORS:
             return np.full_like(first, np.inf)
 
-    begins = [np.clip((np.asarray(start, dtype=float) - lower) / span, 1e-3, 1.0 - 1e-3)]
     if starts > 1:
         points = qmc.Sobol(span.size, seed=SEED).random_base2(max(1, (starts - 2).bit_length()))
         begins += [*points[: starts - 1]]
@@ -183,7 +187,8 @@ def fit(
         report((number + 1) / starts)
     if best is None:
         raise NumericsError(f"the model cannot be computed between the bounds: {failure}")
-    return Fit(lower, upper, lower + span * best.x, best.fun, best.jac, costs)
+    own = slice(-span.size)
+    return Fit(lower, upper, lower + span * best.x, best.fun[own], best.jac[own], costs)
 
 
 def jacobian(residuals: Residuals, u: Array, step: float = STEP) -> Array:

@@ -141,6 +141,12 @@ class Identification:
                 helpful.append((channel.name, np.sqrt(np.diag(left) / alone)))
         return sorted(helpful, key=lambda one: float(one[1].min()))
 
+    @property
+    def headings(self) -> Sequence[str]:
+        """The last parts of the keys as headings, or the keys where these are not unique."""
+        short = [key.rpartition(".")[2].replace("_", "\n") for key in self.keys]
+        return short if len({*short}) == len(short) else self.keys
+
     def table(self) -> Table:
         """Return a table of the unknowns with their standard errors."""
         found, rows = self.found, list[tuple[Cell, ...]]()
@@ -177,7 +183,7 @@ class Identification:
             (key, *(None if np.isnan(part) else float(part) for part in row))
             for key, row in zip(self.keys, self.found.correlation, strict=True)
         ]
-        heads = {"": ""} | dict.fromkeys((key.replace(".", ".\n") for key in self.keys), ".2f")
+        heads = {"": ""} | dict.fromkeys(self.headings, ".2f")
         return Table.of_rows("correlation", "Correlation of the unknowns", heads, rows)
 
     def helpful_table(self) -> Table:
@@ -188,8 +194,8 @@ class Identification:
                 rows.append((name, *map(float, ratios)))
         notes = [
             f"Standard error of each unknown with {READINGS} readings of one more channel over the "
-            f"error without it. The uncertainty of a reading is {percent(UNCERTAINTY)} of the range, "
-            f"of a damping ratio {percent(OF_DAMPING)}, of a tape measure 1 mm."
+            f"error without it. The uncertainty of a reading is {percent(UNCERTAINTY)} of the "
+            f"range, of a damping ratio {percent(OF_DAMPING)}, of a tape measure 1 mm."
         ]
         if rows:
             name, ratios = self.helpful[0]
@@ -198,9 +204,7 @@ class Identification:
                 0,
                 f"{name} would leave {percent(ratios[best], 2)} of the error of {self.keys[best]}.",
             )
-        heads = {"one more channel": ""} | dict.fromkeys(
-            (key.replace(".", ".\n") for key in self.keys), ".2f"
-        )
+        heads = {"one more channel": ""} | dict.fromkeys(self.headings, ".2f")
         return Table.of_rows("helpful", "What else to measure", heads, rows, notes)
 
 
@@ -245,8 +249,14 @@ def identify(
 ) -> Identification:
     """Identify unknown numbers of a case by bounded least squares from its measured channels.
 
-    >>> found = identify(case, {"joint.play": (0.0, 0.03), "damping.modal": (0.0, 0.1)})
-    >>> found.frame[["value", "error"]]
+    >>> import tomllib
+    >>> tables = tomllib.loads((pt.CASES / "paper.toml").read_text())
+    >>> hammer = {"name": "hammer", "quantity": "frequency", "value": 2.0, "uncertainty": 0.05}
+    >>> case = pt.load_case({**tables, "measured": [hammer]})
+    >>> unknown = {"segment[1].second_moment_of_area": (2.0e-4, 8.0e-4)}
+    >>> found = identify(case, unknown, "kantorovich-5", starts=1)
+    >>> found.frame[["value", "error"]].round(6).values
+    array([[2.76e-04, 1.40e-05]])
 
     Args:
         case: a checked case with ``measured``.
@@ -275,7 +285,7 @@ def identify(
         try:
             experiment.check(dict(zip(keys, values.tolist(), strict=True)))
         except BadInput as fault:
-            what = f"{bound[k]:g} is not valid ({fault.what}); give other bounds"
+            what = f"{bound[k]:g} is not valid: {fault.what}"
             raise BadInput(file, f"--unknown {keys[k]}", what) from None
     residuals = Residuals.of(experiment, keys, start)
     found = fit(residuals, low, high, start, starts, progress, residuals.step)

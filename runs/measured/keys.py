@@ -32,7 +32,7 @@ MEASURABLE: Mapping[str, Quantity] = {
     for quantity in (
         *(MEASURED[name] for name in ("tip", "tip_lateral", "cylinder_force", "rope_force")),
         MEASURED["frequency"],
-        Quantity("strain", "1", "strain along the boom", shown="µm/m"),
+        Quantity("strain", "1", "strain", shown="µm/m"),
         Quantity("damping_ratio", "1", "damping ratio", shown="%"),
         Quantity("free_travel", "m", "free travel of the tip", shown="mm"),
     )

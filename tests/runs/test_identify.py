@@ -3,18 +3,29 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import pytest
 
+from protractile.analysis.equilibria import equilibria
+from protractile.analysis.states import States
 from protractile.cases import load_case
 from protractile.geometry.arrays import Array
+from protractile.runs import CASES
+from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
+from protractile.runs.measured.computed import Computed
 from protractile.runs.measured.experiment import Experiment
 from protractile.runs.measured.fit import CHI_SQUARE_95, fit, profile
-from protractile.runs.measured.identify import identify
+from protractile.runs.measured.identify import identify, parse
+from protractile.runs.measured.keys import Keys
+from protractile.runs.measured.signals import Features
+from protractile.runs.pipeline.models import MotionPlan, build
+from protractile.runs.process.bad_input import BadInput
+from tests.runs.test_measured import CANTILEVER
 
 X = np.linspace(0.0, 1.0, 40)
 
@@ -122,18 +133,44 @@ BOOM: dict[str, Any] = {
 }  # fmt: skip
 
 
-def with_readings(curves: Sequence[Array], systematic: float) -> Case:
+# The same boom on a soft clamp, whose stiffness a calibrated beam has to find.
+STIFF = BOOM | {
+    "segment": [
+        BOOM["segment"][0]
+        | {"supports": [{"x": 0.0, "stiffness": 2.0e8, "rotation_stiffness": 2.0e7}]},
+        BOOM["segment"][1],
+    ]
+}
+_CLAMP = "segment[1].supports[1].rotation_stiffness"
+SOFT_TRUTH = {key: TRUTH[key] for key in ("joint.play", "damping.modal", "payload.mass")} | {
+    _CLAMP: 1.6e7
+}
+SOFT_BOUNDS = {key: BOUNDS[key] for key in SOFT_TRUTH if key in BOUNDS} | {_CLAMP: (0.8e7, 4.0e7)}
+SOFT = STIFF | {
+    "joint": [BOOM["joint"][0] | {"play": 0.0042}],
+    "damping": {"modal": 0.027},
+    "payload": {"mass": 93.0},
+    "segment": [
+        STIFF["segment"][0]
+        | {"supports": [{"x": 0.0, "stiffness": 2.0e8, "rotation_stiffness": 1.6e7}]},
+        BOOM["segment"][1],
+    ],
+}
+_BLANK = {"uncertainty": 1.0, "table": [(time, 0.0) for time in TIMES.tolist()]}
+CHANNELS = [
+    {"name": "tip", "quantity": "tip", **_BLANK},
+    {"name": "gauge", "quantity": "strain", "segment": "base", "x": 0.5, **_BLANK},
+]
+
+
+def with_readings(curves: Sequence[Array], systematic: float, boom: dict[str, Any] = BOOM) -> Case:
     """Return the boom with readings of its tip and of a gauge, whose uncertainty is 1 %."""
-    gauge = {"quantity": "strain", "segment": "base", "x": 0.5}
     channels = [
-        {"name": f"channel {number}", "uncertainty": 0.01 * float(np.ptp(curve) or 1.0),
-         "table": [*zip(TIMES.tolist(), curve.tolist(), strict=True)], "systematic": systematic,
-         **keys}
-        for number, (curve, keys) in enumerate(
-            zip(curves, ({"quantity": "tip"}, gauge), strict=False)
-        )
+        {**keys, "uncertainty": 0.01 * float(np.ptp(curve) or 1.0), "systematic": systematic,
+         "table": [*zip(TIMES.tolist(), curve.tolist(), strict=True)]}
+        for curve, keys in zip(curves, CHANNELS, strict=True)
     ]  # fmt: skip
-    return load_case({**BOOM, "measured": channels})
+    return load_case({**boom, "measured": channels})
 
 
 def readings_of(model: str) -> list[Array]:
@@ -143,13 +180,21 @@ def readings_of(model: str) -> list[Array]:
     return [members[0] for _, members in experiment.evaluate(TRUTH)]
 
 
-def distances(curves: Sequence[Array], seed: int, systematic: float, model: str) -> Array:
+def distances(
+    curves: Sequence[Array],
+    seed: int,
+    systematic: float,
+    model: str,
+    truth: dict[str, float] = TRUTH,
+    bounds: dict[str, tuple[float, float]] = BOUNDS,
+    boom: dict[str, Any] = BOOM,
+) -> Array:
     """Return the errors of the identified numbers over their standard errors."""
     rng = np.random.default_rng(seed)
     noisy = [curve + rng.normal(0.0, 0.01 * np.ptp(curve), curve.size) for curve in curves]
-    found = identify(with_readings(noisy, systematic), BOUNDS, model, starts=1).found
+    found = identify(with_readings(noisy, systematic, boom), bounds, model, starts=1).found
     assert found.determined.all()
-    return np.asarray((found.values - [*TRUTH.values()]) / found.errors)
+    return np.asarray((found.values - [*truth.values()]) / found.errors)
 
 
 @pytest.mark.slow
@@ -161,3 +206,105 @@ def test_a_series_identifies_beam_elements() -> None:
     curves = readings_of("elements")
     off = np.array([distances(curves, seed, 0.01, "series") for seed in range(20)])
     assert ((np.abs(off) < 2.0).sum(axis=0) >= 19).all()
+
+
+@pytest.mark.slow
+def test_a_calibrated_beam_identifies_a_shell() -> None:
+    """Reference: by construction, readings of the shell. Noise 1 %, unknowns within 2 σ.
+
+    The stiffness is that of the clamp's rotation: the calibration has that of the plates.
+    """
+    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+    from mpi4py import MPI
+
+    from protractile.runs.case.kinds.model import BuildContext
+
+    case = load_case({**SOFT, "measured": CHANNELS})
+    boom, (shell, *_) = build_boom(case), case.models
+    built = build(case, boom, shell, BuildContext(MPI.COMM_SELF))
+    loaded = shell.analysis_model(boom, built)
+    plan = MotionPlan.of(built.system, case, shell)
+    rest = States.of(loaded, equilibria(loaded.system))
+    motions = [States.in_motion(loaded, plan.trajectory())]
+    computed = Computed(plan.motion.system, rest, motions)
+    assert isinstance(case, Keys)
+    curves = [computed.read(channel)[0] for channel in case.measured]
+    for seed in range(3):
+        off = distances(curves, seed, 0.005, "calibrated", SOFT_TRUTH, SOFT_BOUNDS, STIFF)
+        assert (np.abs(off) < 2.0).all()
+
+
+def test_a_prediction_follows_the_covariance() -> None:
+    """Reference: analytic. A weight that is known within 5 kg scatters the tip in proportion."""
+    tables = {**CANTILEVER, "model": CANTILEVER["model"], "start": {"state": "equilibrium"}}
+    tip = {"name": "tip", "quantity": "tip", "value": -0.01, "uncertainty": 5.0e-4}
+    found = identify(load_case({**tables, "measured": [tip]}), {"payload.mass": (10.0, 900.0)})
+    stiffness = 100.0 / -tip_of(found.case, 100.0)
+    assert found.frame.loc["payload.mass", "value"] == pytest.approx(0.01 * stiffness, rel=1e-4)
+    assert found.frame.loc["payload.mass", "error"] == pytest.approx(5e-4 * stiffness, rel=1e-4)
+    assert found.case.payload is not None
+    assert tip_of(found.case, found.case.payload.mass) == pytest.approx(-0.01, rel=1e-4)
+    case_in_mm = found.case.model_copy(update={"shown_units": "mm-t-s"})
+    in_mm = identify(case_in_mm, {"payload.mass": (0.01, 0.9)}).frame
+    assert in_mm.loc["payload.mass", "value"] == pytest.approx(0.01e-3 * stiffness, rel=1e-4)
+
+
+def tip_of(case: Case, mass: float) -> float:
+    """Return the tip of a cantilever at rest under a payload in kg."""
+    ((_, value),) = Experiment(case, "case").evaluate({"payload.mass": mass})
+    return float(value[0, 0])
+
+
+@pytest.mark.parametrize(
+    ("unknown", "what"),
+    [
+        ({"payload.mass": (2.0, 1.0)},
+         "--unknown payload.mass: must have a lower bound below the upper one, got 2 and 1"),
+        ({"payload.weight": (1.0, 2.0)},
+         "payload.weight: is not a number of the case; give a key such as joint[1].play"),
+        ({"payload.gravity": (1.0, 2.0)},
+         "payload.gravity: is not a number of the case; give it a value, from which the search "
+         "starts"),
+        ({"measured[2].time_offset": (0.0, 1.0)},
+         "measured[2].time_offset: the case has no measured[2], its last one is measured[1]"),
+        ({"damping.modal": (0.0, 2.0)},
+         "--unknown damping.modal: 2 is not valid: must be a number less than 1, got 2"),
+    ],
+)  # fmt: skip
+def test_senseless_unknowns_are_refused(unknown: dict[str, tuple[float, float]], what: str) -> None:
+    tip = {"name": "tip", "quantity": "tip", "value": -0.01, "uncertainty": 5.0e-4}
+    with pytest.raises(BadInput) as refused:
+        identify(load_case({**CANTILEVER, "measured": [tip]}), unknown)
+    assert str(refused.value) == f"case: {what}"
+
+
+def test_a_senseless_option_is_refused() -> None:
+    assert parse("joint.play = 0:0.03", "case.toml") == ("joint.play", (0.0, 0.03))
+    with pytest.raises(BadInput) as refused:
+        parse("joint.play=0.03", "case.toml")
+    what = "not understood; give KEY=LOW:HIGH, such as joint.play=0:0.03"
+    assert str(refused.value) == f"case.toml: --unknown joint.play=0.03: {what}"
+
+
+@pytest.mark.slow
+def test_chaotic_motions_are_compared_by_their_features() -> None:
+    """Reference: by construction. The paper's boom hits its play; 16.8 mm within two errors."""
+    tables = tomllib.loads((CASES / "paper.toml").read_text("utf-8"))
+    tables["time"] = {"duration": 12.0, "output_step": 0.01}
+    times = np.arange(0.0, 12.0, 0.02)
+    blank = {"name": "tip", "quantity": "tip", "uncertainty": 2.0e-3}
+
+    def case_of(curve: Array) -> Case:
+        pairs = [*zip(times.tolist(), curve.tolist(), strict=True)]
+        return load_case({**tables, "measured": [{**blank, "table": pairs}]})
+
+    experiment = Experiment(case_of(np.zeros(times.size)), "case", "kantorovich-5")
+    ((_, (curve, *_)),) = experiment.evaluate({"joint.play": 0.0168})
+    noisy = curve + np.random.default_rng(0).normal(0.0, 2.0e-3, curve.size)
+    found = identify(case_of(noisy), {"joint.play": (0.004, 0.03)}, "kantorovich-5", starts=1)
+    assert found.residuals.horizons[0] < 6.0
+    assert found.found.residuals.size == len(Features._fields)
+    play = found.frame.loc["joint.play"]
+    assert abs(play["value"] - 0.0168) < 2.0 * play["error"] < 4.0e-4
+    # Without features the fit would follow the motion beyond its predictable time.
+    assert "unpredictable" in found.after.table().notes[1]
