@@ -16,7 +16,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.measured.experiment import Experiment
 from protractile.runs.measured.keys import Channel
 from protractile.runs.measured.residuals import Residuals, features_of
-from protractile.runs.measured.signals import decay, even, main_frequency
+from protractile.runs.measured.signals import Features
 from protractile.runs.report.tables import Cell, Table
 
 if TYPE_CHECKING:
@@ -25,13 +25,14 @@ if TYPE_CHECKING:
 # Root mean square of the residuals up to which model and readings agree: the factor of an expanded
 # uncertainty of 95 % (Guide to the Expression of Uncertainty in Measurement, 2008).
 AGREES = 2.0
+# What features belong to.
+_SOURCES = "readings", "model"
 
 
 class Agreement(NamedTuple):
     """Differences of the model from the readings of a channel, in SI units.
 
-    Vibrations have a pair of numbers, of the readings and of the model. They are NaN for a single
-    value. Curves are compared up to the end of predictability, vibrations over all readings.
+    Curves are compared up to the end of predictability.
     """
 
     channel: str  #: name of the channel
@@ -42,11 +43,8 @@ class Agreement(NamedTuple):
     rms: float  #: root mean square of the difference
     correlation: float  #: correlation of model and readings; NaN for a single value
     misfit: float  #: root mean square of the residuals, over their uncertainty
-    range: Sequence[float]  #: range of the readings, and of the model
-    frequency: Sequence[float]  #: main frequency in Hz
-    decay: Sequence[float]  #: damping ratio by the decay of the peaks
-    slow: Sequence[float]  #: standard deviation below the cut-off
-    fast: Sequence[float]  #: standard deviation above it
+    #: features of readings and model over the whole record; none for a single value
+    features: Sequence[Features]
 
     @property
     def agrees(self) -> bool:
@@ -74,26 +72,18 @@ class Comparison:
     def _agreements(self) -> Iterator[Agreement]:
         parts, horizons = self.residuals.parts(self.evaluated), self.residuals.horizons
         for (one, (model, *_)), off, end in zip(self.evaluated, parts, horizons, strict=True):
-            readings, correlation = one.readings, np.nan
-            compared, vibrations = np.full(readings.size, True), [[np.nan, np.nan]] * 5
+            readings, correlation, features = one.readings, np.nan, list[Features]()
+            compared = np.full(readings.size, True)
             if one.table is not None:
                 compared = one.times <= end
                 correlation = float(np.corrcoef(model[compared], readings[compared])[0, 1])
                 both = np.array([readings, model])
-                time, curves = even(one.times, both)
-                cut = features_of(one, both, self.residuals.cutoff)
-                vibrations = [
-                    np.ptp(both, axis=1).tolist(),
-                    [main_frequency(time, row) for row in curves],
-                    [decay(time, row) for row in curves],
-                    [one.slow for one in cut],
-                    [one.fast for one in cut],
-                ]
+                features = features_of(one, both, self.residuals.cutoff)
             apart = (model - readings)[compared]
             yield Agreement(
                 one.name, one.quantity, one.measures.unit, end, float(apart.mean()),
                 float(np.sqrt(np.mean(apart**2))), correlation,
-                float(np.sqrt(np.mean(off**2))), *vibrations,
+                float(np.sqrt(np.mean(off**2))), features,
             )  # fmt: skip
 
     @property
@@ -103,10 +93,19 @@ class Comparison:
 
     @property
     def frame(self) -> pd.DataFrame:
-        """The differences of all channels in SI units, a row for each."""
+        """The differences of all channels in SI units, with features of readings and model."""
         import pandas as pd
 
-        return pd.DataFrame(self.agreements).set_index("channel")
+        rows = [
+            one._replace(features=())._asdict()
+            | {
+                f"{name}_of_{source}": value
+                for source, found in zip(_SOURCES, one.features, strict=False)
+                for name, value in found._asdict().items()
+            }
+            for one in self.agreements
+        ]
+        return pd.DataFrame(rows).drop(columns="features").set_index("channel")
 
     def table(self, title: str = "Model and readings") -> Table:
         """Return a table of the differences of all channels."""
@@ -139,22 +138,21 @@ class Comparison:
         return Table.of_rows("measured", title, heads, rows, notes)
 
     def vibrations(self) -> Table:
-        """Return a table of range, frequency, decay and parts of the vibration of each channel."""
+        """Return a table of frequency, decay, peak and parts of the vibration of each channel."""
         rows: list[tuple[Cell, ...]] = []
         for one, (channel, _) in zip(self.agreements, self.evaluated, strict=True):
-            factor, unit = channel.measures.factor, channel.measures.shown_unit
-            factors = factor, 1.0, TO_PERCENT, factor, factor
-            pairs = one.range, one.frequency, one.decay, one.slow, one.fast
-            for k, source in enumerate(("readings", "model")) if channel.table else ():
-                numbers = (size * pair[k] for size, pair in zip(factors, pairs, strict=True))
-                rows.append(("" if k else f"{one.channel} ({unit})", source, *numbers))
-        heads = ("channel", "of", "range", "frequency\nHz", "decay\n%", "slow", "fast")
-        columns = {head: ".3g" if index > 1 else "" for index, head in enumerate(heads)}
+            factor, name = channel.measures.factor, f"{one.channel} ({channel.measures.shown_unit})"
+            for source, of in zip(_SOURCES, one.features, strict=False):
+                sizes = (factor * size for size in (of.high - of.low, of.peak, of.slow, of.fast))
+                rows.append((name, source, of.frequency, TO_PERCENT * of.decay, *sizes))
+        heads = {"channel": "", "of": ""} | dict.fromkeys(
+            ("frequency\nHz", "decay\n%", "80 %\nrange", "first\npeak", "slow", "fast"), ".3g"
+        )
         notes = [
             "Decay: damping ratio by the heights of the peaks. Slow and fast: standard deviations "
             f"below and above {number(self.residuals.cutoff)} Hz."
         ]
-        return Table.of_rows("vibrations", "Vibrations", columns, rows, notes)
+        return Table.of_rows("vibrations", "Vibrations", heads, rows, notes)
 
 
 def compare(case: Case, model: str | None = None, file: str = "case") -> Comparison:

@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 # Number of readings of a possible channel, and their uncertainty as a fraction of their range.
 READINGS, UNCERTAINTY = 100, 0.01
-# Uncertainty of a damping ratio as a fraction of itself, and of a tape measure in m.
-OF_DAMPING, OF_TAPE = 0.1, 1.0e-3
+# Uncertainty of a tape measure in m.
+OF_TAPE = 1.0e-3
 # Places of possible gauges as fractions of the length of a segment, and their names.
 _PLACES = {"tail": 0.1, "middle": 0.5, "head": 0.9}
 # Number of possible channels in the report, and largest ratio of errors with one of them.
@@ -74,12 +74,9 @@ class Identification:
     def case(self) -> Case:
         """The case with the identified numbers."""
         experiment = self.residuals.experiment
-        update = {
-            name: getattr(experiment.case, name) for name in ("models", "observe", "ensemble")
-        }
-        return experiment.changed(self.residuals.settings(self.found.values)).model_copy(
-            update=update
-        )
+        own = {name: getattr(experiment.case, name) for name in ("models", "observe", "ensemble")}
+        changed = experiment.changed(self.residuals.settings(self.found.values))
+        return changed.model_copy(update=own)
 
     @property
     def frame(self) -> pd.DataFrame:
@@ -132,7 +129,6 @@ class Identification:
         helpful = []
         for channel, values, slope in zip(possible, at, slopes, strict=True):
             size = UNCERTAINTY * (np.abs(values).max() if channel.value == 0.0 else np.ptp(values))
-            size = {"damping_ratio": OF_DAMPING * values[0]}.get(channel.quantity, size)
             size = OF_TAPE if channel.value == 0.0 and channel.measures.unit == "m" else size
             if size > 0.0:
                 known = {"uncertainty": size, "systematic": systematic}
@@ -158,8 +154,10 @@ class Identification:
             part = None if error is None or value == 0.0 else 100.0 * error / abs(value)
             unit = self.residuals.experiment.number(key)[1]
             rows.append((key, unit, self.start[k], value, error, part, "\n".join(marks)))
-        notes = [f"{found.agreeing} of {found.starts.size} starts reach this minimum."]
-        notes.append(f"The misfit of all readings is {number(found.misfit)}, 1 for a right model.")
+        notes = [
+            f"{found.agreeing} of {found.starts.size} starts reach this minimum. The misfit of all "
+            f"readings is {number(found.misfit)}, 1 for a right model."
+        ]
         if found.misfit > 1.0:
             notes.append("The standard errors are larger by this factor.")
         if not any(one.systematic for one in self.residuals.experiment.channels):
@@ -167,14 +165,8 @@ class Identification:
                 "The errors are those of independent readings: systematic says how far readings "
                 "and model share an error."
             )
-        heads = {
-            "unknown": "",
-            "unit": "",
-            "case": ".4g",
-            "identified": ".4g",
-            "standard\nerror": ".2g",
-        }
-        heads |= {"in %": ".2g", "": ""}
+        heads = {"unknown": "", "unit": ""} | dict.fromkeys(("case", "identified"), ".4g")
+        heads |= dict.fromkeys(("standard\nerror", "in %"), ".2g") | {"": ""}
         return Table.of_rows("unknowns", "Identified numbers", heads, rows, notes)
 
     def correlation_table(self) -> Table:
@@ -195,15 +187,13 @@ class Identification:
         notes = [
             f"Standard error of each unknown with {READINGS} readings of one more channel over the "
             f"error without it. The uncertainty of a reading is {percent(UNCERTAINTY)} of the "
-            f"range, of a damping ratio {percent(OF_DAMPING)}, of a tape measure 1 mm."
+            "range, of a tape measure 1 mm."
         ]
         if rows:
             name, ratios = self.helpful[0]
             best = int(np.argmin(ratios))
-            notes.insert(
-                0,
-                f"{name} would leave {percent(ratios[best], 2)} of the error of {self.keys[best]}.",
-            )
+            left = f"{percent(ratios[best], 2)} of the error of {self.keys[best]}"
+            notes.insert(0, f"One more channel, {name}, would leave {left}.")
         heads = {"one more channel": ""} | dict.fromkeys(self.headings, ".2f")
         return Table.of_rows("helpful", "What else to measure", heads, rows, notes)
 
@@ -212,29 +202,21 @@ def _possible_channels(case: Case, relative: bool) -> Iterator[Channel]:
     """Yield channels that could be measured: over time, ``relative`` or not, and single values."""
     times = np.linspace(0.0, case.time.duration, READINGS).tolist()
     over_time: dict[str, Any] = {"table": [(time, 0.0) for time in times], "relative": relative}
-    kinds: list[dict[str, Any]] = []
     boom = build_boom(case)
-    for segment, (place, part) in product(boom.segments, _PLACES.items()):
-        at = {"segment": segment.name, "x": segment.start + part * segment.length} | over_time
-        quantities = ["strain"] * (segment.section is not None)
-        quantities += ["rotation", "acceleration"] * (place == "head")
-        kinds += [
-            {"name": f"{one} at {place} of {segment.name}", "quantity": one} | at
-            for one in quantities
-        ]
+    kinds: list[dict[str, Any]] = [
+        {"name": f"{quantity} at {place} of {segment.name}", "quantity": quantity,
+         "segment": segment.name, "x": segment.start + part * segment.length, **over_time}
+        for segment, (place, part) in product(boom.segments, _PLACES.items())
+        for quantity in ("strain", "rotation", "acceleration")
+        if (segment.section is not None if quantity == "strain" else place == "head")
+    ]  # fmt: skip
     kinds += [
-        {"name": f"force of cylinder {k}", "quantity": "cylinder_force", "number": k} | over_time
+        {"name": f"force of cylinder {k}", "quantity": "cylinder_force", "number": k, **over_time}
         for k in range(1, 1 + len(boom.cylinders))
     ]
-    kinds.append({"name": "tip over time", "quantity": "tip"} | over_time)
-    kinds += [
-        {"name": name, "quantity": quantity, "number": mode, "value": 0.0}
-        for name, quantity, mode in (
-            ("tip at rest", "tip", 1), ("first frequency", "frequency", 1),
-            ("second frequency", "frequency", 2), ("damping ratio", "damping_ratio", 1),
-            ("free travel", "free_travel", 1),
-        )
-    ]  # fmt: skip
+    kinds.append({"name": "tip over time", "quantity": "tip", **over_time})
+    singles = {"tip at rest": "tip", "first frequency": "frequency", "free travel": "free_travel"}
+    kinds += [{"name": name, "quantity": one, "value": 0.0} for name, one in singles.items()]
     yield from (Channel.model_validate(keys | {"uncertainty": 1.0}) for keys in kinds)
 
 

@@ -24,7 +24,7 @@ from protractile.geometry.arrays import Array
 from protractile.runs.measured.experiment import Experiment
 from protractile.runs.measured.fit import STEP
 from protractile.runs.measured.keys import Channel
-from protractile.runs.measured.signals import Features, even
+from protractile.runs.measured.signals import STEADY, Features, even
 from protractile.runs.sweep.distances import CHANGE
 
 # Relative changes of the loads of an ensemble, and number of repetitions of the noise.
@@ -126,7 +126,7 @@ def shared_errors(
     λ are the eigenvalues of U Uᵀ.
     """
     if known is not None:
-        errors = [np.nan_to_num(np.mean(features_of(channel, members, cutoff), axis=0)) / known[1]]
+        errors = [np.nan_to_num(_steady_features(channel, members, cutoff).mean(axis=0)) / known[1]]
     else:
         zero = members[0].mean() if channel.relative else 0.0
         errors = [(members[0] - zero) / channel.uncertainty]
@@ -144,25 +144,27 @@ def features_of(channel: Channel, curves: Array, cutoff: float) -> list[Features
     return [Features.of(time, row, cutoff) for row in rows]
 
 
+def _steady_features(channel: Channel, curves: Array, cutoff: float) -> Array:
+    """Return the features (num_curves, num_features) that slightly changed data change little."""
+    return np.array(features_of(channel, curves, cutoff))[:, :STEADY]
+
+
 def _noisy_features(channel: Channel, members: Array, cutoff: float) -> tuple[Array, Array]:
     """Return features of readings without the part of their noise, and their uncertainties."""
     readings = channel.readings
     noise = np.random.default_rng(0).normal(0.0, channel.uncertainty, (NOISES, readings.size))
-    noisy = np.array(features_of(channel, readings + noise, cutoff))
-    (clean,) = np.array(features_of(channel, readings[None], cutoff))
+    noise[0] = 0.0
+    clean, *noisy = _steady_features(channel, readings + noise, cutoff)
     # The noise of the readings changes a feature as much as the same noise once more.
-    target = 2.0 * clean - noisy.mean(axis=0)
-    scatter = np.std(features_of(channel, members, cutoff), axis=0, ddof=1)
-    spread = noisy.std(axis=0, ddof=1)
-    least = LEAST * np.abs(target)
-    return target, np.sqrt(np.nan_to_num(scatter) ** 2 + spread**2 + least**2)
+    target = 2.0 * clean - np.mean(noisy, axis=0)
+    scatter = _steady_features(channel, members, cutoff).std(axis=0, ddof=1)
+    parts = np.nan_to_num(scatter), np.std(noisy, axis=0, ddof=1), LEAST * np.abs(target)
+    return target, np.linalg.norm(parts, axis=0)
 
 
 def _feature_residuals(
     channel: Channel, members: Array, cutoff: float, target: Array, uncertainty: Array
 ) -> Array:
-    computed = np.mean(features_of(channel, members, cutoff), axis=0)
+    off = (_steady_features(channel, members, cutoff).mean(axis=0) - target) / uncertainty
     known = np.isfinite(target) & np.isfinite(uncertainty)
-    with np.errstate(invalid="ignore"):
-        off = (computed - target) / uncertainty
     return np.where(known, np.nan_to_num(off, nan=MISSING), 0.0)

@@ -17,8 +17,12 @@ _PADDING = 8
 _LEAST_PEAK = 0.1
 
 
+# Number of features that may be fitted.
+STEADY = 8
+
+
 class Features(NamedTuple):
-    """Features of a signal that slightly changed data do not change much."""
+    """Features of a signal; slightly changed data do not change the first ``STEADY`` ones much."""
 
     mean: float  #: mean
     low: float  #: tenth percentile
@@ -28,6 +32,8 @@ class Features(NamedTuple):
     peak: float  #: first peak of the slow part
     time_of_peak: float  #: its time in s
     period: float  #: mean time between the peaks of the slow part in s
+    frequency: float  #: frequency in Hz with the largest amplitude
+    decay: float  #: damping ratio by the heights of the peaks
 
     @classmethod
     def of(cls, time: Array, values: Array, cutoff: float) -> Features:
@@ -48,7 +54,9 @@ class Features(NamedTuple):
         at, peak = (time[peaks[0]], slow[peaks[0]]) if peaks else (np.nan, np.nan)
         low, high = np.quantile(values, (0.1, 0.9))
         fast = (values - slow).std()
-        return cls(values.mean(), low, high, slow.std(), fast, peak, at, mean_period(time, slow))
+        period, frequency = mean_period(time, slow), main_frequency(time, values)
+        vibration = slow.std(), fast, peak, at, period, frequency, decay(time, values)
+        return cls(values.mean(), low, high, *vibration)
 
 
 def even(time: Array, values: Array) -> tuple[Array, Array]:

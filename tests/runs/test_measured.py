@@ -197,10 +197,12 @@ def test_a_model_agrees_with_itself_and_not_with_another() -> None:
     assert found.misfit == pytest.approx(1.0, abs=3.0 / np.sqrt(2.0 * tip.size))
     assert abs(found.bias) < 3.0e-3 / np.sqrt(tip.size)
     assert right.agrees
-    assert found.frequency[0] == pytest.approx(found.frequency[1], rel=0.02)
+    read, computed = found.features
+    assert read.frequency == pytest.approx(computed.frequency, rel=0.02)
+    assert right.frame.loc["tip", "slow_of_model"] == computed.slow
     other = compare(measured({**tables, "payload": {"mass": 150.0}}, channel("tip", table=table)))
     assert not other.agrees
-    assert other.agreements[0].frequency[1] < 0.9 * found.frequency[1]
+    assert other.agreements[0].features[1].frequency < 0.9 * computed.frequency
     # A zero that is unknown hides a constant difference.
     moved = [(time, reading + 0.5) for time, reading in table]
     relative = compare(measured(tables, channel("tip", table=moved, relative=True)))
