@@ -27,7 +27,7 @@ Marks = npt.NDArray[np.bool_]
 # Step of the differences of the Jacobian, as a fraction of the range of each unknown.
 STEP = 1.0e-3
 # Relative change of χ² and of unknowns at which a search ends, and its largest number of steps.
-TOLERANCE, MOST_STEPS = 1.0e-5, 30
+TOLERANCE, MOST_STEPS = 1.0e-4, 30
 # Residual of an unknown at a distance of its range from the start of the first search. It holds
 # unknowns without effect where they are, and moves others by far less than their errors.
 HOLD = 1.0e-2
@@ -158,8 +158,14 @@ def fit(
 
     begins = [np.clip((np.asarray(start, dtype=float) - lower) / span, 1e-3, 1.0 - 1e-3)]
 
+    last: dict[bytes, Array] = {}
+
     def scaled(u: Array) -> Array:
-        return np.append(residuals(lower + span * u), HOLD * (u - begins[0]))
+        # The search asks for the residuals of a point, then for its derivatives.
+        if (point := u.tobytes()) not in last:
+            last.clear()
+            last[point] = np.append(residuals(lower + span * u), HOLD * (u - begins[0]))
+        return last[point]
 
     def attempt(u: Array) -> Array:
         # A trial point that cannot be computed is rejected by its infinite residuals.
@@ -194,14 +200,11 @@ def fit(
 def jacobian(residuals: Residuals, u: Array, step: float = STEP) -> Array:
     """Return the derivatives (num_readings, num_unknowns) at ``u``, from 0 to 1, by differences.
 
-    They are central, and one-sided at a bound.
+    They point to the middle of the range.
     """
-    columns = []
-    for k in range(u.size):
-        ends = np.clip([u[k] - step, u[k] + step], 0.0, 1.0)
-        below, above = (residuals(np.where(np.arange(u.size) == k, end, u)) for end in ends)
-        columns.append((above - below) / (ends[1] - ends[0]))
-    return np.array(columns).T
+    here, steps = residuals(u), np.where(u > 0.5, -step, step)
+    moved = (residuals(u + one) for one in np.diag(steps))
+    return np.asarray(np.array([there - here for there in moved]).T / steps)
 
 
 def profile(residuals: Residuals, found: Fit, number: int) -> tuple[Array, Array]:

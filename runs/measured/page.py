@@ -58,7 +58,7 @@ def _draw(channel: Channel, curves: Mapping[str, Array], path: Path) -> Figure:
     below.set(ylabel="difference\nover uncertainty", xlabel="time (s)", xlim=time[[0, -1]])
     sheet.legend(*above.get_legend_handles_labels(), loc="outside lower left", ncols=3)
     sheet.savefig(path)
-    caption = "Readings and model, and their difference over the uncertainty of a reading."
+    caption = "Readings and model; in the picture also the difference over the uncertainty."
     return Figure(path, channel.name, caption, chart=Chart(time, heading, shown))
 
 

@@ -53,7 +53,7 @@ def render(
     It has interactive charts only if plotly is installed. Figures and snapshots have existing
     files; ``viewer`` is the file name of the interactive viewer, empty for none.
     """
-    texts, proofs = tables_by_part(results), results.proofs
+    texts, proofs = tables_by_part(results) | {"readings": [*addition.tables]}, results.proofs
     pictures = {part: [figure for figure in figures if figure.part == part] for part in PARTS}
     pictures |= {"snapshots": [*snapshots]}
     charts = {f.path.stem: f.chart for f in figures if f.chart} if find_spec("plotly") else {}

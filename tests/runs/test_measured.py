@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from protractile.cases import load_case
+from protractile.cases import load_case, run_case
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
 from protractile.runs.measured.compare import compare
@@ -17,6 +17,8 @@ from protractile.runs.measured.computed import free_travel
 from protractile.runs.measured.experiment import Experiment
 from protractile.runs.measured.signals import decay, main_frequency
 from protractile.runs.process.bad_input import BadInput
+from protractile.runs.report.additions import judge
+from protractile.runs.report.document import render
 
 E, LENGTH, HEIGHT, WIDTH, WALL = 2.1e11, 5.0, 0.3, 0.2, 0.006
 BASE: dict[str, Any] = {
@@ -271,3 +273,19 @@ def test_a_case_without_channels_or_beams_is_refused() -> None:
     with pytest.raises(BadInput) as refused:
         compare(case, "shell")
     assert str(refused.value) == "case: --model: 'shell' is not a beam of the case; give 'beam'"
+
+
+def test_the_report_of_a_run_has_the_readings() -> None:
+    """Reference: the comparison itself. Without channels, or if they do not fit, it has none."""
+    case = measured(CANTILEVER, channel("tip", value=-0.01))
+    results = run_case(case)
+    (table,) = judge(results).tables
+    assert table.rows == compare(case).table().rows
+    page = render(results, judge(results), [], [])
+    assert '<h2 id="readings">Readings</h2>' in page
+    assert "Model and readings" in page
+    results.case = load_case(CANTILEVER)
+    assert judge(results).tables == []
+    wrong = channel("gauge", quantity="strain", segment="fly", x=1.0, value=0.0)
+    results.case = measured(CANTILEVER, wrong)
+    assert judge(results).tables == []
