@@ -46,7 +46,7 @@ class FileColumn:
     gaps: bool = False  #: True if lines without a number in this column are left out
 
     def __str__(self) -> str:
-        return self.name if self.factor else f"{self.name} in {self.unit}"
+        return self.name if self.factor or self.unit == "1" else f"{self.name} in {self.unit}"
 
     def scale(self, unit: str) -> float:
         """Return the conversion factor from a unit in the file to the unit of the column.
