@@ -84,14 +84,14 @@ def identify(
     from protractile.runs.measured import identify as identifying
     from protractile.runs.measured import page, predict
     from protractile.runs.pipeline.results import prepare
-    from protractile.runs.sweep.sampling import normal_points
+    from protractile.runs.sweep.sampling import check_count
 
     unknowns = dict(identifying.parse(text, case) for text in unknown)
     checked = reading.load(case)
     ranks.enter_mpi(checked.first_shell, case)
     folder = prepare(out or f"runs/out/{Path(case).stem}-identified", case, page.CSV)
     if samples is not None:
-        normal_points(len(unknowns), samples, case)
+        check_count(samples, len(unknowns), case)
     with terminal.display() as report_progress:
         found = identifying.identify(
             checked, unknowns, model, starts=starts, file=case,

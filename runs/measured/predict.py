@@ -23,16 +23,16 @@ def predict(found: Identification, count: int, folder: Path, progress: Progress)
 
     Args:
         found: identified numbers of a case.
-        count: number of samples, a power of 2.
+        count: number of samples, checked by :func:`.runs.sweep.sampling.check_count`.
         folder: folder of the files of :mod:`.runs.sweep.sampling`.
         progress: callback that receives model, stage and completed fraction.
 
     Raises:
-        BadInput: the count is invalid, or a sample.
+        BadInput: a sample is invalid.
     """
     fit, experiment = found.found, found.residuals.experiment
     root = np.linalg.cholesky(fit.covariance_with())
-    points = normal_points(fit.values.size, count, experiment.file)
+    points = normal_points(fit.values.size, count)
     values = np.clip(fit.values + points @ root.T, fit.low, fit.high)
     # The time offset of a channel does not change the boom.
     settings = experiment.variations(found.residuals.settings(fit.values))

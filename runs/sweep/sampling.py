@@ -91,7 +91,8 @@ def plan_samples(
         )
         raise BadInput(file, OPTION, what)
     places = [Place(spread.steps) for spread in spreads]
-    values = normal_points(len(spreads), count, file) * [one.sd for one in spreads]
+    check_count(count, len(spreads), file)
+    values = normal_points(len(spreads), count) * [one.sd for one in spreads]
     values += [one.mean for one in spreads]
     variations = [
         Variation(place.name, tuple(column), (with_size(place, case),))
@@ -135,14 +136,12 @@ def plan_points(
     return Plan(file, case.title, (), (), (), points), samples
 
 
-def normal_points(dimensions: int, count: int, file: str) -> Array:
-    """Return samples (count, dimensions) of mean 0, variance 1 and no correlation.
+def check_count(count: int, dimensions: int, file: str) -> None:
+    """Check a number of samples.
 
     Raises:
-        BadInput: the count is no power of 2 between the dimensions and :data:`MOST_POINTS`.
+        BadInput: it is no power of 2 between the dimensions and :data:`MOST_POINTS`.
     """
-    from scipy.stats import norm, qmc
-
     least = dimensions + 1
     if not least < count <= MOST_POINTS or count & (count - 1):
         example = max(64, 1 << least.bit_length())
@@ -151,6 +150,12 @@ def normal_points(dimensions: int, count: int, file: str) -> Array:
             f"got {count}"
         )
         raise BadInput(file, OPTION, what)
+
+
+def normal_points(dimensions: int, count: int) -> Array:
+    """Return samples (count, dimensions) of mean 0, variance 1 and no correlation."""
+    from scipy.stats import norm, qmc
+
     uniform = qmc.Sobol(dimensions, seed=SEED).random(count)
     points = norm.ppf(uniform)
     points -= points.mean(axis=0)
