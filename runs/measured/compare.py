@@ -71,17 +71,17 @@ class Comparison:
 
     def _agreements(self) -> Iterator[Agreement]:
         parts, horizons = self.residuals.parts(self.evaluated), self.residuals.horizons
-        for (one, (model, *_)), off, end in zip(self.evaluated, parts, horizons, strict=True):
-            readings, correlation, features = one.readings, np.nan, list[Features]()
+        for (channel, (model, *_)), off, end in zip(self.evaluated, parts, horizons, strict=True):
+            readings, correlation, features = channel.readings, np.nan, list[Features]()
             compared = np.full(readings.size, True)
-            if one.table is not None:
-                compared = one.times <= end
+            if channel.table is not None:
+                compared = channel.times <= end
                 correlation = float(np.corrcoef(model[compared], readings[compared])[0, 1])
                 both = np.array([readings, model])
-                features = features_of(one, both, self.residuals.cutoff)
+                features = features_of(channel, both, self.residuals.cutoff)
             apart = (model - readings)[compared]
             yield Agreement(
-                one.name, one.quantity, one.measures.unit, end, float(apart.mean()),
+                channel.name, channel.quantity, channel.measures.unit, end, float(apart.mean()),
                 float(np.sqrt(np.mean(apart**2))), correlation,
                 float(np.sqrt(np.mean(off**2))), features,
             )  # fmt: skip
@@ -89,7 +89,7 @@ class Comparison:
     @property
     def agrees(self) -> bool:
         """True if the model agrees with all channels."""
-        return all(one.agrees for one in self.agreements)
+        return all(agreement.agrees for agreement in self.agreements)
 
     @property
     def frame(self) -> pd.DataFrame:
@@ -97,31 +97,31 @@ class Comparison:
         import pandas as pd
 
         rows = [
-            one._replace(features=())._asdict()
+            agreement._replace(features=())._asdict()
             | {
                 f"{name}_of_{source}": value
-                for source, found in zip(_SOURCES, one.features, strict=False)
+                for source, found in zip(_SOURCES, agreement.features, strict=False)
                 for name, value in found._asdict().items()
             }
-            for one in self.agreements
+            for agreement in self.agreements
         ]
         return pd.DataFrame(rows).drop(columns="features").set_index("channel")
 
     def table(self, title: str = "Model and readings") -> Table:
         """Return a table of the differences of all channels."""
         rows: list[tuple[Cell, ...]] = []
-        for one, (channel, _) in zip(self.agreements, self.evaluated, strict=True):
+        for agreement, (channel, _) in zip(self.agreements, self.evaluated, strict=True):
             factor, unit = channel.measures.factor, channel.measures.shown_unit
-            end = "" if np.isinf(one.until) else f"\nup to {number(one.until)} s"
+            end = "" if np.isinf(agreement.until) else f"\nup to {number(agreement.until)} s"
             rows.append(
                 (
-                    f"{one.channel}{end}",
+                    f"{agreement.channel}{end}",
                     unit,
-                    None if channel.relative else factor * one.bias,
-                    factor * one.rms,
-                    None if np.isnan(one.correlation) else one.correlation,
-                    one.misfit,
-                    "✓" if one.agrees else "✗",
+                    None if channel.relative else factor * agreement.bias,
+                    factor * agreement.rms,
+                    None if np.isnan(agreement.correlation) else agreement.correlation,
+                    agreement.misfit,
+                    "✓" if agreement.agrees else "✗",
                 )
             )
         notes = [
@@ -140,11 +140,19 @@ class Comparison:
     def vibrations(self) -> Table:
         """Return a table of frequency, decay, peak and parts of the vibration of each channel."""
         rows: list[tuple[Cell, ...]] = []
-        for one, (channel, _) in zip(self.agreements, self.evaluated, strict=True):
-            factor, name = channel.measures.factor, f"{one.channel} ({channel.measures.shown_unit})"
-            for source, of in zip(_SOURCES, one.features, strict=False):
+        for agreement, (channel, _) in zip(self.agreements, self.evaluated, strict=True):
+            factor, unit = channel.measures.factor, channel.measures.shown_unit
+            for source, of in zip(_SOURCES, agreement.features, strict=False):
                 sizes = (factor * size for size in (of.high - of.low, of.peak, of.slow, of.fast))
-                rows.append((name, source, of.frequency, TO_PERCENT * of.decay, *sizes))
+                rows.append(
+                    (
+                        f"{channel.name} ({unit})",
+                        source,
+                        of.frequency,
+                        TO_PERCENT * of.decay,
+                        *sizes,
+                    )
+                )
         heads = {"channel": "", "of": ""} | dict.fromkeys(
             ("frequency\nHz", "decay\n%", "80 %\nrange", "first\npeak", "slow", "fast"), ".3g"
         )

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from protractile.analysis.equilibria import equilibria
 from protractile.analysis.states import States
 from protractile.dynamics.predictability import vary_motion
 from protractile.geometry.arrays import Array
-from protractile.geometry.observation import KINDS
+from protractile.geometry.observation import KINDS, Recorded
 from protractile.geometry.typography import choices
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
@@ -84,14 +84,14 @@ class Experiment:
         """
         assert isinstance(self.case, Keys)
         channels, end = [], self.case.time.duration
-        for number, one in enumerate(self.case.measured, start=1):
-            inside = [0.0 <= time <= end for time in one.times.tolist()]
-            if one.table is not None and sum(inside) < 2:
+        for number, channel in enumerate(self.case.measured, start=1):
+            inside = [0.0 <= time <= end for time in channel.times.tolist()]
+            if channel.table is not None and sum(inside) < 2:
                 what = f"has no two readings from 0 to {end:g} s of the run"
                 raise BadInput(self.file, f"measured[{number}].time_offset", what)
-            pairs = zip(one.table or (), inside, strict=True)
+            pairs = zip(channel.table or (), inside, strict=True)
             table = tuple(pair for pair, kept in pairs if kept) or None
-            channels.append(one.model_copy(update={"table": table}))
+            channels.append(channel.model_copy(update={"table": table}))
         if not channels:
             what = "missing; give a [[measured]] for each channel, with its readings"
             raise BadInput(self.file, "measured", what)
@@ -104,19 +104,15 @@ class Experiment:
         Raises:
             BadInput: the case has no such beam.
         """
-        beams = [one.name for one in self.case.models if not one.meshed]
+        beams = [model.name for model in self.case.models if not model.meshed]
         names = chosen_beam(self.case, None if self.model is None else [self.model])
         if not {*names} & {*beams}:
             wrong = f"{self.model!r} is not a beam of the case; give {choices(beams or ['a beam'])}"
             raise BadInput(self.file, "--model", wrong if self.model else "the case has no beam")
-        outputs = [
-            ObserveTable(output_of(one), one.segment, one.x, one.quantity)  # type: ignore[arg-type]
-            for one in self.channels
-            if one.quantity in KINDS
-        ]
+        outputs = [_output(channel) for channel in self.channels if channel.quantity in KINDS]
         return self.case.model_copy(
             update={
-                "models": tuple(one for one in self.case.models if one.name in names),
+                "models": tuple(model for model in self.case.models if model.name in names),
                 "observe": (*self.case.observe, *outputs),
                 "measured": tuple(self.channels),
                 "ensemble": None,
@@ -137,7 +133,7 @@ class Experiment:
     @property
     def _own(self) -> Tables:
         """The numbers of channels that may be unknown."""
-        return {_OWN: [one.model_dump(include={"time_offset"}) for one in self.channels]}
+        return {_OWN: [channel.model_dump(include={"time_offset"}) for channel in self.channels]}
 
     def places(self, key: str) -> tuple[Place, ...]:
         """Return the places of the numbers at a key.
@@ -161,7 +157,7 @@ class Experiment:
             BadInput: the case has no such number.
         """
         place = self.places(key)[0]
-        known = {one.steps: value for one, value in numbers(self._tables | self._own)}
+        known = {found.steps: value for found, value in numbers(self._tables | self._own)}
         if place.steps not in known:
             what = "is not a number of the case; give it a value, from which the search starts"
             raise BadInput(self.file, key, what)
@@ -212,7 +208,8 @@ class Experiment:
         """
         case = self.changed(settings)
         assert isinstance(case, Keys)
-        moving = {frozenset(one.changes.items()) for one in case.measured if one.table is not None}
+        series = [channel for channel in case.measured if channel.table is not None]
+        moving = {frozenset(channel.changes.items()) for channel in series}
         states: dict[frozenset[tuple[str, float]], Computed] = {}
 
         def read(channel: Channel, changes: Settings) -> Array:
@@ -226,9 +223,10 @@ class Experiment:
             return values - off if channel.relative else values
 
         with refusing(self.file), np.errstate(all="ignore"):
+            found = [(channel, read(channel, channel.changes)) for channel in case.measured]
             return [
-                (one, read(one, one.changes) - (read(one, one.since) if one.since else 0.0))
-                for one in case.measured
+                (channel, values - read(channel, channel.since) if channel.since else values)
+                for channel, values in found
             ]
 
     def first_frequency(self, settings: Settings) -> float:
@@ -266,3 +264,10 @@ class Experiment:
             motions.append(States.in_motion(loaded, trajectory))
         rest = States.of(loaded, equilibria(loaded.system))
         return Computed(plan.motion.system, rest, motions)
+
+
+def _output(channel: Channel) -> ObserveTable:
+    """Return the output of a channel of a place."""
+    kind = cast(Recorded, channel.quantity)
+    assert channel.x is not None
+    return ObserveTable(output_of(channel), channel.segment, channel.x, kind)

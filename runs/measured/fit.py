@@ -203,7 +203,7 @@ def jacobian(residuals: Residuals, u: Array, step: float = STEP) -> Array:
     They point to the middle of the range.
     """
     here, steps = residuals(u), np.where(u > 0.5, -step, step)
-    moved = (residuals(u + one) for one in np.diag(steps))
+    moved = (residuals(u + change) for change in np.diag(steps))
     return np.asarray(np.array([there - here for there in moved]).T / steps)
 
 

@@ -111,7 +111,7 @@ class Identification:
         """
         experiment, span = self.residuals.experiment, self.found.high - self.found.low
         own, channels = experiment.case, experiment.channels
-        possible = [*_possible_channels(own, any(one.relative for one in channels))]
+        possible = [*_possible_channels(own, any(channel.relative for channel in channels))]
         wider = own.model_copy(update={"measured": (*channels, *possible)})
         other = Experiment(wider, experiment.file, experiment.model, experiment.keys)
 
@@ -121,10 +121,10 @@ class Identification:
             return np.concatenate([part[0] for _, part in parts])
 
         u = (self.found.values - self.found.low) / span
-        sizes = [len(one.table or (0,)) for one in possible]
+        sizes = [len(channel.table or (0,)) for channel in possible]
         ends = np.cumsum(sizes)[:-1]
         at, slopes = (np.split(part, ends) for part in (compute(u), jacobian(compute, u, STEP)))
-        systematic = max(one.systematic for one in channels)
+        systematic = max(channel.systematic for channel in channels)
         alone = np.diag(self.found.covariance_with())
         helpful = []
         for channel, values, slope in zip(possible, at, slopes, strict=True):
@@ -135,7 +135,7 @@ class Identification:
                 errors = shared_errors(channel.model_copy(update=known), values[None])
                 left = self.found.covariance_with(reduce_shared(slope / size, errors))
                 helpful.append((channel.name, np.sqrt(np.diag(left) / alone)))
-        return sorted(helpful, key=lambda one: float(one[1].min()))
+        return sorted(helpful, key=lambda entry: float(entry[1].min()))
 
     @property
     def headings(self) -> Sequence[str]:
@@ -160,7 +160,7 @@ class Identification:
         ]
         if found.misfit > 1.0:
             notes.append("The standard errors are larger by this factor.")
-        if not any(one.systematic for one in self.residuals.experiment.channels):
+        if not any(channel.systematic for channel in self.residuals.experiment.channels):
             notes.append(
                 "The errors are those of independent readings: systematic says how far readings "
                 "and model share an error."
@@ -216,7 +216,9 @@ def _possible_channels(case: Case, relative: bool) -> Iterator[Channel]:
     ]
     kinds.append({"name": "tip over time", "quantity": "tip", **over_time})
     singles = {"tip at rest": "tip", "first frequency": "frequency", "free travel": "free_travel"}
-    kinds += [{"name": name, "quantity": one, "value": 0.0} for name, one in singles.items()]
+    kinds += [
+        {"name": name, "quantity": quantity, "value": 0.0} for name, quantity in singles.items()
+    ]
     yield from (Channel.model_validate(keys | {"uncertainty": 1.0}) for keys in kinds)
 
 

@@ -36,7 +36,7 @@ def draw(comparisons: Mapping[str, Comparison], folder: Path) -> list[Figure]:
     with matplotlib.rc_context(theme.RC):
         for number, (channel, _) in enumerate(last.evaluated):
             if channel.table is not None:
-                curves = {name: one.evaluated[number][1][0] for name, one in comparisons.items()}
+                curves = {name: of.evaluated[number][1][0] for name, of in comparisons.items()}
                 figures.append(_draw(channel, curves, folder / f"channel-{number + 1}.png"))
     return figures
 
@@ -82,7 +82,7 @@ def write_comparison(comparison: Comparison, folder: Path, label: str = "model")
     figures = draw({label: comparison}, folder)
     comparison.frame.to_csv(folder / CSV, float_format="%.9g", lineterminator="\r\n")
     case, few = comparison.residuals.experiment.case, comparison.agreements
-    off = [one.channel for one in few if not one.agrees]
+    off = [agreement.channel for agreement in few if not agreement.agrees]
     lead = [f"{len(few) - len(off)} of {len(few)} channels agree with the model."]
     lead += [f"Beyond their uncertainty differ: {join_words(off)}."] if off else []
     tables = [comparison.table(), comparison.vibrations()]

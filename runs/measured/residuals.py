@@ -60,23 +60,23 @@ class Residuals:
         computed = several.evaluate(settings)
         horizons = [
             np.inf
-            if one.table is None
-            else float(np.nan_to_num(horizon(both[:2], one.times, SHARES[0]), nan=np.inf))
-            for one, both in computed
+            if channel.table is None
+            else float(np.nan_to_num(horizon(both[:2], channel.times, SHARES[0]), nan=np.inf))
+            for channel, both in computed
         ]
         features = [
-            None if np.isinf(end) else _noisy_features(one, members, cutoff)
-            for (one, members), end in zip(computed, horizons, strict=True)
+            None if np.isinf(end) else _noisy_features(channel, members, cutoff)
+            for (channel, members), end in zip(computed, horizons, strict=True)
         ]
-        chosen = several if any(one is not None for one in features) else experiment
+        chosen = several if any(known is not None for known in features) else experiment
         return cls(chosen, keys, cutoff, horizons, features)
 
     def with_shared_errors(self, values: Array) -> Residuals:
         """Return the residuals of generalised least squares near these values of the unknowns."""
         evaluated = self.experiment.evaluate(self.settings(values))
         shared = [
-            shared_errors(one, members, known, self.cutoff)
-            for (one, members), known in zip(evaluated, self.features, strict=True)
+            shared_errors(channel, members, known, self.cutoff)
+            for (channel, members), known in zip(evaluated, self.features, strict=True)
         ]
         return replace(self, shared=shared)
 
@@ -87,7 +87,7 @@ class Residuals:
     @property
     def step(self) -> float:
         """The step of differences for a Jacobian, as a fraction of the range of each unknown."""
-        return STEP if all(one is None for one in self.features) else COARSE
+        return STEP if all(known is None for known in self.features) else COARSE
 
     def __call__(self, values: Array) -> Array:
         """Return the residuals (num_residuals,) at values (num_unknowns,) of the unknowns."""
@@ -96,10 +96,10 @@ class Residuals:
     def parts(self, evaluated: Sequence[tuple[Channel, Array]]) -> list[Array]:
         """Return the residuals of each channel from their values."""
         plain = [
-            (members[0] - one.readings) / one.uncertainty
+            (members[0] - channel.readings) / channel.uncertainty
             if known is None
-            else _feature_residuals(one, members, self.cutoff, *known)
-            for (one, members), known in zip(evaluated, self.features, strict=True)
+            else _feature_residuals(channel, members, self.cutoff, *known)
+            for (channel, members), known in zip(evaluated, self.features, strict=True)
         ]
         if not self.shared:
             return plain

@@ -163,7 +163,7 @@ uncertainty = 1.0e-6
     assert gauge.readings == pytest.approx([1.0e-5, 2.0e-5, 4.0e-5])
     assert experiment.number("measured[1].time_offset") == (0.1, "s")
     shifted = experiment.changed({"measured.time_offset": 0.2})
-    assert [one.time_offset for one in shifted.measured] == [0.2, 0.2]  # type: ignore[attr-defined]
+    assert [channel.time_offset for channel in shifted.measured] == [0.2, 0.2]  # type: ignore[attr-defined]
 
 
 CASE = """
