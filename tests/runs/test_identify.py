@@ -22,7 +22,7 @@ from protractile.runs.measured.experiment import Experiment
 from protractile.runs.measured.fit import CHI_SQUARE_95, fit, profile
 from protractile.runs.measured.identify import identify, parse
 from protractile.runs.measured.keys import Keys
-from protractile.runs.measured.signals import Features
+from protractile.runs.measured.signals import STEADY
 from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.process.bad_input import BadInput
 from tests.runs.test_measured import CANTILEVER
@@ -201,10 +201,10 @@ def distances(
 def test_a_series_identifies_beam_elements() -> None:
     """Reference: by construction, readings of beam elements. Noise 1 %, 19 of 20 seeds within 2 σ.
 
-    The series is softer by up to 0.4 %, a shared error of 1 %.
+    Both models differ by 2 % of the range of the tip, the error that all readings share.
     """
     curves = readings_of("elements")
-    off = np.array([distances(curves, seed, 0.01, "series") for seed in range(20)])
+    off = np.array([distances(curves, seed, 0.02, "series") for seed in range(20)])
     assert ((np.abs(off) < 2.0).sum(axis=0) >= 19).all()
 
 
@@ -303,7 +303,7 @@ def test_chaotic_motions_are_compared_by_their_features() -> None:
     noisy = curve + np.random.default_rng(0).normal(0.0, 2.0e-3, curve.size)
     found = identify(case_of(noisy), {"joint.play": (0.004, 0.03)}, "kantorovich-5", starts=1)
     assert found.residuals.horizons[0] < 6.0
-    assert found.found.residuals.size == len(Features._fields)
+    assert found.found.residuals.size == STEADY
     play = found.frame.loc["joint.play"]
     assert abs(play["value"] - 0.0168) < 2.0 * play["error"] < 4.0e-4
     # Without features the fit would follow the motion beyond its predictable time.
