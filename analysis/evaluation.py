@@ -30,6 +30,7 @@ from protractile.analysis.rows import (
     static_rows,
 )
 from protractile.analysis.states import States
+from protractile.analysis.wear import wear_rows
 from protractile.dynamics.trajectory import Trajectory
 
 
@@ -77,7 +78,7 @@ def evaluate_rest(
 def evaluate_motion(
     states: States, name: str, life: Life, play: bool = True
 ) -> tuple[list[Row], list[Curve]]:
-    """Return extremes, fatigue damage and envelopes of a motion."""
+    """Return extremes, fatigue damage, wear and envelopes of a motion."""
     rows, curves = [*extremes(measure_boom(states), name, MOTION, play)], list[Curve]()
     for number, (segment, line) in enumerate(
         zip(states.boom.segments, states.model.lines, strict=True)
@@ -89,6 +90,7 @@ def evaluate_motion(
         if HAS_RAINFLOW:
             stresses = [measurement for measurement in measured if measurement.quantity == "stress"]
             rows += life_rows(stresses, name, play, life)
+    rows += wear_rows(states, name, life) if play else ()
     if states.recorded is not None and "rope_force_peak" in states.recorded:
         weight = states.recorded["rope_force_peak"].attrs["weight"]
         rows.append(Row(name, REST, play, "rope_force", "rope", "", weight))

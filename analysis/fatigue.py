@@ -91,11 +91,12 @@ def endurance(sizes: Array, category: float) -> Array:
 
 
 class Life(NamedTuple):
-    """Data of fatigue damage."""
+    """Data of fatigue damage and of wear."""
 
     category: float | None = None  #: detail category in MPa; None for cycles without damage
     partial_factor: float = 1.0  #: factor of stress ranges
     repeats: float = 1.0  #: number of runs in the service life
+    wear: float | None = None  #: coefficient of wear of the pads in mm³/(N m); None without wear
 
 
 def life_rows(stresses: Sequence[Measured], model: str, play: bool, life: Life) -> Iterator[Row]:

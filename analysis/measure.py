@@ -104,7 +104,7 @@ def measure_boom(states: States) -> Iterator[Measured]:
         yield from _rotations(states)
 
 
-def _label(boom: Boom, station: Station) -> tuple[str, str]:
+def station_label(boom: Boom, station: Station) -> tuple[str, str]:
     """Return the part of a station, and its place, which does not depend on the extension.
 
     A segment in several others counts the stations of all its joints.
@@ -121,7 +121,7 @@ def _recorded_contacts(boom: Boom, system: GapSystem, data: xr.Dataset) -> Itera
     """Yield forces of contacts and pads in motion: means and maxima over output intervals."""
     time, peaks = data["time"].values, data["contact_force_peak"].values
     for station in boom.stations:
-        part, place = _label(boom, station)
+        part, place = station_label(boom, station)
         force = data["contact_force"].values[:, station.index]
         yield _single("contact_force", part, force, time, station.x, place)
         if station.joint is None:
@@ -156,7 +156,7 @@ def _static_contacts(states: States) -> Iterator[Measured]:
         # The stations of a model without play have no contacts.
         here = np.flatnonzero(system.station_of_row == station.index)
         sides = [_on_side(systems, side, gaps, here) for side in EACH_SIDE]
-        part, place = _label(boom, station)
+        part, place = station_label(boom, station)
         yield _single("contact_force", part, sides[0] - sides[1], time, station.x, place)
         depths = [
             [there.laws[row].depth(gap[row]) for row in here]

@@ -105,6 +105,11 @@ MEASURED: Mapping[str, Quantity] = {
             "pad_pressure", "Pa", "pad pressure", shown="MPa",
             limit="the allowable pressure", short="pad",
         ),
+        _unswept(
+            "wear", "m", "wear of a pad", shown="mm", limit="the thickness of the pad", short="wear"
+        ),
+        _unswept("wear_life", "1", "runs until a pad is worn through"),
+        _unswept("worn_play", "m", "play after wear", shown="mm"),
         _unswept("frequency", "Hz", "natural frequency"),
         _unswept("plate_buckling", "1", "plate buckling factor, panel formulas", lowest=True),
         _unswept("cycles", "1", "stress cycles of a run"),

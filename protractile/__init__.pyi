@@ -83,6 +83,12 @@ from protractile.runs.chart.run import chart as chart
 from protractile.runs.case.schema import Case as Case
 from protractile.runs.pipeline.results import Results as Results
 
+# Cases with measured channels
+from protractile.runs.measured.compare import Comparison as Comparison
+from protractile.runs.measured.compare import compare as compare
+from protractile.runs.measured.identify import Identification as Identification
+from protractile.runs.measured.identify import identify as identify
+
 # Errors
 from protractile.dynamics.failure import NumericsError as NumericsError
 from protractile.geometry.fields import BoomError as BoomError

@@ -4,7 +4,8 @@
 A client adds to cases, reports and the command line by its modules with these names:
 
 * ``keys``: the class ``Keys``, a table of keys at the top of every case file.
-* ``additions``: functions ``judge`` and ``show``, see :mod:`.runs.report.additions`.
+* ``additions``: function ``judge``, and in the first client ``show``, see
+  :mod:`.runs.report.additions`.
 * ``commands``: the functions ``COMMANDS``, each a command.
 """
 
@@ -14,7 +15,7 @@ from importlib import import_module
 from importlib.util import find_spec
 from types import ModuleType
 
-CLIENTS = "paper", "live", "export", "chart"
+CLIENTS = "paper", "live", "export", "chart", "measured"
 
 
 def modules(name: str) -> list[ModuleType]:

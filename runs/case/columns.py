@@ -43,9 +43,10 @@ class FileColumn:
     name: str  #: name of the column in messages
     unit: str  #: unit of the numbers, if the heading gives no other
     factor: bool = False  #: True if numbers without a unit in the heading are dimensionless
+    gaps: bool = False  #: True if lines without a number in this column are left out
 
     def __str__(self) -> str:
-        return self.name if self.factor else f"{self.name} in {self.unit}"
+        return self.name if self.factor or self.unit == "1" else f"{self.name} in {self.unit}"
 
     def scale(self, unit: str) -> float:
         """Return the conversion factor from a unit in the file to the unit of the column.
@@ -103,6 +104,8 @@ def read_pairs(
             raise _FileError(f"has {len(rows)} lines", f"give {MOST_TIMES} at most")
         headings = [rows.pop(0) for _ in range(2) if rows and not rows[0].has_number]
         indices, scales, has_unit = _choose_columns(headings, names, columns)
+        if columns[1].gaps:
+            rows = [row for row in rows if not row.is_empty(indices[1])]
         for row in rows:
             row.check_columns(indices, headings[0] if names and headings else None)
         _check_thousands(rows, indices)
@@ -149,6 +152,10 @@ class _FileLine:
     @property
     def has_number(self) -> bool:
         return any(map(_is_number, self.cells))
+
+    def is_empty(self, column: int) -> bool:
+        """Return True if a cell is empty or NaN."""
+        return column >= len(self.cells) or self.cells[column].lower() in ("", "nan")
 
     def check_columns(self, indices: Sequence[int], heading: _FileLine | None) -> None:
         """Check that the line has the columns of a heading; without one, only the chosen ones."""

@@ -63,8 +63,9 @@ class TravelTable(CaseTable):
     """pairs of the frequency in Hz and the damping ratio of a mode of which no vibration shall
     remain; check offers them for slewing and luffing"""
 
-    # Unit of the travel, and class of the history that interpolates a table.
+    # Unit of the travel, its name in messages, and class of the history that interpolates a table.
     unit: ClassVar[str] = "m"
+    curve: ClassVar[str] = "length"
     interpolation: ClassVar[type[PiecewiseLinear] | type[Spline]] = PiecewiseLinear
 
     def history(self, where: str) -> MotionLaw:

@@ -246,7 +246,7 @@ def _read_files(case: Case, path: str) -> Case:
     def read(key: str, table: Any) -> dict[str, Any]:
         # A calibrating shell has no contact of its own.
         own_contact = isinstance(table, ContactTable) and ".calibrated_by" not in key
-        if own_contact or isinstance(table, HistoryTable | TravelTable):
+        if own_contact or hasattr(table, "file"):
             return _pairs_of_file(path, key, table, system)
         return {}
 
@@ -290,9 +290,13 @@ def _columns(table: Any, system: System) -> tuple[FileColumn, FileColumn]:
             "factor", system.unit(unit), factor=True
         )
     contact = isinstance(table, ContactTable)
-    names = ("penetration", "force") if contact else ("time", "length")
+    names = ("penetration", "force") if contact else ("time", table.curve)
     first, second = units_of(table, "force_table" if contact else "table")
-    return FileColumn(names[0], system.unit(first)), FileColumn(names[1], system.unit(second))
+    # Instruments leave readings out, histories do not.
+    gaps = not (contact or isinstance(table, TravelTable))
+    return FileColumn(names[0], system.unit(first)), FileColumn(
+        names[1], system.unit(second), gaps=gaps
+    )
 
 
 def _unreadable(error: Exception, text: str) -> tuple[str, str]:

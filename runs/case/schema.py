@@ -189,7 +189,7 @@ class DampingTable(CaseTable):
 
 
 class LifeTable(CaseTable):
-    """Data of the fatigue assessment of a run."""
+    """Data of the fatigue and wear of a run."""
 
     detail_category: Annotated[Positive, In("1")] | None = None
     """the number of the worst weld's detail category by EN 1993-1-9: 71 for 71 N/mm^2; without it
@@ -198,6 +198,9 @@ class LifeTable(CaseTable):
     """the partial factor gamma_Ff gamma_Mf on stress ranges"""
     repeats: Annotated[int, Field(strict=True, ge=1, le=10**9)] = 1
     """the number of occurrences of this motion in the service life"""
+    wear: Annotated[Positive, In("1")] | None = None
+    """Archard's coefficient of wear of the slide pads in mm^3/(N m), in all systems of units, for
+    their wear in motions that telescope; no wear unless given"""
 
 
 class BucklingTable(CaseTable):
@@ -324,7 +327,7 @@ class Case(ClientKeys, CaseHeading):
     damping: DampingTable = DampingTable.model_validate({})
     """the table of the boom's damping"""
     life: LifeTable = LifeTable.model_validate({})
-    """the table of the fatigue assessment"""
+    """the table of fatigue and wear"""
     buckling: BucklingTable | None = None
     """the table of the buckling analysis of walls; none is made unless given"""
     limits: LimitsTable | None = None

@@ -182,6 +182,7 @@ _FIXED: Ranges = {
     LifeTable: {
         "detail_category": _CATEGORY,
         "partial_factor": Usual("the partial factor of fatigue", 1.0, 2.0, 5.0),
+        "wear": Usual("the coefficient of wear", 1.0e-8, 1.0e-4, 1.0e3),
     },
     BucklingTable: {"curve": (Usual("the slenderness", 0.0, 10.0, 100.0), None)},
     FactorsTable: {

@@ -60,7 +60,7 @@ _FIRST = {
 }
 
 # Tables whose numbers the page does not change. The page has its own beam as model.
-_EXCLUDED = ("model", "load_case", "combination", "spectrum")
+_EXCLUDED = ("model", "load_case", "combination", "spectrum", "measured")
 
 
 @dataclass(frozen=True, slots=True)

@@ -62,8 +62,9 @@ class Evaluation(NamedTuple):
 
 
 def life_of(case: Case) -> Life:
-    """Return the data of fatigue damage of a case."""
-    return Life(case.life.detail_category, case.life.partial_factor, case.life.repeats)
+    """Return the data of fatigue damage and of wear of a case."""
+    life = case.life
+    return Life(life.detail_category, life.partial_factor, life.repeats, life.wear)
 
 
 def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:

@@ -274,10 +274,11 @@ class Results:
         return f"<p><b>{escape(self.case.title)}</b></p>{table}"
 
 
-def prepare(out: str, file: str) -> Path:
+def prepare(out: str, file: str, mark: str = TRAJECTORIES) -> Path:
     """Return the path of the folder for a run, which may contain an earlier run.
 
-    ``out`` is the folder as the user gave it, ``file`` the case file for messages.
+    ``out`` is the folder as the user gave it, ``file`` the case file for messages, ``mark`` a file
+    by which an earlier run is known.
 
     Raises:
         BadInput: the folder cannot be created or replaced, contains other files, or is the current
@@ -296,7 +297,7 @@ def prepare(out: str, file: str) -> Path:
         raise BadInput(
             file, key, f"cannot be written ({error.strerror}); give a folder that can"
         ) from None
-    if names and not {MANIFEST, TRAJECTORIES} <= names:
+    if names and not {MANIFEST, mark} <= names:
         raise BadInput(
             file, key, "contains other files; give a new folder or one of an earlier run"
         )

@@ -3,8 +3,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from protractile.runs.pipeline.results import Results
+    from protractile.runs.report.tables import Table
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,15 +29,17 @@ class Addition:
     remarks: Mapping[str, str] = field(default_factory=dict)
     #: contents of further files in the folder of the run, by name
     files: Mapping[str, str] = field(default_factory=dict)
+    tables: Sequence[Table] = ()  #: tables of the chapter on readings
 
 
 def judge(results: Results) -> Addition:
-    """Return what the first client that judges runs adds to the report of a run."""
-    judged = (client.judge(results) for client in clients.modules("additions"))
-    return next(judged, Addition())
+    """Return what clients add to the report of a run: tables of all, the rest of the first one."""
+    judged = [client.judge(results) for client in clients.modules("additions")]
+    first = next(iter(judged), Addition())
+    return replace(first, tables=[table for one in judged for table in one.tables])
 
 
 def show(judged: Mapping[str, Addition], console: Console) -> int:
-    """Print the judgements of the client on runs, by file name, and return the exit status."""
+    """Print the judgements of the first client on runs, by file name; return the exit status."""
     shown = (client.show(judged, console) for client in clients.modules("additions"))
     return next(shown, 0)

@@ -60,7 +60,7 @@ def render(
     JavaScript; so are all if plotly is not installed, which makes figures interactive. Snapshots
     have existing files; ``viewer`` is the file name of the interactive viewer, empty for none.
     """
-    texts, proofs = tables_by_part(results), results.proofs
+    texts, proofs = tables_by_part(results) | {"readings": [*addition.tables]}, results.proofs
     shown: dict[str, list[Figure | Snapshot]] = {
         part: [figure for figure in figures if figure.part == part] for part in PARTS
     }

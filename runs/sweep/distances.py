@@ -16,6 +16,7 @@ import numpy as np
 from protractile.analysis.low_pass import mean_period
 from protractile.analysis.quantities import Quantity
 from protractile.dynamics.failure import NumericsError
+from protractile.dynamics.motion import Motion
 from protractile.dynamics.predictability import SHARES, EnsembleMember, Vary, horizon, run_members
 from protractile.geometry.arrays import Array
 from protractile.runs.case.build import build_boom
@@ -105,6 +106,11 @@ def sustained_force(time: Array, forces: Array) -> float:
     return float(np.nanmax(np.abs(means))) if means.size else float("nan")
 
 
+def varied_data(motion: Motion) -> Vary:
+    """Return the data of a motion whose small changes show where it is predictable."""
+    return "load" if motion.system.largest_load.any() else "velocity"
+
+
 def comparison_end(
     case: Case,
     model: Model,
@@ -119,9 +125,9 @@ def comparison_end(
         return end
     context = None if comm is None else BuildContext(comm, cache=cache)
     plan = MotionPlan.of(build(case, build_boom(case), model, context).system, case, model)
-    vary: Vary = "load" if plan.motion.system.largest_load.any() else "velocity"
     try:
         integrator = plan.integrator.like(plan.trajectory())
+        vary = varied_data(plan.motion)
         (run,) = run_members([EnsembleMember(plan.motion, vary, CHANGE, integrator, ("tip",))])
     except NumericsError:
         # The run with changed loads fails, and only the initial states are compared.

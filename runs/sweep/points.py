@@ -99,7 +99,7 @@ def plan(
     case_file.select(whole, file, models, mesh_size, 0)
     tables = tables_of(whole)
     variations = parse(texts, tables, file)
-    first = _set_numbers(file, whole, tables, tuple((v, v.values[0]) for v in variations))
+    first = set_numbers(file, whole, tables, tuple((v, v.values[0]) for v in variations))
     units = [whole.system.unit(unit_of(variation.places[0], first)) for variation in variations]
     variations = [
         replace(variation, places=tuple(with_size(place, first) for place in variation.places))
@@ -136,7 +136,8 @@ def chosen_beam(case: Case, models: Sequence[str] | None) -> list[str]:
 def tables_of(case: Case) -> Tables:
     """Return a case as nested dictionaries, without tables that do not affect sweeps."""
     unused = {names_of(Case)[key] for key in UNUSED}
-    return case.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)
+    own = case.without_client_keys()
+    return own.model_dump(mode="json", by_alias=True, exclude_none=True, exclude=unused)
 
 
 def make_points(
@@ -157,7 +158,7 @@ def make_points(
     tables = tables_of(whole)
 
     def case_of(settings: Sequence[Setting]) -> Case:
-        return case_file.select(_set_numbers(file, whole, tables, settings), file, models)
+        return case_file.select(set_numbers(file, whole, tables, settings), file, models)
 
     plates = {} if plates is None else plates
     for settings in combinations:
@@ -174,7 +175,12 @@ def make_points(
         yield Point(values, label, case_file.select(case, file, None, mesh_size))
 
 
-def _set_numbers(file: str, whole: Case, tables: Tables, settings: Sequence[Setting]) -> Case:
+def set_numbers(file: str, whole: Case, tables: Tables, settings: Sequence[Setting]) -> Case:
+    """Return a case with other numbers in its tables, not checked beyond the schema.
+
+    Raises:
+        BadInput: a number exceeds the limits of its key.
+    """
     changed = deepcopy(tables)
     try:
         for variation, value in settings:

@@ -24,6 +24,7 @@ from protractile.analysis.quantities import Quantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import TO_PERCENT, join_words
 from protractile.runs.case import reading as case_file
+from protractile.runs.case.schema import Case
 from protractile.runs.folder.files import atomic_path, folder_lock, modified_folder
 from protractile.runs.pipeline.quantities import QUANTITIES
 from protractile.runs.process.bad_input import BadInput
@@ -90,22 +91,36 @@ def plan_samples(
             "{ mean = 0.003, sd = 0.0005 }"
         )
         raise BadInput(file, OPTION, what)
-    least = len(spreads) + 1
-    if not least < count <= MOST_POINTS or count & (count - 1):
-        example = max(64, 1 << least.bit_length())
-        what = (
-            f"must be a power of 2 above {least} and at most {MOST_POINTS}, such as {example}, "
-            f"got {count}"
-        )
-        raise BadInput(file, OPTION, what)
     places = [Place(spread.steps) for spread in spreads]
+    check_count(count, len(spreads), file)
     values = normal_points(len(spreads), count) * [spread.sd for spread in spreads]
     values += [spread.mean for spread in spreads]
-    samples = pd.DataFrame(values, columns=[place.name for place in places])
     variations = [
         Variation(place.name, tuple(column), (with_size(place, case),))
         for place, column in zip(places, values.T.tolist(), strict=True)
     ]
+    return plan_points(case, file, models, mesh_size, variations, values)
+
+
+def plan_points(
+    case: Case,
+    file: str,
+    models: Sequence[str] | None,
+    mesh_size: float | None,
+    variations: Sequence[Variation],
+    values: Array,
+) -> tuple[Plan, pd.DataFrame]:
+    """Return the plan of samples, and a table of the sampled numbers in the case's units.
+
+    Args:
+        case, file: the checked case, and its file for messages.
+        models, mesh_size: as in :func:`.runs.sweep.points.plan`; by default the last beam.
+        variations: the sampled numbers.
+        values: their values (num_samples, num_variations).
+
+    Raises:
+        BadInput: the case has no beam, or a sample is invalid.
+    """
     settings: list[Sequence[Setting]] = [
         list(zip(variations, row, strict=True)) for row in values.tolist()
     ]
@@ -118,7 +133,24 @@ def plan_samples(
         key = fault.key.removeprefix("--vary ")
         what = f"a sample is not valid, {key}: {fault.what}; give a smaller sd"
         raise BadInput(file, OPTION, what) from None
+    samples = pd.DataFrame(values, columns=[variation.key for variation in variations])
     return Plan(file, case.title, (), (), (), points), samples
+
+
+def check_count(count: int, dimensions: int, file: str) -> None:
+    """Check a number of samples.
+
+    Raises:
+        BadInput: it is no power of 2 between the dimensions and :data:`MOST_POINTS`.
+    """
+    least = dimensions + 1
+    if not least < count <= MOST_POINTS or count & (count - 1):
+        example = max(64, 1 << least.bit_length())
+        what = (
+            f"must be a power of 2 above {least} and at most {MOST_POINTS}, such as {example}, "
+            f"got {count}"
+        )
+        raise BadInput(file, OPTION, what)
 
 
 def normal_points(dimensions: int, count: int) -> Array:

@@ -34,7 +34,9 @@ def table(heading: str, **keys: object) -> str:
 def as_toml(value: object) -> str:
     """Return a value of a case file, its tables inline."""
     if isinstance(value, dict):
-        return f"{{ {', '.join(f'{key} = {as_toml(entry)}' for key, entry in value.items())} }}"
+        # Keys of other numbers have points.
+        keys = {key: json.dumps(key) if "." in key else key for key in value}
+        return f"{{ {', '.join(f'{keys[key]} = {as_toml(one)}' for key, one in value.items())} }}"
     if isinstance(value, list):
         return f"[{', '.join(map(as_toml, value))}]"
     return json.dumps(value)

@@ -151,8 +151,8 @@ def test_keys_and_commands_of_clients_exist_by_registration() -> None:
     for text in (PROGRAM, alone):
         words.append({*answer("--help", program=text)[0].split()})
         keys.append({*json.loads(answer("schema", program=text)[0])["properties"]})
-    assert words[0] - words[1] >= {"live", "export"}
-    assert keys[0] - keys[1] == {"chart", "statements", "demand"}
+    assert words[0] - words[1] >= {"live", "export", "identify"}
+    assert keys[0] - keys[1] == {"chart", "measured", "statements", "demand"}
 
 
 @pytest.mark.parametrize(("command", "case"), [("check", "spatial"), ("prove", "inspection-arm")])

@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Measured channels: their keys and files, their values by a model, comparison."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from protractile.cases import load_case, run_case
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.schema import Case
+from protractile.runs.measured.compare import compare
+from protractile.runs.measured.computed import free_travel
+from protractile.runs.measured.experiment import Experiment
+from protractile.runs.measured.signals import decay, main_frequency
+from protractile.runs.process.bad_input import BadInput
+from protractile.runs.report.additions import judge
+from protractile.runs.report.document import render
+
+E, LENGTH, HEIGHT, WIDTH, WALL = 2.1e11, 5.0, 0.3, 0.2, 0.006
+BASE: dict[str, Any] = {
+    "name": "base", "length": LENGTH, "supports": [{"x": 0.0, "kind": "clamped"}],
+    "section": {"height": HEIGHT, "width": WIDTH, "flange": WALL, "web": WALL},
+}  # fmt: skip
+CANTILEVER: dict[str, Any] = {
+    "title": "Cantilever", "time": {"duration": 1.0, "output_step": 0.01},
+    "material": {"youngs_modulus": E, "poissons_ratio": 0.3, "density": 7850.0},
+    "start": {"state": "equilibrium"}, "payload": {"mass": 100.0}, "segment": [BASE],
+    "model": [
+        {"name": "beam", "kind": "finite-element", "theory": "euler-bernoulli",
+         "element_length": 0.5, "rotary_inertia": False}
+    ],
+}  # fmt: skip
+BOOM = CANTILEVER | {
+    "title": "Boom",
+    "segment": [
+        BASE,
+        {"name": "fly", "length": 4.0,
+         "section": {"height": 0.25, "width": 0.15, "flange": 0.005, "web": 0.005}},
+    ],
+    "joint": [
+        {"outer": "base", "inner": "fly", "extension": 3.0, "stations": ["tail", "head"],
+         "play": 0.004, "stiffness": 1.0e9, "exponent": 1.0}
+    ],
+}  # fmt: skip
+
+
+def channel(name: str, **keys: Any) -> dict[str, Any]:
+    return {"name": name, "quantity": name, "uncertainty": 1.0e-3, **keys}
+
+
+def measured(tables: dict[str, Any], *channels: dict[str, Any]) -> Case:
+    return load_case({**tables, "measured": [*channels]})
+
+
+def values(case: Case, **settings: float) -> list[float]:
+    found = Experiment(case, "case").evaluate(settings)
+    return [float(value) for _, several in found for value in several.ravel()]
+
+
+def second_moment() -> float:
+    outer, inner = (HEIGHT + WALL, WIDTH + WALL), (HEIGHT - WALL, WIDTH - WALL)
+    return float((outer[1] * outer[0] ** 3 - inner[1] * inner[0] ** 3) / 12.0)
+
+
+def test_single_values_of_a_cantilever() -> None:
+    """Reference: analytic. F L³/(3 E J) at the tip, M z/(E J) at a gauge, its opposite below."""
+    gauge = {"quantity": "strain", "segment": "base", "x": 1.0, "value": 0.0}
+    case = measured(
+        CANTILEVER,
+        channel("tip", value=0.0),
+        channel("top", **gauge),
+        channel("bottom", side="bottom", **gauge),
+        channel("more", quantity="tip", value=0.0, changes={"payload.mass": 300.0},
+                since={"payload.mass": 100.0}),
+    )  # fmt: skip
+    force, bending = 100.0 * 9.80665, E * build_boom(case).segments[0].second_moment_of_area
+    assert bending == pytest.approx(E * second_moment(), rel=2.0e-3)
+    strain = force * (LENGTH - 1.0) * 0.5 * (HEIGHT + WALL) / bending
+    tip = -force * LENGTH**3 / (3.0 * bending)
+    assert values(case) == pytest.approx([tip, strain, -strain, 2.0 * tip], rel=1.0e-6)
+
+
+def test_properties_of_a_cantilever() -> None:
+    """Reference: analytic. 1.8751² √(E J/(m L⁴))/2π without payload, and the given damping."""
+    case = measured(
+        {**CANTILEVER, "damping": {"modal": 0.03}, "payload": {"mass": 1.0e-6}},
+        channel("frequency", value=0.0),
+        channel("frequency-2", quantity="frequency", number=2, value=0.0),
+        channel("damping_ratio", value=0.0),
+    )
+    (segment,) = build_boom(case).segments
+    speed = np.sqrt(E * segment.second_moment_of_area / segment.mass_per_length) / LENGTH**2
+    expected = [root**2 * speed / (2.0 * np.pi) for root in (1.875104, 4.694091)]
+    assert values(case) == pytest.approx([*expected, 0.03], rel=1.0e-3)
+
+
+@pytest.mark.parametrize("above", [None, 0.001])
+def test_free_travel_is_that_of_rigid_segments(above: float | None) -> None:
+    """Reference: analytic. The fly turns by play/overlap: p + 2 p a/l with its arm a beyond it.
+
+    Play on one side only moves the range. The travel of elastic beams that are pushed up and down
+    grows in proportion to the force, from this travel on.
+    """
+    joint = BOOM["joint"][0] | ({} if above is None else {"play_above": above})
+    case = measured({**BOOM, "joint": [joint]}, channel("free_travel", value=0.0))
+    assert values(case) == pytest.approx([0.004 * (1.0 + 2.0 * 3.0 / 1.0)], rel=1.0e-9)
+    pushed = {}
+    for force in (-600.0, -300.0, 300.0, 600.0):
+        loads = [{"segment": "fly", "x": "head", "magnitude": force}]
+        light = {**BOOM, "payload": {"mass": 1.0e-6}, "joint": [joint], "load": loads}
+        pushed[force] = values(measured(light, channel("tip", value=0.0)))[0]
+    small, large = (pushed[force] - pushed[-force] for force in (300.0, 600.0))
+    assert 2.0 * small - large == pytest.approx(values(case)[0], rel=1.0e-6)
+
+
+def test_free_travels_of_joints_add_up() -> None:
+    """Reference: analytic. The first joint turns the second one, which has an arm of its own."""
+    third = BOOM["segment"][1] | {"name": "third", "section": BOOM["segment"][1]["section"] | {
+        "height": 0.2, "width": 0.1}}  # fmt: skip
+    joints = [*BOOM["joint"], BOOM["joint"][0] | {"outer": "fly", "inner": "third", "play": 0.002}]
+    tables = {**BOOM, "segment": [*BOOM["segment"], third], "joint": joints}
+    boom = build_boom(load_case(tables))
+    assert boom.tip == pytest.approx(11.0)
+    expected = 0.004 * (1.0 + 2.0 * 6.0) + 0.002 * (1.0 + 2.0 * 3.0)
+    assert free_travel(boom) == pytest.approx(expected, rel=1.0e-9)
+
+
+def test_readings_over_time_have_gaps_units_and_offsets(tmp_path: Path) -> None:
+    """Reference: by construction. A line without a reading is left out; others are read alike."""
+    (tmp_path / "log.csv").write_text(
+        "time (ms),tip (mm),strain (um/m)\n0,1.0,10\n100,,20\n250,3.0,nan\n400,4.0,40\n"
+    )
+    toml = tmp_path / "case.toml"
+    toml.write_text(
+        CASE
+        + """
+[[measured]]
+name = "tip"
+quantity = "tip"
+file = "log.csv"
+columns = ["time", "tip"]
+uncertainty = 0.001
+time_offset = 0.1
+
+[[measured]]
+name = "gauge"
+quantity = "strain"
+segment = "base"
+x = 1.0
+file = "log.csv"
+columns = ["time", "strain"]
+uncertainty = 1.0e-6
+"""
+    )
+    experiment = Experiment(load_case(toml), str(toml))
+    tip, gauge = experiment.channels
+    assert tip.times == pytest.approx([0.1, 0.35, 0.5])
+    assert tip.readings == pytest.approx([0.001, 0.003, 0.004])
+    assert gauge.readings == pytest.approx([1.0e-5, 2.0e-5, 4.0e-5])
+    assert experiment.number("measured[1].time_offset") == (0.1, "s")
+    shifted = experiment.changed({"measured.time_offset": 0.2})
+    assert [channel.time_offset for channel in shifted.measured] == [0.2, 0.2]  # type: ignore[attr-defined]
+
+
+CASE = """
+title = "Cantilever"
+time = { duration = 0.5, output_step = 0.01 }
+material = { youngs_modulus = 2.1e11, poissons_ratio = 0.3, density = 7850.0 }
+payload = { mass = 100.0 }
+
+[[segment]]
+name = "base"
+length = 5.0
+supports = [{ x = 0.0, kind = "clamped" }]
+section = { height = 0.3, width = 0.2, flange = 0.006, web = 0.006 }
+
+[[model]]
+name = "beam"
+kind = "finite-element"
+theory = "euler-bernoulli"
+"""
+
+
+def test_a_model_agrees_with_itself_and_not_with_another() -> None:
+    """Reference: by construction. Noise of one uncertainty leaves a misfit of 1, within 3/√(2n)."""
+    loads = [{"segment": "base", "x": "head", "magnitude": -500.0}]
+    tables = {**CANTILEVER, "load": loads, "damping": {"modal": 0.02}, "start": {"state": "rest"}}
+    times = np.arange(0.0, 1.0, 0.01)
+    blank = channel("tip", table=[(time, 0.0) for time in times.tolist()])
+    (_, (tip, *_)), *_ = Experiment(measured(tables, blank), "case").evaluate({})
+    noise = np.random.default_rng(1).normal(0.0, 1.0e-3, tip.size)
+    table = [*zip(times.tolist(), (tip + noise).tolist(), strict=True)]
+    right = compare(measured(tables, channel("tip", table=table)))
+    (found,) = right.agreements
+    assert found.misfit == pytest.approx(1.0, abs=3.0 / np.sqrt(2.0 * tip.size))
+    assert abs(found.bias) < 3.0e-3 / np.sqrt(tip.size)
+    assert right.agrees
+    read, computed = found.features
+    assert read.frequency == pytest.approx(computed.frequency, rel=0.02)
+    assert right.frame.loc["tip", "slow_of_model"] == computed.slow
+    other = compare(measured({**tables, "payload": {"mass": 150.0}}, channel("tip", table=table)))
+    assert not other.agrees
+    assert other.agreements[0].features[1].frequency < 0.9 * computed.frequency
+    # A zero that is unknown hides a constant difference.
+    moved = [(time, reading + 0.5) for time, reading in table]
+    relative = compare(measured(tables, channel("tip", table=moved, relative=True)))
+    assert relative.agreements[0].misfit == pytest.approx(found.misfit, rel=0.02)
+    assert relative.frame.loc["tip", "bias"] == pytest.approx(0.0, abs=1.0e-12)
+
+
+def test_frequency_and_decay_of_a_damped_oscillation() -> None:
+    """Reference: analytic."""
+    time = np.linspace(0.0, 10.0, 2001)
+    signal = np.exp(-0.03 * 2.0 * np.pi * 1.7 * time) * np.cos(2.0 * np.pi * 1.7 * time)
+    assert main_frequency(time, signal) == pytest.approx(1.7, rel=0.01)
+    assert decay(time, signal + 3.0) == pytest.approx(0.03, rel=0.02)
+    assert np.isnan(decay(time, time))
+
+
+@pytest.mark.parametrize(
+    ("keys", "what"),
+    [
+        ({"name": "tip"}, "measured[1].value: missing; it is a single value in the unit of the "
+         "quantity, at rest under the loads at t = 0"),
+        ({"name": "tip", "value": 0.0, "table": [(0.0, 0.0), (1.0, 0.0)]},
+         "measured[1].value: the channel has readings over time; leave one of them out"),
+        ({"name": "strain", "value": 0.0, "segment": "base"},
+         "measured[1].x: missing; it is the x in m; strain and motions of a place need it"),
+        ({"name": "frequency", "table": [(0.0, 0.0), (1.0, 0.0)]},
+         "measured[1].quantity: natural frequency is a single value; give it as value"),
+        ({"name": "rope_force", "value": 1.0},
+         "measured[1].quantity: rope force varies over time; give a table or a file"),
+        ({"name": "tip", "relative": True, "value": 1.0},
+         "measured[1].relative: a single value has since instead"),
+        ({"name": "tip", "table": [(0.0, 0.0), (1.0, 0.0)], "since": {"payload.mass": 1.0}},
+         "measured[1].since: only a single value has this key"),
+    ],
+)  # fmt: skip
+def test_wrong_channels_are_refused(keys: dict[str, Any], what: str) -> None:
+    with pytest.raises(BadInput, match="measured") as refused:
+        measured(CANTILEVER, {"quantity": keys["name"], "uncertainty": 1.0e-3, **keys})
+    assert str(refused.value) == f"case: {what}"
+
+
+@pytest.mark.parametrize(
+    ("keys", "what"),
+    [
+        ({"quantity": "strain", "segment": "fly", "x": 1.0, "value": 0.0},
+         "segment: 'fly' is not a segment; give 'base'"),
+        ({"quantity": "strain", "segment": "base", "x": 9.0, "value": 0.0},
+         "x: must be from 0 to 5 m, got 9 m"),
+        ({"quantity": "tip", "value": 0.0, "changes": {"payload.weight": 1.0}},
+         "payload.weight: is not a number of the case; give a key such as joint[1].play"),
+        ({"quantity": "tip", "table": [(2.0, 0.0), (3.0, 0.0)]},
+         "measured[1].time_offset: has no two readings from 0 to 1 s of the run"),
+    ],
+)  # fmt: skip
+def test_channels_that_do_not_fit_the_boom_are_refused(keys: dict[str, Any], what: str) -> None:
+    with pytest.raises(BadInput) as refused:
+        compare(measured(CANTILEVER, {"name": "one", "uncertainty": 1.0e-3, **keys}))
+    assert what in str(refused.value)
+
+
+def test_a_case_without_channels_or_beams_is_refused() -> None:
+    with pytest.raises(BadInput) as refused:
+        compare(load_case(CANTILEVER))
+    assert str(refused.value).startswith("case: measured: missing; give a [[measured]]")
+    case = measured(CANTILEVER, channel("tip", value=0.0))
+    with pytest.raises(BadInput) as refused:
+        compare(case, "shell")
+    assert str(refused.value) == "case: --model: 'shell' is not a beam of the case; give 'beam'"
+
+
+def test_the_report_of_a_run_has_the_readings() -> None:
+    """Reference: the comparison itself. Without channels, or if they do not fit, it has none."""
+    case = measured(CANTILEVER, channel("tip", value=-0.01))
+    results = run_case(case)
+    (table,) = judge(results).tables
+    assert table.rows == compare(case).table().rows
+    page = render(results, judge(results), [], [])
+    assert '<h2 id="readings">Readings</h2>' in page
+    assert "Model and readings" in page
+    results.case = load_case(CANTILEVER)
+    assert judge(results).tables == []
+    wrong = channel("gauge", quantity="strain", segment="fly", x=1.0, value=0.0)
+    results.case = measured(CANTILEVER, wrong)
+    assert judge(results).tables == []
