@@ -59,7 +59,7 @@ def test_the_commands_write_their_folders(tmp_path: Path) -> None:
     compared = run(cli.app, ["compare", case, "--out", str(tmp_path / "compared")])
     assert compared.exit_code == 0, compared.output
     assert "Model and readings" in compared.output
-    assert {path.name for path in (tmp_path / "compared").iterdir()} >= {
+    assert {path.name for path in (tmp_path / "compared").rglob("*")} >= {
         "report.html", "comparison.csv", "channel-1.png", "channel-2.png", "channel-3.png",
     }  # fmt: skip
     folder = tmp_path / "identified"
@@ -68,7 +68,7 @@ def test_the_commands_write_their_folders(tmp_path: Path) -> None:
     found = run(cli.app, ["identify", case, *options, "--out", str(folder)])
     assert found.exit_code == 0, found.output
     assert "What else to measure" in (folder / "report.html").read_text("utf-8")
-    assert {path.name for path in folder.iterdir()} >= {
+    assert {path.name for path in folder.rglob("*")} >= {
         "report.html", "unknowns.csv", "identified.toml", "profile-1.png", "sampling.csv",
     }  # fmt: skip
     payload = pt.load_case(folder / "identified.toml").payload
