@@ -147,11 +147,15 @@ def write(chart: Chart, folder: Path, excel: bool) -> None:
         BadInput: openpyxl is not installed.
     """
     from protractile.runs.chart import figures
-    from protractile.runs.report.pages import file_uris, page
+    from protractile.runs.report.document import embed
+    from protractile.runs.report.figures import write_pictures
+    from protractile.runs.report.pages import page
 
     with atomic_folder(folder) as part:
         chart.frame.to_csv(part / CSV, index=False, float_format="%.9g", lineterminator="\r\n")
-        pictures = figures.draw(chart, part)
+        shown = figures.figures_of(chart)
+        write_pictures(shown, part)
+        uris, plots = embed(shown, pictures=True)
         if excel:
             try:
                 chart.frame.to_excel(part / WORKBOOK, sheet_name="chart", index=False)
@@ -167,8 +171,8 @@ def write(chart: Chart, folder: Path, excel: bool) -> None:
             "color": lambda cell: figures.pale(kind_of(cell)),
             "failed": lambda cell: bool(cell.proofs) and not holds(cell.proofs[0]),
             "proofs": proof_table,
-            "figures": pictures,
+            "figures": shown,
+            **plots,
         }
-        uris = file_uris({one.title: one.path for one in pictures})
         text = page(Path(__file__).parent / "chart.html", uris, **content)
         (part / PAGE).write_text(text, encoding="utf-8")

@@ -372,8 +372,8 @@ def test_table_page_and_files(tmp_path: Path) -> None:
     case = case.model_copy(update={"cylinders": weak})
     chart = run.solve_all(case, planned, None, Cache(tmp_path / "cache"))
     output.write(chart, tmp_path / "chart", False)
-    names = {path.name for path in (tmp_path / "chart").iterdir()}
-    assert {"chart.csv", "chart.html", "capacities.png", "range.png"} <= names
+    names = {path.name for path in (tmp_path / "chart").rglob("*")}
+    assert {"chart.csv", "chart.html", "over-radius.png", "range.png"} <= names
     text = (tmp_path / "chart" / "chart.html").read_text("utf-8")
     assert text.count('<section class="cell"') == 6
     assert 'href="#cell-1-1"' in text
