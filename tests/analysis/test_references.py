@@ -16,7 +16,8 @@ from protractile.analysis.fatigue import Life, count_stress_ranges, endurance, l
 from protractile.analysis.measure import Measured
 from protractile.analysis.plate_buckling import normal_coefficient, panel_factor, winter
 from protractile.analysis.rows import INITIAL
-from protractile.beam_model.statics import estimate_critical_factor, static_state
+from protractile.beam_model.static_model import estimate_critical_factor
+from protractile.beam_model.statics import static_state
 from tests.beam_model.exact import beam
 from tests.booms import ARM, PAD, STEEL, cantilever, force, telescope
 
