@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import lru_cache
 from itertools import pairwise
 from typing import Literal, NamedTuple, Protocol
 
@@ -31,7 +32,7 @@ class RowAt(Protocol):
     def __call__(self, x: float, order: int = 0) -> Array: ...
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Component:
     """Component of the motion of a segment: its matrices, load vectors, and rows at any x.
 
@@ -79,18 +80,27 @@ class Component:
         """Return the load vector (num_dofs,) of 1 N/m, see :class:`.load.LoadedSegment`."""
         if span is None:
             return self.unit_load
-        start, end = span
-        inside = self.breaks[(self.breaks > start) & (self.breaks < end)]
-        # The number of Gauss points is sufficient for the polynomials between breaks.
-        points, weights = np.polynomial.legendre.leggauss(
-            len(self.load) // max(1, self.breaks.size - 1) + 4
-        )
-        total = np.zeros(len(self.load))
-        for a, b in pairwise([start, *inside, end]):
-            for point, weight in zip(points, weights, strict=True):
-                x = 0.5 * (a + b + point * (b - a))
-                total += 0.5 * (b - a) * weight * self.at(x)
-        return total
+        return _partial_load(self, *span)
+
+
+@lru_cache(maxsize=256)
+def _partial_load(component: Component, start: float, end: float) -> Array:
+    """Return the load vector (num_dofs,) of 1 N/m between two x in m, which kept models ask again.
+
+    It is read-only.
+    """
+    inside = component.breaks[(component.breaks > start) & (component.breaks < end)]
+    # The number of Gauss points is sufficient for the polynomials between breaks.
+    points, weights = np.polynomial.legendre.leggauss(
+        len(component.load) // max(1, component.breaks.size - 1) + 4
+    )
+    total = np.zeros(len(component.load))
+    for a, b in pairwise([start, *inside, end]):
+        for point, weight in zip(points, weights, strict=True):
+            x = 0.5 * (a + b + point * (b - a))
+            total += 0.5 * (b - a) * weight * component.at(x)
+    total.flags.writeable = False
+    return total
 
 
 # Function that returns a row or load vector (num_dofs,) of a component.
