@@ -128,7 +128,7 @@ BOOM: dict[str, Any] = {
          "element_length": 0.5},
         {"name": "calibrated", "kind": "finite-element", "theory": "timoshenko",
          "element_length": 0.5, "calibrated_by": "shell"},
-        {"name": "series", "kind": "kantorovich", "terms": [6, 6], "base": "complete"},
+        {"name": "series", "kind": "kantorovich", "terms": [10, 10], "base": "complete"},
     ],
 }  # fmt: skip
 
@@ -201,10 +201,11 @@ def distances(
 def test_a_series_identifies_beam_elements() -> None:
     """Reference: by construction, readings of beam elements. Noise 1 %, 19 of 20 seeds within 2 σ.
 
-    Both models differ by 2 % of the range of the tip, the error that all readings share.
+    Both models differ by less than 1 % of the ranges, in size and frequency by less than 0.3 %, the
+    error that all readings share.
     """
     curves = readings_of("elements")
-    off = np.array([distances(curves, seed, 0.02, "series") for seed in range(20)])
+    off = np.array([distances(curves, seed, 0.003, "series") for seed in range(20)])
     assert ((np.abs(off) < 2.0).sum(axis=0) >= 19).all()
 
 
