@@ -4,11 +4,11 @@
 Loads, axial forces and the luffing angle change neither the elements nor the contacts. In the modes
 of the boom without them, the stiffness is
 
-    K = diag(ω²) − ∫ P w′ w′ᵀ dx + Σ_c k_c (p_c p_cᵀ − p̄_c p̄_cᵀ)
+    K = diag(ω²) − ∫ P w′ w′ᵀ dx + Σ_c (k_c p_c p_cᵀ − k̄_c p̄_c p̄_cᵀ)
 
-with the axial force P, and cylinders of the stiffness k. The row p of a cylinder's elongation
-depends on the luffing angle; p̄ is that of a cylinder at right angles to its lever arm, which the
-modes include.
+with the axial force P, and cylinders of the stiffness k. The row p of a cylinder's elongation and
+its stiffness depend on the luffing angle; the modes include a cylinder at right angles to its lever
+arm, with p̄ and k̄. The spring of a rope's lead is part of the reduction by P.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from __future__ import annotations
 from collections.abc import Hashable, Iterator
 from dataclasses import fields, replace
 from functools import cached_property, lru_cache
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.linalg import null_space
@@ -92,7 +92,7 @@ class StaticModel:
         self._lines = [line_without_compression(shape, n, self._modes) for n in numbers]
         self._places = [force_places(shape, number) for number in numbers]
         lines = ground_lines(shape, self._modes.beams)
-        self._cylinders = [line.push for line in lines if line.force]
+        self._cylinders = [line for line in lines if line.force]
         self._slopes = [*self._all_slopes()]
 
     def _all_slopes(self) -> Iterator[_Slopes]:
@@ -188,7 +188,8 @@ class StaticModel:
         total = np.zeros((self._modes.omega2.size,) * 2)
         lines = [line for line in ground_lines(boom, self._modes.beams) if line.force]
         for line, before in zip(lines, self._cylinders, strict=True):
-            total += line.stiffness * (np.outer(line.push, line.push) - np.outer(before, before))
+            now, then = (np.outer(one.push, one.push) for one in (line, before))
+            total += line.stiffness * (now - then) + (line.stiffness - before.stiffness) * then
         return total
 
     @cached_property
@@ -278,7 +279,10 @@ def _square(cylinder: Cylinder, segment: Segment) -> Cylinder:
     foot, along, up = segment.foot, 1.0, 0.0
     if foot is not None and (foot.x, foot.depth) != (cylinder.x, cylinder.depth):
         along, up = cylinder.x - foot.x, foot.depth - cylinder.depth
-    return replace(cylinder, ground=(cylinder.x + up, -cylinder.depth - along))
+    # Its length is not that of the cylinder, whose data may give the stiffness.
+    data: dict[str, Any] = dict.fromkeys(("closed", "open", "bore", "rod", "pressure"))
+    ground = cylinder.x + up, -cylinder.depth - along
+    return replace(cylinder, ground=ground, stiffness=cylinder.axial_stiffness, **data)
 
 
 def estimate_critical_factor(boom: Boom) -> float | None:

@@ -105,7 +105,7 @@ def unpacked(packed: dict[str, str]) -> np.ndarray:
 def test_numbers_come_as_they_are() -> None:
     """Reference: the values, to the 24 bits of a 32-bit float. A name cannot end the script."""
     time, values = np.linspace(0.0, 1.0, 7), np.array([0.0, 1.5, -2.25, 3.1, 1e-9, 7.0, 8.0])
-    text = pack_charts({"tip": Chart(time, "mm", [Curve("</script>", values, "#000000")])})
+    text = pack_charts({"tip": Chart(time, [Curve("</script>", values, "#000000")])})
     assert "<" not in text
     chart = json.loads(text)["tip"]
     (curve,) = chart["data"]
@@ -119,7 +119,7 @@ def test_panels_share_their_abscissa_and_fill_the_height() -> None:
     time, values = np.linspace(0.0, 1.0, 3), np.array([1.0, 2.0, 3.0])
     limits = values - 1.0, values + 1.0
     curves = [Curve("a", values, "#000000", band=limits), Curve("a", values, "#000000", panel=1)]
-    figure = Chart(time, "mm", curves, ["up", "down"]).figure
+    figure = Chart(time, curves, ["up", "down"]).figure
     assert [trace.yaxis for trace in figure.data] == ["y", "y", "y", "y2"]
     np.testing.assert_array_equal([trace.y for trace in figure.data[:2]], limits)
     assert [trace.showlegend for trace in figure.data] == [False, False, True, False]
@@ -142,7 +142,7 @@ def test_thinned_curves_keep_their_extremes() -> None:
 def test_long_runs_are_thinned_to_their_own_samples() -> None:
     """Reference: the samples."""
     time = np.linspace(0.0, 10.0, 3 * MOST)
-    chart = Chart(time, "mm", [Curve("a", np.sin(50.0 * time), "#000000")])
+    chart = Chart(time, [Curve("a", np.sin(50.0 * time), "#000000")])
     assert chart.thinned
     (curve,) = chart.figure.data
     assert curve.x.size <= MOST + 2

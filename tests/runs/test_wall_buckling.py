@@ -126,9 +126,9 @@ def test_each_mode_has_its_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     )
     views = [replace(scene, buckling=data)]
     assert render_buckling([scene], tmp_path) == render_buckling(views, tmp_path, [0.1]) == []
-    (path,) = render_buckling(views, tmp_path)
-    assert path.name == "buckling-1.png"
-    pixels = np.asarray(Image.open(path).convert("RGB"), dtype=int)
+    (snapshot,) = render_buckling(views, tmp_path)
+    assert snapshot.path.name == "buckling-1.png"
+    pixels = np.asarray(Image.open(snapshot.path).convert("RGB"), dtype=int)
     picture = pixels[120 : 900 - 235]
     # Of viridis, the dark end is at the dent, on the upper face.
     dark = np.argwhere(picture.sum(axis=2) < 200)
