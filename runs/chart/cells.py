@@ -41,8 +41,9 @@ _RADIUS, _STEPS, _MOST_PROOFS = 1.0e-5, 30, 8
 # Reasons without a proof that limit a capacity.
 LARGEST, OUT_OF_REACH, NO_EQUILIBRIUM = "largest payload", "out of reach", "no equilibrium"
 
-# Relative error of a capacity, and the fraction of the largest payload that is tried first.
-_ACCURACY, _FIRST = 2.0e-7, 0.02
+# Relative error of a capacity, excess of a utilisation that counts as none, and the fraction of the
+# largest payload that is tried first.
+_ACCURACY, _NONE, _FIRST = 4.0e-7, 1.0e-7, 0.02
 
 
 class Configuration(NamedTuple):
@@ -120,7 +121,7 @@ class Search:
             for _ in range(_MOST_PROOFS):
                 payload, reason = self._root(min(first, chart.largest_payload), followed)
                 found = self._proofs(payload)
-                if (found[0].utilisation or 0.0) <= 1.0 + 10.0 * _ACCURACY:
+                if (found[0].utilisation or 0.0) <= 1.0 + 10.0 * _NONE:
                     return self._with_payload(payload, reason, found)
                 first, followed = max(payload, 1.0), _key(found[0])
             raise NoCapacityError(NO_EQUILIBRIUM)
@@ -176,7 +177,7 @@ class Search:
             low, high = high, min(max(ahead, 1.01 * high), 8.0 * high, largest)
         accuracy = {"xtol": _ACCURACY * high, "rtol": _ACCURACY}
         brentq(excess, low, high, **accuracy)
-        capacity = max(payload for payload in tried if excess(payload) <= _ACCURACY)
+        capacity = max(payload for payload in tried if excess(payload) <= _NONE)
         beyond = [payload for payload in tried if payload > capacity]
         return capacity, failures.get(min(beyond, default=0.0), "")
 
