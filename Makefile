@@ -14,6 +14,7 @@ REPORTS := $(VERIFY_CASES:%=runs/out/%/report.html)
 VARY_hoist := hoist.speed=0.2,0.3,0.4,0.5,0.6
 VARY_slew := slew.speed=2,4,6,8,10
 SWEEPS := $(patsubst %,runs/out/%-sweep/sweep.csv,hoist slew)
+CHARTS := runs/out/chart-crane-chart/chart.html
 
 # Instructions that `make imitate` hides from numpy.
 AVX512 := AVX512F AVX512CD AVX512_SKX AVX512_CLX AVX512_CNL AVX512_ICL AVX512_SPR
@@ -79,7 +80,7 @@ report: $(REPORTS) ## render the reports of the verify cases again, and print al
 snapshots: $(REPORTS) ## pictures of the verify cases with a shell
 	@set -e; for case in $(SHELL_CASES); do $(BIN)/protractile snapshot runs/out/$$case; done
 
-gallery: $(REPORTS) $(SWEEPS) ## the pictures of docs/gallery.md, from the verify cases
+gallery: $(REPORTS) $(SWEEPS) $(CHARTS) ## the pictures of docs/gallery.md, from the verify cases
 	@set -e; for case in paper spatial; do $(BIN)/protractile snapshot runs/out/$$case; done
 	$(BIN)/protractile report --figures runs/out/paper > /dev/null
 	$(BIN)/python -m studies.gallery
@@ -150,6 +151,9 @@ runs/out/%/report.html: runs/cases/%.toml $(SOURCES) | $(READY)
 # How fast a crane may hoist and slew.
 runs/out/%-sweep/sweep.csv: runs/cases/%.toml $(SOURCES) | $(READY)
 	@$(BIN)/protractile sweep $< --out $(@D) --models timoshenko --vary $(VARY_$*)
+
+runs/out/%-chart/chart.html: runs/cases/%.toml $(SOURCES) | $(READY)
+	@$(BIN)/protractile chart $< --out $(@D)
 
 # An environment with FEniCSx from elsewhere is made anew, so that it never has two.
 .venv/ready-debian .venv/ready-pip: .venv/ready-%: pyproject.toml $(CONSTRAINTS_$(DOLFINX)) | packages-%

@@ -3,7 +3,7 @@
 
 ``python -m studies.gallery`` writes docs/gallery from the folders ``paper``, ``spatial``,
 ``three-segments`` and ``convergence`` of runs/out, which ``make verify convergence`` writes, and
-``hoist-sweep`` and ``slew-sweep``, which ``make gallery`` writes.
+``hoist-sweep``, ``slew-sweep`` and ``chart-crane-chart``, which ``make gallery`` writes.
 """
 
 from __future__ import annotations
@@ -59,6 +59,7 @@ COPIED = {
     "space-from-above": ("spatial", "snapshots/boom-above-first-peak.png"),
     "three-segments": ("three-segments", "snapshots/boom-first-peak.png"),
     "benchmarks": ("convergence", "figures/benchmarks.png"),
+    "load-chart": ("chart-crane-chart", "figures/over-radius.png"),
 }
 
 
