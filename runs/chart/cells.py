@@ -21,7 +21,7 @@ from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import COMBINATION, Row, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
-from protractile.geometry.boom import Boom
+from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.cylinder import force_name
 from protractile.geometry.typography import percent
 from protractile.runs.case.build import build_boom
@@ -39,11 +39,11 @@ from protractile.runs.pipeline.tipping import foot_of, hook_place
 # proofs that are followed to a capacity.
 _RADIUS, _STEPS, _MOST_PROOFS = 1.0e-5, 30, 8
 # Reasons without a proof that limit a capacity.
-LARGEST, OUT_OF_REACH, NO_EQUILIBRIUM = "largest payload", "out of reach", "no equilibrium"
+LARGEST, OUT_OF_REACH = "largest payload", "out of reach"
+NO_EQUILIBRIUM, STROKE = "no equilibrium", "stroke of the cylinder"
 
-# Relative error of a capacity, excess of a utilisation that counts as none, and the fraction of the
-# largest payload that is tried first.
-_ACCURACY, _NONE, _FIRST = 4.0e-7, 1.0e-7, 0.02
+# Relative error of a capacity, and the fraction of the largest payload that is tried first.
+_ACCURACY, _FIRST = 4.0e-7, 0.02
 
 
 class Configuration(NamedTuple):
@@ -121,7 +121,7 @@ class Search:
             for _ in range(_MOST_PROOFS):
                 payload, reason = self._root(min(first, chart.largest_payload), followed)
                 found = self._proofs(payload)
-                if (found[0].utilisation or 0.0) <= 1.0 + 10.0 * _NONE:
+                if (found[0].utilisation or 0.0) <= 1.0 + _ACCURACY:
                     return self._with_payload(payload, reason, found)
                 first, followed = max(payload, 1.0), _key(found[0])
             raise NoCapacityError(NO_EQUILIBRIUM)
@@ -176,8 +176,10 @@ class Search:
             ahead = -1.01 * excess(0.0) / rise if rise > 0.0 else np.inf
             low, high = high, min(max(ahead, 1.01 * high), 8.0 * high, largest)
         accuracy = {"xtol": _ACCURACY * high, "rtol": _ACCURACY}
-        brentq(excess, low, high, **accuracy)
-        capacity = max(payload for payload in tried if excess(payload) <= _NONE)
+        root = float(brentq(excess, low, high, **accuracy))
+        # On the safe side, the proof of the capacity holds.
+        excess(root * (1.0 - _ACCURACY))
+        capacity = max(payload for payload in tried if excess(payload) <= 0.0)
         beyond = [payload for payload in tried if payload > capacity]
         return capacity, failures.get(min(beyond, default=0.0), "")
 
@@ -239,8 +241,13 @@ class Search:
         table = load_case_of(self.case, payload, extension, self._angle(tip))
         rated = combine(self.case, table)
         try:
+            boom = build_boom(rated)
+        except BoomError:
+            # The checked boom of the case differs only in the lengths of its cylinders.
+            raise NoCapacityError(STROKE) from None
+        try:
             with np.errstate(all="ignore"):
-                return table, static_states(rated, boom_with_play(rated, build_boom(rated)))
+                return table, static_states(rated, boom_with_play(rated, boom))
         except NUMERICAL_ERRORS:
             raise NoCapacityError(NO_EQUILIBRIUM) from None
 

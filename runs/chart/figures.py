@@ -68,7 +68,9 @@ def _range(chart: Chart) -> Figure:
     for turn in turns[[0, -1]]:
         ends = np.array([[x, z], [x + longest * np.cos(turn), z + longest * np.sin(turn)]])
         curves.append(Curve("", ends[:, 1], theme.FAINT, at=ends[:, 0], width=1.0))
-    shown = Plot(turns, curves, ("height (m)",), along="radius (m)", equal=True)
+    abscissas = [x for curve in curves if curve.at is not None for x in curve.at.tolist()]
+    extent = np.array([min(abscissas), max(abscissas)])
+    shown = Plot(extent, curves, ("height (m)",), along="radius (m)", equal=True)
     caption = "Place of the loaded tip in each cell; dotted: the straight boom."
     return Figure("range", "Range of the tip", caption, chart=shown, main=True)
 

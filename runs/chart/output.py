@@ -10,9 +10,18 @@ from typing import Any
 
 from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import COMBINATION, Row
-from protractile.geometry.typography import NONE, fixed, number, percent
+from protractile.geometry.typography import NONE, fixed, join_words, number, percent
 from protractile.runs.case.user_files import check_not_working_folder
-from protractile.runs.chart.cells import LARGEST, NO_EQUILIBRIUM, OUT_OF_REACH, Cell, chart_of
+from protractile.runs.chart.cells import (
+    LARGEST,
+    NO_EQUILIBRIUM,
+    OUT_OF_REACH,
+    STROKE,
+    Cell,
+    chart_of,
+    combined_case,
+    load_case_of,
+)
 from protractile.runs.chart.run import Chart
 from protractile.runs.folder.files import atomic_folder
 from protractile.runs.process.bad_input import BadInput
@@ -26,7 +35,7 @@ CSV, PAGE, WORKBOOK = "chart.csv", "chart.html", "chart.xlsx"
 LETTERS = {
     "yield": "Y", "patch": "Y", "plate": "P", "buckling": "P", "column": "C", "pad": "D",
     "cylinder": "L", "pin": "N", "deflection": "W", "tipping": "T",
-    LARGEST: "M", OUT_OF_REACH: "R", NO_EQUILIBRIUM: "E",
+    LARGEST: "M", OUT_OF_REACH: "R", NO_EQUILIBRIUM: "E", STROKE: "S",
 }  # fmt: skip
 
 # Digits of a capacity in the chart.
@@ -66,6 +75,7 @@ def chart_table(chart: Chart) -> Table:
         what = f"Governing utilisations in % with {number(keys.payload)} kg"
     governing = ", ".join(f"{letter} {name}" for letter, name in letters.items())
     notes = [f"{what}, over radius and boom length. Governing: {governing}.", *_reasons(chart)]
+    notes += _not_proved(chart)
     return Table("Load chart", columns, notes, "chart")
 
 
@@ -87,6 +97,18 @@ def _reasons(chart: Chart) -> list[str]:
     if OUT_OF_REACH in places:
         places[OUT_OF_REACH] = ["where no other reason is given"]
     return [f"{NONE} {reason}: {', '.join(where)}." for reason, where in places.items()]
+
+
+def _not_proved(chart: Chart) -> list[str]:
+    """Return sentences on the proofs that do not limit the chart because data are missing."""
+    case = combined_case(chart.case, load_case_of(chart.case, 0.0, {}, 0.0))
+    requested = {kind for combination in case.combinations for kind in combination.proofs}
+    proved = {row.quantity for cells in chart.cells for cell in cells for row in cell.proofs}
+    missing = [PROVED[kind].title for kind in PROVED if kind in requested - proved]
+    lines = [f"Not proved, for lack of data: {join_words(missing)}."] if missing and proved else []
+    if case.chassis is not None and "tipping" not in requested:
+        lines.append("Tipping is not proved: no combination of the chart lists `tipping`.")
+    return lines
 
 
 def proof_table(cell: Cell) -> Table:

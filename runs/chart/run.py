@@ -60,7 +60,7 @@ class Chart(NamedTuple):
                     "place": ", ".join(filter(None, (found.part, found.place))) if found else "",
                     "x, m": found.x if found else None,
                     "combination": cell.combination,
-                    "no capacity because": cell.reason,
+                    "limited otherwise by": cell.reason,
                     "luffing angle, deg": cell.angle,
                     "tip height, m": cell.height,
                     "tip deflection, m": cell.tip,
