@@ -49,7 +49,7 @@ def _over_radius(chart: Chart) -> Figure:
         at = np.array([cell.radius for cell in carrying])
         curves.append(Curve(_name(cells), values, color, marker="o", at=at))
     radii = np.array(chart_of(chart.case).radii)
-    shown = Plot(radii, curves, (heading,), along="radius (m)")
+    shown = Plot(np.array([0.0, 1.05 * radii.max()]), curves, (heading,), along="radius (m)")
     title = "The chart over the radius"
     return Figure("over-radius", title, "One curve for each length.", chart=shown, main=True)
 
