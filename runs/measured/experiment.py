@@ -14,6 +14,7 @@ from protractile.analysis.equilibria import equilibria
 from protractile.analysis.states import States
 from protractile.dynamics.predictability import vary_motion
 from protractile.geometry.arrays import Array
+from protractile.geometry.fields import BoomError
 from protractile.geometry.observation import KINDS, Recorded
 from protractile.geometry.typography import choices
 from protractile.runs.case import reading as case_file
@@ -102,22 +103,30 @@ class Experiment:
         """The case with the beam alone, and an output for each channel.
 
         Raises:
-            BadInput: the case has no such beam.
+            BadInput: the case has no such beam, or the place of a channel is outside its segment.
         """
         beams = [model.name for model in self.case.models if not model.meshed]
         names = chosen_beam(self.case, None if self.model is None else [self.model])
         if not {*names} & {*beams}:
             wrong = f"{self.model!r} is not a beam of the case; give {choices(beams or ['a beam'])}"
             raise BadInput(self.file, "--model", wrong if self.model else "the case has no beam")
-        outputs = [_output(channel) for channel in self.channels if channel.quantity in KINDS]
-        return self.case.model_copy(
+        numbered = enumerate(self.channels, start=1)
+        outputs = {n: _output(channel) for n, channel in numbered if channel.quantity in KINDS}
+        case = self.case.model_copy(
             update={
                 "models": tuple(model for model in self.case.models if model.name in names),
-                "observe": (*self.case.observe, *outputs),
+                "observe": (*self.case.observe, *outputs.values()),
                 "measured": tuple(self.channels),
                 "ensemble": None,
             }
         )
+        for number, output in outputs.items():
+            try:
+                build_boom(self.case.model_copy(update={"observe": (output,)}))
+            except BoomError as error:
+                key = f"measured[{number}].{error.where.rpartition('.')[2]}"
+                raise BadInput(self.file, key, self.case.system.convert(error.what)) from None
+        return case
 
     @cached_property
     def whole(self) -> Case:

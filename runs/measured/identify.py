@@ -51,6 +51,10 @@ def parse(text: str, file: str) -> tuple[str, tuple[float, float]]:
     return key, (low, high)
 
 
+# Misfit above which the model is wrong, or the minimum is not the right one.
+_WRONG = 2.0
+
+
 @dataclass(frozen=True)
 class Identification:
     """Unknown numbers of a case, identified from its measured channels."""
@@ -159,7 +163,12 @@ class Identification:
             f"readings is {number(found.misfit)}, 1 for a right model."
         ]
         if found.misfit > 1.0:
-            notes.append("The standard errors are larger by this factor.")
+            notes.append("The standard errors are already multiplied by this factor.")
+        if found.misfit > _WRONG:
+            notes.append(
+                "The model does not explain the readings: do not trust these numbers. Identify "
+                "from the tip alone first, from more starts, or with further unknowns."
+            )
         if not any(channel.systematic for channel in self.residuals.experiment.channels):
             notes.append(
                 "The errors are those of independent readings: systematic says how far readings "
