@@ -18,7 +18,7 @@ from protractile.dynamics.damping import closed_stiffness
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.stability import closing_loads
-from protractile.geometry.axial import Thrust, with_compression
+from protractile.geometry.axial import Lead, Thrust, with_compression
 from protractile.geometry.boom import Boom, Cylinder, Joint, Material, Pad, PointMass, Segment
 from protractile.geometry.box import BoxSection
 from protractile.geometry.compression import NO_COMPRESSION
@@ -54,11 +54,22 @@ def crane(
     return Boom(compressed, (joint,), loads, cylinders=(jack,))
 
 
+def by_data(angle: float) -> Boom:
+    """Return the crane with a cylinder whose stiffness follows from its data and its length."""
+    boom = crane(angle)
+    (jack,) = boom.cylinders
+    data = {"closed": 2.0, "open": 4.6, "bore": 0.2, "rod": 0.14, "pressure": 2.5e7}
+    return replace(boom, cylinders=(replace(jack, stiffness=None, **data),))
+
+
 CRANES: dict[str, Callable[[], Boom]] = {
     "level": lambda: crane(0.0),
     "luffed": lambda: crane(60.0),
     "heavier": lambda: crane(60.0, mass=900.0, thrust=5.0e4),
     "unloaded": lambda: crane(30.0, mass=300.0, thrust=0.0),
+    "with a lead": lambda: replace(crane(50.0), leads=(Lead(1, 14.0, 2.0e4, -2.0),)),
+    "on a long cylinder": lambda: by_data(60.0),
+    "on a short cylinder": lambda: by_data(10.0),
     "in space": lambda: crane(45.0, lateral=0.006),
 }
 
@@ -90,7 +101,9 @@ def test_a_kept_model_has_the_buckling_factor_of_a_new_one(name: str) -> None:
     """Reference: other code, the groups of bonded components in their own unknowns."""
     boom = CRANES[name]()
     unloaded = replace(
-        boom, segments=[replace(one, compression=NO_COMPRESSION) for one in boom.segments]
+        boom,
+        segments=[replace(one, compression=NO_COMPRESSION) for one in boom.segments],
+        leads=(),
     )
     system = loaded_system(unloaded, BoomModes(unloaded, Elements(unloaded, 20).segments))
     models = Elements(boom, 20).segments
