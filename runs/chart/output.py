@@ -196,5 +196,5 @@ def write(chart: Chart, folder: Path, excel: bool) -> None:
             "figures": shown,
             **plots,
         }
-        text = page(Path(__file__).parent / "chart.html", uris, **content)
+        text = page(Path(__file__).parent / "templates" / "chart.html", uris, **content)
         (part / PAGE).write_text(text, encoding="utf-8")
