@@ -28,7 +28,7 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
 from protractile.runs.case.load_tables import LoadCaseTable
 from protractile.runs.case.schema import Case
-from protractile.runs.chart.keys import ChartTable
+from protractile.runs.chart.keys import ChartTable, Keys
 from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.proofs import proofs_of
@@ -280,9 +280,9 @@ def solve(case: Case, configuration: Configuration) -> list[Cell]:
 
 def chart_of(case: Case) -> ChartTable:
     """Return the table of the chart of a case that has one."""
-    chart: ChartTable | None = getattr(case, "chart")  # noqa: B009 # a key of a client
-    assert chart is not None
-    return chart
+    assert isinstance(case, Keys)
+    assert case.chart is not None
+    return case.chart
 
 
 def load_case_of(
