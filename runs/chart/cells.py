@@ -22,7 +22,7 @@ from protractile.analysis.rows import COMBINATION, Row, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom, BoomError
-from protractile.geometry.cylinder import force_name
+from protractile.geometry.ground import force_name
 from protractile.geometry.typography import percent
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
