@@ -22,7 +22,7 @@ from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.contact_places import contact_centres, pads
-from protractile.geometry.cylinder import forces
+from protractile.geometry.ground import forces
 from protractile.geometry.joint import PADS_OF_SIDE, Joint, Pad
 from protractile.geometry.section import EACH_SIDE, Direction
 from protractile.geometry.station import Station
@@ -158,12 +158,12 @@ def _static_contacts(states: States) -> Iterator[Measured]:
         sides = [_on_side(systems, side, gaps, here) for side in EACH_SIDE]
         part, place = station_label(boom, station)
         yield _single("contact_force", part, sides[0] - sides[1], time, station.x, place)
-        depths = [
-            [there.laws[row].depth(gap[row]) for row in here]
+        penetrations = [
+            [there.laws[row].penetration(gap[row]) for row in here]
             for there, gap in zip(systems, gaps, strict=True)
         ]
-        depth = np.array(depths).reshape(time.size, -1).max(axis=1, initial=0.0)
-        yield _single("penetration", part, depth, time, station.x, place)
+        deepest = np.array(penetrations).reshape(time.size, -1).max(axis=1, initial=0.0)
+        yield _single("penetration", part, deepest, time, station.x, place)
         if station.direction == "y" and station.joint is not None:
             closed, play = _closed_play(system, gaps, here), station.joint.lateral_play
             yield _single("closed_play", part, closed, time, station.x, place, play or None)

@@ -19,7 +19,7 @@ from protractile.dynamics.line import Line, LineQuantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import axial_force
 from protractile.geometry.boom import Boom
-from protractile.geometry.cylinder import force_name
+from protractile.geometry.ground import force_name
 
 # Distance by which both positions at a jump are moved away from it, as a fraction of the length.
 _SHIFT = 1.0e-9

@@ -31,7 +31,7 @@ from protractile.dynamics.travel import MovingAxialForce, RowTable, Travel
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import joint_thrust, largest_change, moving_force
 from protractile.geometry.boom import SAME_PLACE, Boom, Direction, Joint
-from protractile.geometry.cylinder import ground_lines
+from protractile.geometry.ground import ground_lines
 from protractile.geometry.telescoping import (
     TelescopingStations,
     drives_below,

@@ -12,10 +12,9 @@ from protractile.beam_model.component import Motion, SegmentModel
 from protractile.dynamics.gap_builder import GapBuilder, OutputOperator
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.axial import pin_moments
 from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import pads
-from protractile.geometry.cylinder import ground_lines
+from protractile.geometry.ground import ground_lines, pin_moments
 from protractile.geometry.observation import Displacement, Observation, Quantity
 from protractile.geometry.section import Side
 from protractile.geometry.telescoping import drives_below, telescoping_stations

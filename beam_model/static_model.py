@@ -41,10 +41,10 @@ from protractile.dynamics.line import Line
 from protractile.dynamics.second_order import buckling_factor
 from protractile.dynamics.stability import closing_loads
 from protractile.geometry.arrays import Array, Indices
-from protractile.geometry.axial import pin_moments
 from protractile.geometry.boom import Boom
 from protractile.geometry.compression import NO_COMPRESSION, Compression
-from protractile.geometry.cylinder import Cylinder, ground_lines
+from protractile.geometry.cylinder import Cylinder
+from protractile.geometry.ground import ground_lines, pin_moments
 from protractile.geometry.load import Load
 from protractile.geometry.section import EACH_SIDE
 from protractile.geometry.segment import PointMass, Segment

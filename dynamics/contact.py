@@ -19,7 +19,7 @@ from protractile.dynamics.arrays import Array, is_finite
 
 # A negligible force in N, and logarithms of penetrations in m between which forces are
 # interpolated.
-_LEAST, _LOG_DEPTHS = 1.0e-300, np.linspace(-300.0, 300.0, 6001)
+_LEAST, _LOGARITHMS = 1.0e-300, np.linspace(-300.0, 300.0, 6001)
 
 # Types of arrays: (num_terms,) of TERM, (num_rows,) of LIMITS.
 Terms = npt.NDArray[np.void]
@@ -53,21 +53,21 @@ TERM = np.dtype([("row", np.int64), *((name, np.float64) for name in Term._field
 
 def force_of(term: np.void, y: Displacement) -> Displacement:
     """Return the force in N of a term at relative displacements y in m."""
-    depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
-    power = depth if n == 1.0 else depth * depth if n == 2.0 else depth**n
+    penetration, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
+    power = penetration if n == 1.0 else penetration * penetration if n == 2.0 else penetration**n
     return term["side"] * term["stiffness"] * power
 
 
 def energy_of(term: np.void, y: Displacement) -> Displacement:
     """Return the potential in J of a term at relative displacements y in m."""
-    depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
-    return term["stiffness"] * depth ** (n + 1.0) / (n + 1.0)
+    penetration, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
+    return term["stiffness"] * penetration ** (n + 1.0) / (n + 1.0)
 
 
 def slope_of(term: np.void, y: Displacement) -> Displacement:
     """Return dF/dy in N/m of a term at relative displacements y in m."""
-    depth, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
-    return np.sign(depth) * n * term["stiffness"] * depth ** (n - 1.0)
+    penetration, n = np.maximum(term["side"] * y - term["onset"], 0.0), term["exponent"]
+    return np.sign(penetration) * n * term["stiffness"] * penetration ** (n - 1.0)
 
 
 class ContactLaw(ABC):
@@ -131,7 +131,7 @@ class ContactLaw(ABC):
         """Return dF/dy in N/m, in the shape of ``y``."""
         return self._sum(slope_of, y)
 
-    def depth(self, y: Array) -> Array:
+    def penetration(self, y: Array) -> Array:
         """Return the penetration in m, 0 without contact, in the shape of ``y`` in m."""
         beyond = [term.side * y - term.onset for term in self.terms]
         return np.asarray(np.max(beyond, axis=0, initial=0.0))
@@ -139,13 +139,13 @@ class ContactLaw(ABC):
     def slope_at(self, force: float) -> float:
         """Return dF/dy in N/m at a contact force in N, on the stiffer side of the law."""
         # Interpolation in logarithms, in which a power law is linear.
-        depths, slopes = np.exp(_LOG_DEPTHS), []
+        penetrations, slopes = np.exp(_LOGARITHMS), []
         # Overflow occurs only at penetrations far beyond the given force.
         with np.errstate(over="ignore"):
             for side in {term.side for term in self.terms}:
-                forces = np.log(np.maximum(np.abs(self.force(side * depths)), _LEAST))
-                depth = np.exp(np.interp(np.log(max(force, _LEAST)), forces, _LOG_DEPTHS))
-                slopes.append(float(self.slope(side * depth)))
+                forces = np.log(np.maximum(np.abs(self.force(side * penetrations)), _LEAST))
+                penetration = np.exp(np.interp(np.log(max(force, _LEAST)), forces, _LOGARITHMS))
+                slopes.append(float(self.slope(side * penetration)))
         return max(slopes)
 
     def _sum(self, of_term: OfTerm, y: Array) -> Array:

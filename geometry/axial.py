@@ -8,11 +8,11 @@ inboard of it cause tension.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from operator import attrgetter
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
 import numpy as np
 
@@ -20,14 +20,10 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.compression import NO_COMPRESSION, Compression
 from protractile.geometry.fields import In, Number, part
 from protractile.geometry.joint import Joint, sample_times
-from protractile.geometry.load import LoadedSegment
 from protractile.geometry.place import Place, SegmentRef, resolve_segments
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import SAME_PLACE, PointMass, Segment
 from protractile.geometry.taper import mean_area
-
-if TYPE_CHECKING:
-    from protractile.geometry.boom import Boom
 
 # Number of steps of uniform weight in a tapered segment. Forces are exact at the ends of steps;
 # between them the error is some thousandths of the weight of a step.
@@ -176,19 +172,6 @@ def foot_thrust(
         if change.compressions:
             total = total + change.history(time) * change.compressions[number].transferred
     return total
-
-
-def pin_moments(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[tuple[int, Array]]:
-    """Yield (segment, load vector) of the moment of axial forces, for each pin below the axis.
-
-    The pin, at the depth d, does not move. So a slope w′ at the pin moves the segment along x by
-    −d w′ against its compression P. The work P d w′ equals that of a moment P d at the pin.
-    """
-    for number, segment in enumerate(boom.segments):
-        foot = segment.foot
-        if foot is not None and foot.depth != 0.0:
-            moment = foot.depth * float(foot_thrust(boom.segments, boom.joints, number))
-            yield number, moment * bodies[number].moment(foot.x, "z")
 
 
 def moving_force(

@@ -6,10 +6,11 @@ x runs along the boom, z is in the plane of bending, y is lateral. All units are
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+from protractile.geometry.assembly import Assembly
 from protractile.geometry.axial import AxialChange, Lead, moving_force_places
 from protractile.geometry.boom_checks import check_boom
 from protractile.geometry.cylinder import Cylinder
@@ -21,7 +22,7 @@ from protractile.geometry.observation import Observation, Quantity
 from protractile.geometry.place import resolve_segments
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import SAME_PLACE, Lateral, PointMass, Segment
-from protractile.geometry.station import Station, stations
+from protractile.geometry.station import Station
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Support
 from protractile.geometry.telescoping import drives_of, reach, station_positions
@@ -62,7 +63,7 @@ _KINDS: Mapping[str, type] = {
 
 
 @dataclass(frozen=True)
-class Boom:
+class Boom(Assembly):
     """Segments from the base to the tip, with joints, loads and cylinders.
 
     Example: a clamped arm, and a fly with an overlap of 2 m in it.
@@ -92,15 +93,6 @@ class Boom:
             lateral properties; or an observed quantity does not exist in 2D.
     """
 
-    segments: Sequence[Segment]
-    joints: Sequence[Joint] = ()
-    loads: Sequence[Load] = ()
-    stops: Sequence[Stop] = ()
-    observations: Sequence[Observation] = ()
-    cylinders: Sequence[Cylinder] = ()
-    axial_changes: Sequence[AxialChange] = ()
-    leads: Sequence[Lead] = ()
-
     def __post_init__(self) -> None:
         for group, kind in _KINDS.items():
             parts = getattr(self, group)
@@ -121,24 +113,9 @@ class Boom:
         check_boom(self)
 
     @property
-    def tip(self) -> float:
-        """The x in m of the free end of the last segment."""
-        return self.segments[-1].end
-
-    @property
-    def length(self) -> float:
-        """The length in m from the start of the first segment to the tip."""
-        return self.tip - self.segments[0].start
-
-    @property
     def mass(self) -> float:
         """The mass in kg, with point masses, collars and diaphragms."""
         return sum(segment.mass for segment in self.segments)
-
-    @property
-    def spatial(self) -> bool:
-        """True if the segments also move along y and twist."""
-        return any(joint.lateral_play is not None for joint in self.joints)
 
     @cached_property
     def bonded(self) -> Boom:
@@ -193,19 +170,6 @@ class Boom:
         """True if a segment carries an axial force."""
         return any(segment.compression for segment in self.segments) or bool(self.axial_changes)
 
-    @property
-    def directions(self) -> tuple[Direction, ...]:
-        """The directions in which the segments can touch."""
-        return ("z", "y") if self.spatial else ("z",)
-
-    @cached_property
-    def stations(self) -> tuple[Station, ...]:
-        """All contact stations, without bonded joints.
-
-        The order is: joints along z, in three-dimensional booms joints along y, stops.
-        """
-        return stations(self.joints, self.stops, self.directions)
-
     def joint_stations(self, number: int, direction: Direction) -> list[Station]:
         """Return the stations of a joint in a direction; none if the joint is bonded."""
         return [
@@ -253,29 +217,10 @@ class Boom:
             )
         )
 
-    def overlap(self, joint: Joint) -> tuple[float, float]:
-        """Return both ends in m of the overlap of a joint's segments."""
-        outer, inner = self.segments[joint.outer], self.segments[joint.inner]
-        return max(outer.start, inner.start), min(outer.end, inner.end)
-
     def smallest_overlap(self, joint: Joint) -> float:
         """Return the overlap in m of a joint at the largest extension of its drive, if any."""
         start, end = self.overlap(joint)
         return end - start - (0.0 if joint.drive is None else joint.drive.reach[1])
-
-    @property
-    def observed(self) -> dict[str, tuple[int, float]]:
-        """The (segment, x in m) of the points with a deflection in all results, by name.
-
-        ``tip`` is the end of the last segment, ``head`` the end of a joint's outer segment,
-        ``tail`` the start of its inner segment. A suffix such as ``-2`` numbers further joints.
-        """
-        places = {"tip": (len(self.segments) - 1, self.tip)}
-        for number, joint in enumerate(self.joints, start=1):
-            suffix = "" if number == 1 else f"-{number}"
-            places[f"head{suffix}"] = (joint.outer, self.segments[joint.outer].end)
-            places[f"tail{suffix}"] = (joint.inner, self.segments[joint.inner].start)
-        return places
 
     def all_observations(self, of_ends: Sequence[Quantity]) -> list[Observation]:
         """Return the observations of the quantities ``of_ends`` at ends, then those of the case.
@@ -283,10 +228,3 @@ class Boom:
         Examples of names at ends: ``tip`` for a deflection, ``tip_rotation`` for a rotation.
         """
         return [*self.end_observations(of_ends), *self.observations]
-
-    def end_observations(self, quantities: Iterable[Quantity]) -> list[Observation]:
-        return [
-            Observation(f"{name}_{what}".removesuffix("_deflection"), segment, x, what)
-            for name, (segment, x) in self.observed.items()
-            for what in quantities
-        ]

@@ -5,11 +5,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
-from protractile.geometry.cylinder import forces
+from protractile.geometry.assembly import Assembly
 from protractile.geometry.fields import BoomError
 from protractile.geometry.fit import check_contact_faces, check_pads, check_room
+from protractile.geometry.ground import forces
 from protractile.geometry.joint import Joint, Stop
 from protractile.geometry.load import PartialLoad
 from protractile.geometry.observation import KINDS, SPATIAL_QUANTITIES
@@ -19,14 +19,11 @@ from protractile.geometry.segment_checks import check_segment
 from protractile.geometry.support_check import check_supported
 from protractile.geometry.telescoping import check_drives
 
-if TYPE_CHECKING:
-    from protractile.geometry.boom import Boom
-
 # Minimum overlap as a fraction of the length of the inner segment.
 LEAST_OVERLAP = 1.0e-4
 
 
-def check_boom(boom: Boom) -> None:
+def check_boom(boom: Assembly) -> None:
     """Check that the parts of a boom are compatible.
 
     Raises:
@@ -60,7 +57,7 @@ def check_boom(boom: Boom) -> None:
     check_drives(boom)
 
 
-def _check_order(boom: Boom) -> None:
+def _check_order(boom: Assembly) -> None:
     for number, (before, after) in enumerate(pairwise(boom.segments), start=1):
         if after.start < before.start or after.end < before.end:
             raise BoomError(
@@ -73,7 +70,7 @@ def _check_order(boom: Boom) -> None:
         check_order(f"joints[{number}]", names[joint.outer], names[joint.inner], names)
 
 
-def _check_mirrors(boom: Boom) -> None:
+def _check_mirrors(boom: Assembly) -> None:
     """Check that sections have the symmetry that uncouples vertical and lateral motion."""
     for number, segment in enumerate(boom.segments):
         if segment.section is None:
@@ -99,7 +96,7 @@ def _check_mirrors(boom: Boom) -> None:
                 )
 
 
-def _check_diaphragms(boom: Boom) -> None:
+def _check_diaphragms(boom: Assembly) -> None:
     """Check that no diaphragm is at an x where another segment is inside the box."""
     for joint in boom.joints:
         outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
@@ -112,7 +109,7 @@ def _check_diaphragms(boom: Boom) -> None:
                 )
 
 
-def _check_contact_faces(boom: Boom) -> None:
+def _check_contact_faces(boom: Assembly) -> None:
     for stop in boom.stops:
         check_contact_faces(f"segments[{stop.segment}]", boom.segments[stop.segment], ("z",), ())
     for joint in boom.joints:
@@ -124,7 +121,7 @@ def _check_contact_faces(boom: Boom) -> None:
         check_contact_faces(where, inner, boom.directions, places, outer)
 
 
-def _check_space(boom: Boom) -> None:
+def _check_space(boom: Assembly) -> None:
     for number, joint in enumerate(boom.joints):
         if joint.lateral_play is None:
             raise BoomError(
@@ -143,7 +140,7 @@ def _check_space(boom: Boom) -> None:
                 )
 
 
-def _check_contact_length(boom: Boom, where: str, place: Joint | Stop) -> None:
+def _check_contact_length(boom: Assembly, where: str, place: Joint | Stop) -> None:
     length = place.contact_length
     if length is None:
         return
@@ -163,7 +160,7 @@ def _check_contact_length(boom: Boom, where: str, place: Joint | Stop) -> None:
         )
 
 
-def _check_loads(boom: Boom) -> None:
+def _check_loads(boom: Assembly) -> None:
     for number, load in enumerate(boom.loads):
         for key, x in load.places.items():
             boom.segments[load.segment].check_place(f"loads[{number}].{key}", x)
@@ -180,7 +177,7 @@ def _check_loads(boom: Boom) -> None:
             )
 
 
-def _check_stops(boom: Boom) -> None:
+def _check_stops(boom: Assembly) -> None:
     for number, stop in enumerate(boom.stops):
         segment = boom.segments[stop.segment]
         segment.check_place(f"stops[{number}].x", stop.x)
@@ -194,7 +191,7 @@ def _check_stops(boom: Boom) -> None:
                 )
 
 
-def _check_observations(boom: Boom) -> None:
+def _check_observations(boom: Assembly) -> None:
     names = {*forces(boom), *(place.name for place in boom.end_observations(KINDS))}
     for number, place in enumerate(boom.observations):
         where = f"observations[{number}]"
@@ -213,7 +210,7 @@ def _check_observations(boom: Boom) -> None:
             )
 
 
-def _check_joint(boom: Boom, where: str, joint: Joint) -> None:
+def _check_joint(boom: Assembly, where: str, joint: Joint) -> None:
     outer, inner = boom.segments[joint.outer], boom.segments[joint.inner]
     start, end = boom.overlap(joint)
     if not start < end:

@@ -3,10 +3,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
 from math import cos, hypot, isfinite, pi, sin
-from typing import TYPE_CHECKING, Annotated, Any, NamedTuple
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BeforeValidator, GetCoreSchemaHandler
@@ -25,10 +25,6 @@ from protractile.geometry.fields import (
 from protractile.geometry.load import LoadedSegment
 from protractile.geometry.place import Place, SegmentRef
 from protractile.geometry.support import Pin, Support
-
-if TYPE_CHECKING:
-    from protractile.geometry.boom import Boom
-
 
 # Young's modulus in Pa of the rod, of steel, and fraction of a length that is rounded in drawings.
 _ROD_MODULUS, _REACH = 2.1e11, 1.0e-6
@@ -300,55 +296,3 @@ class Cylinder:
         if self.spread > 0.0:
             half = 0.5 * self.spread
             yield half * (up * body.torque(self.x) - along * body.moment(self.x, "y"))
-
-
-class GroundLine(NamedTuple):
-    """Spring and dashpot between a segment and the ground, in addition to its supports."""
-
-    segment: int  #: index in ``Boom.segments``
-    push: Array  #: load vector (num_dofs,) of 1 N along the line, also row of the elongation
-    stiffness: float  #: stiffness in N/m
-    dashpot: float  #: dashpot in N·s/m
-    #: name of the spring force in results, positive in compression; empty if it is not a result
-    force: str = ""
-
-
-def force_name(number: int) -> str:
-    """Return the name of a cylinder's spring force in results; ``number`` counts from 1."""
-    return "cylinder_force" if number == 1 else f"cylinder_force-{number}"
-
-
-def forces(boom: Boom) -> dict[str, str]:
-    """Return the descriptions of the cylinders' spring forces, by their names in results."""
-    observations = {}
-    for number, cylinder in enumerate(boom.cylinders, start=1):
-        name = force_name(number)
-        where = f"at x = {cylinder.x:g} m of {boom.segments[cylinder.segment].name!r}"
-        observations[name] = f"spring force of the cylinder {where}, positive in compression"
-        if cylinder.spread > 0.0:
-            observations[name.replace("force", "force_difference")] = (
-                f"spring force of the cylinder at positive y {where}, less the force of the other"
-            )
-    return observations
-
-
-def ground_lines(boom: Boom, bodies: Sequence[LoadedSegment]) -> Iterator[GroundLine]:
-    """Yield springs and dashpots of cylinders, springs of leads, and dashpots of supports."""
-    names = iter(forces(boom))
-    for cylinder in boom.cylinders:
-        for push in cylinder.load_vectors(
-            bodies[cylinder.segment], boom.segments[cylinder.segment].foot
-        ):
-            yield GroundLine(
-                cylinder.segment, push, cylinder.axial_stiffness, cylinder.dashpot, next(names)
-            )
-    for lead in boom.leads:
-        for direction in boom.directions:
-            push = bodies[lead.segment].unit_load_vector(lead.x, direction)
-            yield GroundLine(lead.segment, push, lead.stiffness, 0.0)
-    for number, segment in enumerate(boom.segments):
-        for support in segment.supports:
-            if support.dashpot > 0.0:
-                for direction in boom.directions:
-                    push = bodies[number].unit_load_vector(support.x, direction)
-                    yield GroundLine(number, push, 0.0, support.dashpot)

@@ -5,17 +5,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from itertools import combinations, product
-from typing import TYPE_CHECKING
 
+from protractile.geometry.assembly import Assembly
 from protractile.geometry.fields import BoomError
 from protractile.geometry.joint import SIDES, Joint, Pad, SlidePad
 from protractile.geometry.section import Direction, Side
 from protractile.geometry.segment import SAME_PLACE, Segment
 from protractile.geometry.typography import TO_MILLI
 from protractile.geometry.walls import free_room
-
-if TYPE_CHECKING:
-    from protractile.geometry.boom import Boom
 
 _WHERE: Mapping[tuple[Direction, Side], str] = {
     ("z", 1): "top",
@@ -132,7 +129,7 @@ def check_contact_faces(
             )
 
 
-def check_pads(where: str, joint: Joint, boom: Boom) -> None:
+def check_pads(where: str, joint: Joint, boom: Assembly) -> None:
     """Check the pads of a joint.
 
     Raises:
@@ -163,7 +160,7 @@ def check_pads(where: str, joint: Joint, boom: Boom) -> None:
                 )
 
 
-def check_pads_in_travel(where: str, joint: Joint, boom: Boom) -> None:
+def check_pads_in_travel(where: str, joint: Joint, boom: Assembly) -> None:
     """Check that all pads of a joint stay in the overlap while the joint telescopes.
 
     Raises:
@@ -197,7 +194,7 @@ def check_pads_in_travel(where: str, joint: Joint, boom: Boom) -> None:
                     )
 
 
-def _check_pad(where: str, joint: Joint, pad: Pad, boom: Boom) -> None:
+def _check_pad(where: str, joint: Joint, pad: Pad, boom: Assembly) -> None:
     if joint.bonded:
         raise BoomError(where, "the joint is bonded, and nothing touches; leave it out")
     start, end = boom.overlap(joint)
@@ -220,7 +217,7 @@ def _check_pad(where: str, joint: Joint, pad: Pad, boom: Boom) -> None:
         )
 
 
-def pad_room(joint: Joint, pad: Pad, boom: Boom) -> float:
+def pad_room(joint: Joint, pad: Pad, boom: Assembly) -> float:
     """Return half the width in m of the narrowest wall of a pad; infinite without a section."""
     inner = boom.segments[joint.inner]
     if inner.section is None:

@@ -12,20 +12,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.axial import foot_thrust, pin_moments
-from protractile.geometry.cylinder import ground_lines
+from protractile.geometry.assembly import Assembly
+from protractile.geometry.axial import foot_thrust
 from protractile.geometry.fields import BoomError
+from protractile.geometry.ground import ground_lines, pin_moments
 from protractile.geometry.load import LoadedSegment
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import Segment
-
-if TYPE_CHECKING:
-    from protractile.geometry.boom import Boom
 
 # Fraction of the largest row or force below which a remainder is round-off.
 _ROUND_OFF = 1.0e-9
@@ -34,7 +31,7 @@ _ROUND_OFF = 1.0e-9
 _FLAT, _SPATIAL = 2, 5
 
 
-def check_supported(boom: Boom) -> None:
+def check_supported(boom: Assembly) -> None:
     """Check that supports, cylinders, joints and stops prevent all rigid motions.
 
     Raises:
@@ -60,7 +57,7 @@ def check_supported(boom: Boom) -> None:
         )
 
 
-def check_contacts_at_rest(boom: Boom) -> None:
+def check_contacts_at_rest(boom: Assembly) -> None:
     """Check that the loads at t = 0 press segments against the one-sided stops that the boom needs.
 
     Raises:
@@ -92,7 +89,7 @@ class _RigidBody(LoadedSegment):
     Rotations are scaled by the length of the boom.
     """
 
-    boom: Boom
+    boom: Assembly
     number: int
 
     @property
@@ -165,7 +162,7 @@ class _RigidBody(LoadedSegment):
         return row
 
 
-def _check_depths(boom: Boom) -> None:
+def _check_depths(boom: Assembly) -> None:
     luffed = {cylinder.segment for cylinder in boom.cylinders}
     for number, segment in enumerate(boom.segments):
         has_thrust = number in luffed or foot_thrust(boom.segments, boom.joints, number) != 0.0
@@ -178,11 +175,11 @@ def _check_depths(boom: Boom) -> None:
                 )
 
 
-def _bodies(boom: Boom) -> list[_RigidBody]:
+def _bodies(boom: Assembly) -> list[_RigidBody]:
     return [_RigidBody(boom, number) for number in range(len(boom.segments))]
 
 
-def _one_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
+def _one_way_restraints(boom: Assembly, bodies: list[_RigidBody]) -> list[Array]:
     """Return the load vectors (num_dofs,) of 1 N from each one-sided stop."""
     return [
         -stop.sides[0] * bodies[stop.segment].unit_load_vector(stop.x, "z")
@@ -191,7 +188,7 @@ def _one_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> list[Array]:
     ]
 
 
-def _two_way_restraints(boom: Boom, bodies: list[_RigidBody]) -> Iterator[Array]:
+def _two_way_restraints(boom: Assembly, bodies: list[_RigidBody]) -> Iterator[Array]:
     """Yield the rows (num_dofs,) of restraints that act in both directions."""
     for body in bodies:
         for support in body.segment.supports:

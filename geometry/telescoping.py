@@ -7,17 +7,14 @@ from collections import defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from protractile.geometry.assembly import Assembly
 from protractile.geometry.fields import BoomError
 from protractile.geometry.fit import check_pads_in_travel, check_room
 from protractile.geometry.joint import Drive, Joint
 from protractile.geometry.segment import SAME_PLACE, Segment
-
-if TYPE_CHECKING:
-    from protractile.geometry.boom import Boom
 
 # Number of times at which a boom with drives is checked.
 _SAMPLES = 9
@@ -44,7 +41,7 @@ class TelescopingStations:
         return {self.joints[0]: extension}
 
 
-def telescoping_stations(boom: Boom) -> list[TelescopingStations]:
+def telescoping_stations(boom: Assembly) -> list[TelescopingStations]:
     """Return the stations that move, grouped by drives; stops on moving segments are included."""
     groups = defaultdict[tuple[int, ...], list[int]](list)
     for station in boom.stations:
@@ -73,7 +70,7 @@ def drives_below(joints: Sequence[Joint], segment: int) -> tuple[int, ...]:
     return ()
 
 
-def travel(boom: Boom, segment: int, time: float) -> float:
+def travel(boom: Assembly, segment: int, time: float) -> float:
     """Return the travel of a segment in m since the start, at a time in s."""
     return sum(float(drive.history(np.array(time))) for drive in drives_of(boom.joints, segment))
 
@@ -89,13 +86,13 @@ def reach(drives: Sequence[Drive]) -> tuple[float, float]:
     return sum(drive.reach[0] for drive in drives), sum(drive.reach[1] for drive in drives)
 
 
-def farthest_travel(boom: Boom, segment: int) -> float:
+def farthest_travel(boom: Assembly, segment: int) -> float:
     """Return a segment's largest outward travel in m; negative if the segment only retracts."""
     reaches = (drive.reach for drive in drives_of(boom.joints, segment))
     return sum(high or low for low, high in reaches)
 
 
-def sample_extensions(boom: Boom) -> list[dict[int, float]]:
+def sample_extensions(boom: Assembly) -> list[dict[int, float]]:
     """Return the extensions in m at several times, by joint; they include all extremes."""
     drives = {n: joint.drive for n, joint in enumerate(boom.joints) if joint.drive is not None}
     times = np.unique(np.concatenate([np.zeros(1), *(drive.times for drive in drives.values())]))
@@ -119,7 +116,7 @@ def station_positions(joint: Joint, extension: float) -> list[tuple[float, float
     ]
 
 
-def check_drives(boom: Boom) -> None:
+def check_drives(boom: Assembly) -> None:
     """Check that each drive has space for its travel, and moves no supported segment.
 
     Raises:
@@ -222,7 +219,7 @@ def _check_lock(where: str, joint: Joint, outer: Segment, inner: Segment) -> Non
             )
 
 
-def _check_order(boom: Boom) -> None:
+def _check_order(boom: Assembly) -> None:
     """Check that all joints of a segment move it by the same extension."""
     for number, joint in enumerate(boom.joints):
         drive = () if joint.drive is None else (number,)
@@ -235,7 +232,7 @@ def _check_order(boom: Boom) -> None:
             )
 
 
-def _check_unsupported(boom: Boom, number: int) -> None:
+def _check_unsupported(boom: Assembly, number: int) -> None:
     """Check that a segment that telescopes has no supports and cylinders; stops may touch it."""
     segment = boom.segments[number]
     restraints = [f"segments[{number}].supports"] if segment.supports else []

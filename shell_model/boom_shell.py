@@ -13,11 +13,10 @@ from mpi4py import MPI
 
 from protractile.dynamics.gap_builder import GapBuilder, OutputOperator
 from protractile.geometry.arrays import Array
-from protractile.geometry.axial import pin_moments
 from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.contact_places import ContactLine
-from protractile.geometry.cylinder import GroundLine, ground_lines
 from protractile.geometry.grading import graded_mesh
+from protractile.geometry.ground import GroundLine, ground_lines, pin_moments
 from protractile.geometry.load import Load
 from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
 from protractile.geometry.observation import Displacement, Quantity

@@ -37,7 +37,7 @@ from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
-from protractile.geometry.cylinder import ground_lines
+from protractile.geometry.ground import ground_lines
 from protractile.geometry.plating import PlatedMesh
 from protractile.shell_model import compat
 from protractile.shell_model.boom_shell import ShellOptions

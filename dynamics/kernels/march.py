@@ -314,17 +314,17 @@ def march(
     mean, peak, friction = np.zeros(contacts), np.zeros(contacts), np.zeros(frictions)
     matrix = compliances[0]
     for step in range(output.states.shape[0] * stretches):
-        done, depth, joins = 0.0, joined, True
+        done, level, joins = 0.0, joined, True
         while done < 1.0:
-            if joins and 0 < joined == depth and done * 2.0 ** (joined - 1) % 1.0 == 0.0:
+            if joins and 0 < joined == level and done * 2.0 ** (joined - 1) % 1.0 == 0.0:
                 free_for = free_time(system, flow, state, flow.time[0])
                 while (
-                    depth > 0
-                    and flow.time[depth - 1] <= free_for
-                    and done * 2.0 ** (depth - 1) % 1.0 == 0.0
+                    level > 0
+                    and flow.time[level - 1] <= free_for
+                    and done * 2.0 ** (level - 1) % 1.0 == 0.0
                 ):
-                    depth -= 1
-            part, time = 0.5**depth, flow.time[depth]
+                    level -= 1
+            part, time = 0.5**level, flow.time[level]
             if excited:
                 off = done + 0.5 * part - 0.5
                 _set_loads(
@@ -336,16 +336,16 @@ def march(
                 extensions[1, t] = extensions[0, t] + part * (after - before)
             if moves:
                 move_rows(extensions[1], moving, rows, rows_end, rows_mean)
-                matrix = compliance(rows_end, rows_mean, flow.gain[depth])
+                matrix = compliance(rows_end, rows_mean, flow.gain[level])
             elif m > 0:
-                matrix = compliances[depth]
+                matrix = compliances[level]
             assign(now, force)
             converged = False
             for _ in range(_MAX_ITERATIONS):
                 for i in range(n):
                     total[i] = load[i] + axial_push[i]
                 if m > 0:
-                    free_flow(a, v, flow, depth, total, tilt, end)
+                    free_flow(a, v, flow, level, total, tilt, end)
                     read_rows(rows_end, end, free)
                     for j in range(moving.number.size):
                         free[moving.number[j]] += (
@@ -354,7 +354,7 @@ def march(
                     if not solve_contact_forces(laws, problem, matrix, y, time):
                         break
                     _subtract_forces(rows_mean, now, total)
-                free_flow(a, v, flow, depth, total, tilt, end)
+                free_flow(a, v, flow, level, total, tilt, end)
                 converged = not softens
                 if softens:
                     pull[:] = 0.0
@@ -372,8 +372,8 @@ def march(
                     break
             joins = converged
             if not converged:
-                depth = max(depth, joined) + (depth >= joined)
-                if depth == flow.time.size:
+                level = max(level, joined) + (level >= joined)
+                if level == flow.time.size:
                     return False
                 continue
             share = part / stretches
@@ -404,7 +404,7 @@ def march(
                     add_axial_forces(extensions[corner % 2], axial, at, share, pull, driven)
             _update_contacts(state, laws, y_end, free, time)
             _update_peaks(state, laws, matrix, time, y_end, now, free, peak)
-            work, lost = finish_flow(a, v, flow, depth, total, tilt, end, load)
+            work, lost = finish_flow(a, v, flow, level, total, tilt, end, load)
             tally[WORK] += work
             tally[DAMPING] += lost
             tally[TIME] += time
@@ -414,9 +414,9 @@ def march(
             if moves:
                 assign(rows.ravel(), rows_end.ravel())
             done += part
-            depth = max(depth, joined)
-            while depth > joined and done * 2.0 ** (depth - 1) % 1.0 == 0.0:
-                depth -= 1
+            level = max(level, joined)
+            while level > joined and done * 2.0 ** (level - 1) % 1.0 == 0.0:
+                level -= 1
         if (step + 1) % stretches == 0:
             interval = step // stretches
             assign(output.states[interval], a)

@@ -22,7 +22,7 @@ from protractile.analysis.rows import COMBINATION, Row, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom, BoomError
-from protractile.geometry.cylinder import force_name
+from protractile.geometry.ground import force_name
 from protractile.geometry.typography import percent
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
@@ -42,8 +42,9 @@ _RADIUS, _STEPS, _MOST_PROOFS = 1.0e-5, 30, 8
 LARGEST, OUT_OF_REACH = "largest payload", "out of reach"
 NO_EQUILIBRIUM, STROKE = "no equilibrium", "stroke of the cylinder"
 
-# Relative error of a capacity, and the fraction of the largest payload that is tried first.
-_ACCURACY, _FIRST = 4.0e-7, 0.02
+# Largest distance of a governing utilisation below 1, smallest relative step of the payload towards
+# it and towards the limit of reach, and the fraction of the largest payload that is tried first.
+_ACCURACY, _STEP, _REACH, _FIRST = 4.0e-7, 1.0e-7, 1.0e-5, 0.02
 
 
 class Configuration(NamedTuple):
@@ -107,6 +108,10 @@ class Search:
     radius: float  #: horizontal distance in m of the loaded tip from the slewing axis
     #: load case and rated state by payload in kg
     points: dict[float, tuple[LoadCaseTable, States]] = field(default_factory=dict)
+    #: tip deflection in m by payload in kg, to begin with as expected
+    tips: dict[float, float] = field(default_factory=dict)
+    #: change of the tip deflection less its guess, over the change of the guess
+    slope: float = -1.0
 
     def cell(self, near: Cell | None = None) -> Cell:
         """Return the cell; the search begins at the capacity of a cell ``near``, if it is given."""
@@ -115,11 +120,13 @@ class Search:
             if chart.payload is not None:
                 return self._with_payload(chart.payload, "", self._proofs(chart.payload))
             first = _FIRST * chart.largest_payload
-            followed = _key(self._proofs(0.0)[0]) if near is None else _key(near.proofs[0])
             if near is not None and near.capacity:
-                first = near.capacity
+                # The moment of the payload and the deflection change less than the payload.
+                first = min(near.capacity * near.radius / self.radius, chart.largest_payload)
+                self.tips[first] = near.tip or 0.0
+            followed = _key(self._proofs(0.0)[0]) if near is None else _key(near.proofs[0])
             for _ in range(_MOST_PROOFS):
-                payload, reason = self._root(min(first, chart.largest_payload), followed)
+                payload, reason = self._root(first, followed)
                 found = self._proofs(payload)
                 if (found[0].utilisation or 0.0) <= 1.0 + _ACCURACY:
                     return self._with_payload(payload, reason, found)
@@ -159,7 +166,10 @@ class Search:
             tried.add(payload)
             try:
                 proofs = self._proofs(payload, followed)
-                return max((row.utilisation or 0.0 for row in proofs), default=0.0) - 1.0
+                utilisation = max((row.utilisation or 0.0 for row in proofs), default=0.0)
+                # On the safe side, a proof within the accuracy below 1 counts as the root.
+                aim = 1.0 - 0.5 * _ACCURACY
+                return 0.0 if abs(utilisation - aim) <= 0.5 * _ACCURACY else utilisation - aim
             except NoCapacityError as error:
                 failures[payload] = str(error)
                 return 1.0
@@ -175,10 +185,11 @@ class Search:
             rise = (excess(high) - excess(0.0)) / high
             ahead = -1.01 * excess(0.0) / rise if rise > 0.0 else np.inf
             low, high = high, min(max(ahead, 1.01 * high), 8.0 * high, largest)
-        accuracy = {"xtol": _ACCURACY * high, "rtol": _ACCURACY}
-        root = float(brentq(excess, low, high, **accuracy))
-        # On the safe side, the proof of the capacity holds.
-        excess(root * (1.0 - _ACCURACY))
+        while high in failures and high - low > _REACH * high:
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
+        if high not in failures:
+            brentq(excess, low, high, xtol=_STEP * high, rtol=_STEP)
         capacity = max(payload for payload in tried if excess(payload) <= 0.0)
         beyond = [payload for payload in tried if payload > capacity]
         return capacity, failures.get(min(beyond, default=0.0), "")
@@ -214,26 +225,28 @@ class Search:
         """
         if payload in self.points:
             return self.points[payload]
-        guesses = [self._expected(payload)]
-        found: list[float] = []
+        guess, last = self._expected(payload), None
         for _ in range(_STEPS):
-            table, states = self._rated(payload, guesses[-1])
-            found.append(_tip(states))
+            table, states = self._rated(payload, guess)
             assert table.angle is not None
-            reached, _ = hook_place(self.case, states.boom, table.angle, found[-1])
+            found = _tip(states)
+            reached, _ = hook_place(self.case, states.boom, table.angle, found)
             if abs(reached - self.radius) < _RADIUS:
-                self.points[payload] = table, states
+                self.points[payload], self.tips[payload] = (table, states), found
                 return table, states
-            guesses.append(_secant(guesses, found))
+            if last is not None and guess != last[0]:
+                self.slope = min(-0.5, max(-2.0, (found - guess - last[1]) / (guess - last[0])))
+            last = guess, found - guess
+            guess -= last[1] / self.slope
         raise NoCapacityError(NO_EQUILIBRIUM)
 
     def _expected(self, payload: float) -> float:
-        """Return the tip deflection in m that the last two payloads let expect."""
-        last = [(one, _tip(states)) for one, (_, states) in self.points.items()][-2:]
-        if len(last) < 2:
-            return last[0][1] if last else 0.0
-        (one, first), (other, second) = last
-        return second + (second - first) * (payload - other) / (other - one)
+        """Return the tip deflection in m that the two nearest payloads let expect."""
+        nearest = sorted(self.tips.items(), key=lambda known: abs(known[0] - payload))[:2]
+        if len(nearest) < 2:
+            return nearest[0][1] if nearest else 0.0
+        (one, first), (other, second) = nearest
+        return first + (second - first) * (payload - one) / (other - one)
 
     def _rated(self, payload: float, tip: float) -> tuple[LoadCaseTable, States]:
         """Return the load case whose tip would be at the radius with this deflection in m."""
@@ -346,13 +359,3 @@ def configurations(case: Case, boom: Boom) -> Iterator[Configuration]:
 def _tip(states: States) -> float:
     """Return the lowest tip deflection in m."""
     return float(states.observed("tip").min())
-
-
-def _secant(guesses: list[float], found: list[float]) -> float:
-    """Return the next guess of a fixed point, from the guesses and the values that they led to."""
-    if len(found) < 2:
-        return found[-1]
-    changes = [value - guess for guess, value in zip(guesses[-2:], found[-2:], strict=True)]
-    if changes[1] == changes[0]:
-        return found[-1]
-    return guesses[-1] - changes[1] * (guesses[-1] - guesses[-2]) / (changes[1] - changes[0])

@@ -17,8 +17,8 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import pads
-from protractile.geometry.cylinder import force_name
 from protractile.geometry.fields import BoomError
+from protractile.geometry.ground import force_name
 from protractile.geometry.observation import KINDS
 from protractile.geometry.place import at
 from protractile.geometry.section import EACH_SIDE

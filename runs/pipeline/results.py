@@ -19,7 +19,7 @@ from protractile.analysis.quantities import MEASURED, declared_quantities, recor
 from protractile.analysis.rows import MOTION, Rows
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.boom import Boom
-from protractile.geometry.cylinder import forces
+from protractile.geometry.ground import forces
 from protractile.geometry.observation import KINDS
 from protractile.geometry.typography import NONE, number
 from protractile.runs.case import reading as case_file

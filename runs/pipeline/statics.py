@@ -21,7 +21,7 @@ from protractile.dynamics.line import Line
 from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom
 from protractile.geometry.contact_places import contact_centres
-from protractile.geometry.cylinder import force_name
+from protractile.geometry.ground import force_name
 from protractile.geometry.load import Load
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.models import complete_system
@@ -97,7 +97,7 @@ def reaction_rows(state: StaticState, play: bool = True) -> Iterator[Row]:
     They act on the segment, positive along z or x, or towards a larger slope; round-off is set to
     0. The place is ``at X m`` for a support or a stop, ``lug at X m`` or ``contact at X m``.
     """
-    boom, along, depths = state.boom, _axial_forces(state), _depths(state)
+    boom, along, penetrations = state.boom, _axial_forces(state), _penetrations(state)
     kinds = {
         (joint.inner, x): "contact "
         for joint in boom.joints
@@ -119,8 +119,8 @@ def reaction_rows(state: StaticState, play: bool = True) -> Iterator[Row]:
             values["support_moment"] = reaction.moment
         if abs(along[at]) > _ROUND_OFF * most:
             values["axial_reaction"] = along[at]
-        if at in depths:
-            values["penetration"] = depths[at]
+        if at in penetrations:
+            values["penetration"] = penetrations[at]
         part, place = boom.segments[reaction.segment].name, f"{kinds[at]}at {reaction.x:g} m"
         for name, value in values.items():
             yield Row(BEAM, INITIAL, play, name, part, place, value, reaction.x, time=0.0)
@@ -143,18 +143,20 @@ def _axial_forces(state: StaticState) -> dict[tuple[int, float], float]:
     return forces
 
 
-def _depths(state: StaticState) -> dict[tuple[int, float], float]:
+def _penetrations(state: StaticState) -> dict[tuple[int, float], float]:
     """Return the compression in m of contacts along z, by segment index and x in m."""
     boom, system = state.boom, state.system
-    gaps, depths = system.rows @ state.position, dict[tuple[int, float], float]()
+    gaps, penetrations = system.rows @ state.position, dict[tuple[int, float], float]()
     for station in (station for station in boom.stations if station.direction == "z"):
         here = np.flatnonzero(system.station_of_row == station.index)
-        depth = max((float(system.laws[row].depth(gaps[row])) for row in here), default=0.0)
+        penetration = max(
+            (float(system.laws[row].penetration(gaps[row])) for row in here), default=0.0
+        )
         centres = [station.x]
         if station.joint is not None:
             centres = contact_centres(boom, station.joint)[station.place]
-        depths |= dict.fromkeys(((station.segment, x) for x in centres), depth)
-    return depths
+        penetrations |= dict.fromkeys(((station.segment, x) for x in centres), penetration)
+    return penetrations
 
 
 def cylinder_force(state: StaticState, number: int) -> float:

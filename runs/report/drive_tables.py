@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from protractile.geometry.cylinder import force_name
+from protractile.geometry.ground import force_name
 from protractile.runs.case.motions import frame_motion
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.tables import Column, Table

@@ -10,7 +10,7 @@ from scipy.linalg import block_diag, eigh, null_space
 
 from protractile.dynamics.second_order import buckling_factor, soften_modes
 from protractile.geometry.arrays import Array
-from protractile.geometry.cylinder import GroundLine
+from protractile.geometry.ground import GroundLine
 from protractile.shell_model.boom_shell import BoomShell
 from protractile.shell_model.reduction.segment import ReducedSegment
 from protractile.shell_model.segment.cross_section import Operator

@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.boom import Boom, Segment
-from protractile.geometry.cylinder import force_name
+from protractile.geometry.ground import force_name
 from protractile.geometry.plating import PlatedMesh
 from protractile.shell_model import compat
 from protractile.shell_model.reduction.coordinates import BoomCoordinates
