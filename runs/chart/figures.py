@@ -4,9 +4,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import cycle
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.colors import to_hex
 
 from protractile.geometry.typography import number
@@ -41,7 +41,7 @@ def _over_radius(chart: Chart) -> Figure:
     heading, curves = "capacity (t)", []
     if chart_of(chart.case).payload is not None:
         heading = "governing utilisation (%)"
-    for cells, color in zip(chart.cells, cycle(theme.PALETTE), strict=False):
+    for cells, color in zip(chart.cells, _colors(chart), strict=True):
         carrying = [cell for cell in cells if cell.capacity]
         values = np.array([1.0e-3 * (cell.capacity or 0.0) for cell in carrying])
         if chart_of(chart.case).payload is not None:
@@ -58,7 +58,7 @@ def _range(chart: Chart) -> Figure:
     chassis, (least, most) = chart.case.chassis, chart_of(chart.case).angles
     x, z = (0.0, 0.0) if chassis is None else (chassis.foot_ahead, chassis.foot_above)
     turns, curves = np.radians(np.linspace(least, most, 60)), []
-    for cells, color in zip(chart.cells, cycle(theme.PALETTE), strict=False):
+    for cells, color in zip(chart.cells, _colors(chart), strict=True):
         length, carrying = cells[0].length, [cell for cell in cells if cell.capacity]
         arc = x + length * np.cos(turns), z + length * np.sin(turns)
         curves.append(Curve("", arc[1], color, ":", at=arc[0], width=1.0))
@@ -73,6 +73,11 @@ def _range(chart: Chart) -> Figure:
     shown = Plot(extent, curves, ("height (m)",), along="radius (m)", equal=True)
     caption = "Place of the loaded tip in each cell; dotted: the straight boom."
     return Figure("range", "Range of the tip", caption, chart=shown, main=True)
+
+
+def _colors(chart: Chart) -> list[str]:
+    """Return the colours of the lengths, in CSS notation, from dark to light."""
+    return [to_hex(colormaps["viridis"](at)) for at in np.linspace(0.0, 0.9, len(chart.cells))]
 
 
 def _name(cells: Sequence[Cell]) -> str:
