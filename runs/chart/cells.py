@@ -37,7 +37,7 @@ from protractile.runs.pipeline.tipping import foot_of, hook_place
 
 # Deviation of the radius in m at which the luffing angle is found, most steps to find it, and most
 # proofs that are followed to a capacity.
-_RADIUS, _STEPS, _MOST_PROOFS = 1.0e-5, 30, 8
+_RADIUS, _STEPS, _MOST_PROOFS = 2.0e-6, 30, 8
 # Reasons without a proof that limit a capacity.
 LARGEST, OUT_OF_REACH = "largest payload", "out of reach"
 NO_EQUILIBRIUM, STROKE = "no equilibrium", "stroke of the cylinder"
@@ -174,17 +174,17 @@ class Search:
                 failures[payload] = str(error)
                 return 1.0
 
-        if excess(0.0) > 0.0:
-            what = f"{PROVED[followed[1]].title} {percent(1.0 + excess(0.0))} without payload"
-            raise NoCapacityError(failures.get(0.0, what))
-        low, high = 0.0, first
+        # Brackets grow from the first payload, faster and faster.
+        low, high, factor = first, first, 0.8
+        while excess(low) > 0.0:
+            if low == 0.0:
+                what = f"{PROVED[followed[1]].title} {percent(1.0 + excess(0.0))} without payload"
+                raise NoCapacityError(failures.get(0.0, what))
+            low, high, factor = low * factor if low > 1.0 else 0.0, low, factor**2
         while excess(high) < 0.0:
             if high == largest:
                 return largest, LARGEST
-            # Utilisations are nearly linear in the payload.
-            rise = (excess(high) - excess(0.0)) / high
-            ahead = -1.01 * excess(0.0) / rise if rise > 0.0 else np.inf
-            low, high = high, min(max(ahead, 1.01 * high), 8.0 * high, largest)
+            low, high, factor = high, min(high / factor, largest), factor**2
         while high in failures and high - low > _REACH * high:
             middle = 0.5 * (low + high)
             low, high = (middle, high) if excess(middle) < 0.0 else (low, middle)
