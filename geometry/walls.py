@@ -49,6 +49,57 @@ def trapezoids(plates: Sequence[Plate]) -> Array:
     return np.stack([start + first, end + last, end - last, start - first], axis=1)
 
 
+def half_turns(plates: Sequence[Plate]) -> Array:
+    """Return half of the angle (num_plates,) in rad by which mid-lines turn before each plate."""
+    after = np.array([plate.tangent for plate in plates])
+    before = np.roll(after, 1, axis=0)
+    sines = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return np.asarray(0.5 * np.arctan2(sines, (before * after).sum(axis=1)))
+
+
+def moments(plates: Sequence[Plate], radii: Array) -> Array:
+    """Return the centroid in m, and ∫ y² dA and ∫ z² dA in m⁴.
+
+    Plates count by Green's theorem, bends as ring sectors between the flat parts of plates.
+
+    Args:
+        plates: plates in order, anticlockwise.
+        radii: radius (num_plates,) in m of the mid-line at the start of each plate.
+    """
+    polygons, outwards, bent = trapezoids(plates), normals(plates), radii > 0.0
+    half = half_turns(plates)
+    starts, ends, tangents = (
+        np.array([getattr(plate, name) for plate in plates]) for name in ("start", "end", "tangent")
+    )
+    walls = np.array([plate.thickness for plate in plates])
+    cuts, reach = (radii * np.tan(half))[:, None], 0.5 * walls[:, None] * outwards
+    starts, ends = starts + cuts * tangents, ends - np.roll(cuts, -1, axis=0) * tangents
+    before = np.roll(bent, -1)
+    polygons[bent, 0], polygons[bent, 3] = (starts + reach)[bent], (starts - reach)[bent]
+    polygons[before, 1], polygons[before, 2] = (ends + reach)[before], (ends - reach)[before]
+    after = np.roll(polygons, -1, axis=1)
+    cross = polygons[..., 0] * after[..., 1] - polygons[..., 1] * after[..., 0]
+    area = 0.5 * cross.sum()
+    first = ((polygons + after) * cross[..., None]).sum(axis=(0, 1)) / 6.0
+    squares = polygons**2 + polygons * after + after**2
+    second = (squares * cross[..., None]).sum(axis=(0, 1)) / 12.0
+    # Integrals of 1, r and r² over the ring sectors; angles are those of the outward normals.
+    radius, wall, turn = (each[bent, None] for each in (radii, walls, 2.0 * half))
+    centre = starts[bent] - radius * outwards[bent]
+    last = np.arctan2(outwards[bent, 1], outwards[bent, 0])[:, None]
+    middle = last - 0.5 * turn
+    ring = radius * wall * turn
+    lever = 2.0 * wall * (radius**2 + wall**2 / 12.0) * np.sin(0.5 * turn)
+    arm = lever * np.hstack([np.cos(middle), np.sin(middle)])
+    apart = np.sin(turn) * np.cos(2.0 * middle)
+    own = 0.5 * radius * wall * (radius**2 + 0.25 * wall**2)
+    own = own * np.hstack([turn + apart, turn - apart])
+    area += ring.sum()
+    first += (ring * centre + arm).sum(axis=0)
+    second += (ring * centre**2 + 2.0 * centre * arm + own).sum(axis=0)
+    return np.concatenate([first / area, second])
+
+
 # Load cases and combinations have the same sections.
 @lru_cache(maxsize=256)
 def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
