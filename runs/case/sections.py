@@ -217,6 +217,9 @@ class SegmentTable(CaseTable):
     """the second moment of area in m^4; follows from the section unless given"""
     rotary_inertia: Annotated[NotNegative, In("kg m")] | None = None
     """the rotary inertia in kg m; density times second moment unless given"""
+    yield_strengths: Annotated[dict[str, Positive], In("Pa")] = Field(default_factory=dict)
+    """plate or side = yield strength in Pa, such as bottom = 9.6e8, of plates that have another one
+    than the material"""
     height_to_width: Annotated[Positive, In("1")] | None = None
     """the ratio of height to width of the mid-lines, to infer the section of a box with uniform
     walls"""
