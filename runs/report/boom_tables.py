@@ -27,14 +27,9 @@ def segment_table(case: Case, boom: Boom) -> Table:
     columns = [
         Column("segment", [segment.name for segment in segments]),
         _spans(case.system, [segment.ends for segment in segments]),
-        column("mass", "kg/m", [segment.mass_per_length for segment in segments]),
+        Column("mass\nkg/m", [segment.mass_per_length for segment in segments], ".4g"),
         column("I_y", "m^4", [segment.second_moment_of_area for segment in segments]),
-        column(
-            "rotary inertia\nper length",
-            "kg m",
-            [segment.rotary_inertia for segment in segments],
-            ".3g",
-        ),
+        Column("rotary inertia\nper length\nkg m", [one.rotary_inertia for one in segments], ".3g"),
         Column("h × b of\nmid-lines, t of\nflange / web, mm", boxes),
     ]
     return Table("Segments", columns)
@@ -154,7 +149,7 @@ def panel_table(weakest: Sequence[Row], system: System) -> Table:
     """Return the table of the plate of each segment that buckles first by panel formulas."""
     columns = "segment", "wall", f"x\n{system.label('m')}", ("buckling factor", ".3g")
     rows = [
-        (row.part, row.place, f"{system.of(row.x or 0.0, 'm'):.4g}", row.value) for row in weakest
+        (row.part, row.place, f"{system.of(row.x or 0.0, 'm'):.6g}", row.value) for row in weakest
     ]
     note = (
         "Static state under the maximum loads. Walls are long panels on simple supports, with "
