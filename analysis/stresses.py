@@ -65,12 +65,9 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array, A
     corners = np.array([outer_corners(segment.section_at(place)) for place in different])
     points = np.broadcast_to(corners, (x.size, *corners.shape[1:]))
     y, z = np.moveaxis(points, 0, -1)
-    sections = [segment.section_at(end) for end in segment.ends]
-    of_plates = np.array(
-        [[segment.strength(plate) or np.nan for plate in section.plates] for section in sections]
-    )
-    both = np.concatenate([of_plates, np.roll(of_plates, 1, axis=1)])
-    strengths = np.fmin.reduce(both)
+    plates = [segment.section_at(end).plates for end in segment.ends]
+    known = np.array([[segment.strength(plate) or np.nan for plate in each] for each in plates])
+    strengths = np.fmin.reduce([*known, *np.roll(known, 1, axis=1)])
     if spatial:
         return y, z, strengths
     _, heights, groups = np.unique(z[:, 0], return_index=True, return_inverse=True)

@@ -295,15 +295,13 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float], radii: Seque
     places = np.array(corners)
     if _double_enclosed_area(places) < 0.0:
         places = places * [-1.0, 1.0]
-    sides = np.roll(places, -1, axis=0) - places
-    lengths = np.linalg.norm(sides, axis=1)
-    for number, length in enumerate(lengths, start=1):
-        if length <= _SAME * lengths.sum():
+    plates = _plates(places, np.array(thicknesses))
+    around = sum(plate.length for plate in plates)
+    for number, plate in enumerate(plates, start=1):
+        if plate.length <= _SAME * around:
             raise SectionError(
                 f"corners {number} and {number % len(corners) + 1} are one; give each once"
             )
-    tangents = sides / lengths[:, None]
-    plates = _plates(places, np.array(thicknesses))
     turns = 2.0 * half_turns(plates)
     for number, turn in enumerate(turns, start=1):
         if not _LEAST_TURN <= turn <= _MOST_TURN:
@@ -313,10 +311,10 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float], radii: Seque
             )
     if turns.sum() > 3.0 * np.pi:
         raise SectionError("the plates go around more than once")
-    for number, (inwards, tangent) in enumerate(
-        zip(trapezoids(plates), tangents, strict=True), start=1
+    for number, (inwards, plate) in enumerate(
+        zip(trapezoids(plates), plates, strict=True), start=1
     ):
-        if (inwards[2] - inwards[3]) @ tangent <= 0.0:
+        if (inwards[2] - inwards[3]) @ plate.tangent <= 0.0:
             raise SectionError(
                 f"plate {number} of {thicknesses[number - 1]} m and its neighbours leave no room "
                 "in the polygon; they must be thinner"
@@ -328,21 +326,20 @@ def _check_bends(radii: Sequence[float], plates: Sequence[Plate]) -> None:
     """Check the radii of bends at the starts of plates."""
     if len(radii) != len(plates):
         raise SectionError(f"{len(plates)} corners have as many radii, got {len(radii)}")
-    walls = [plate.thickness for plate in plates]
-    for radius, wall, before in zip(radii, walls, walls[-1:] + walls, strict=False):
-        if radius != 0.0 and not (is_positive(radius) and radius >= 0.5 * wall == 0.5 * before):
+    for k, (radius, plate) in enumerate(zip(radii, plates, strict=True)):
+        least = 0.5 * plate.thickness
+        alike = plates[k - 1].thickness == plate.thickness
+        if radius != 0.0 and not (is_positive(radius) and radius >= least and alike):
             raise SectionError(
-                f"the mid-line of a bend must have a radius of at least {0.5 * wall:g} m, half of "
-                f"the thickness on both of its sides, got {radius:g} m"
+                f"the mid-line of a bend must have a radius of at least {least:g} m, half of the "
+                f"thickness on both of its sides, got {radius:g} m"
             )
     ends = np.array(radii) * np.tan(half_turns(plates))
-    for number, (taken, plate) in enumerate(
-        zip(ends + np.roll(ends, -1), plates, strict=True), start=1
-    ):
+    for plate, taken in zip(plates, ends + np.roll(ends, -1), strict=True):
         if taken > (1.0 + _SAME) * plate.length:
             raise SectionError(
-                f"the bends of plate {number} take {taken:g} m of its {plate.length:g} m; their "
-                "radius must be smaller"
+                f"bends take {taken:g} m of a plate of {plate.length:g} m; their radius must be "
+                "smaller"
             )
 
 

@@ -108,9 +108,9 @@ def material_ranges(tables: Mapping[str, Material]) -> Iterator[UsualRange]:
 
 
 def section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
-    for plate, strength in segment.yield_strengths:
-        key, what = f"{where}.yield_strengths.{plate}", "the yield strength"
-        yield UsualRange(key, what, strength, "Pa", *_STRENGTHS)
+    for plate, own in segment.yield_strengths:
+        key = f"{where}.yield_strengths.{plate}"
+        yield UsualRange(key, "the yield strength", own, "Pa", *_STRENGTHS)
     name, length, section = repr(segment.name), segment.length, segment.section
     low, high = length / 500.0, length / 5.0
     lateral = _lateral_ranges(where, segment)

@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
 from math import isclose
 
 import numpy as np
@@ -12,7 +11,6 @@ import numpy as np
 from protractile.geometry.box import BoxSection
 from protractile.geometry.fit import room
 from protractile.geometry.joint import SIDES, SlidePad
-from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.section import Direction
 from protractile.geometry.typography import TO_MILLI
 from protractile.runs.case.actions import STANDARD_GRAVITY
@@ -31,26 +29,6 @@ SAME_MODULUS, LEAST_DENSITY, MOST_DENSITY = 0.06, 0.9, 2.0
 ENDED = 0.01
 # Ratio of the thicknesses of flange and web of a box below which they are probably swapped.
 THIN_FLANGE = 0.85
-# Error in % of the area and the second moment of a section without its bends that is mentioned.
-SHARP = 1.0
-
-
-def sharp_shells(context: Context) -> Iterator[str]:
-    """Yield a caution for each segment whose bends the sharp corners of a shell neglect."""
-    for number, segment in enumerate(context.boom.segments, start=1):
-        section = segment.section
-        if context.case.first_shell and isinstance(section, PolygonSection):
-            sharp = replace(section, radii=())
-            area, second_moment = (
-                100.0 * (getattr(sharp, key) / getattr(section, key) - 1.0)
-                for key in ("area", "second_moment_of_area")
-            )
-            if max(area, second_moment) > SHARP:
-                yield (
-                    f"segment[{number}].section: shells have sharp corners, with which the area "
-                    f"is {area:.2g} % and the second moment {second_moment:.2g} % larger than with "
-                    "bends; beams have the bends"
-                )
 
 
 def unusual_numbers(context: Context) -> Iterator[str]:

@@ -18,7 +18,6 @@ OF_INPUTS: Sequence[Rule] = (
     loads.missing_loads, inputs.ineffective_inputs, inputs.densities, inputs.table_ends,
     inputs.cylinders, inputs.nesting, inputs.thick_pads, inputs.compliant_contacts,
     inputs.mesh_sizes, loads.hoisted_loads, loads.load_cases, inputs.swapped_thicknesses,
-    inputs.sharp_shells,
 )  # fmt: skip
 RULES: Sequence[Rule] = (
     response.walls, *OF_INPUTS, response.stick_slip, response.lag, response.failures,

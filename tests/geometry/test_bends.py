@@ -174,7 +174,7 @@ def test_outer_sizes_and_tapers_keep_bends() -> None:
     [
         (0.003, "the mid-line of a bend must have a radius of at least 0.004 m, half of the "
                 "thickness on both of its sides, got 0.003 m"),
-        (0.12, "the bends of plate 1 take 0.24 m of its 0.2 m; their radius must be smaller"),
+        (0.12, "bends take 0.24 m of a plate of 0.2 m; their radius must be smaller"),
     ],
 )  # fmt: skip
 def test_impossible_bends(radius: float, message: str) -> None:
