@@ -319,16 +319,18 @@ def _weights(
     segment: Segment, gravity: float
 ) -> tuple[list[tuple[float, float]], list[tuple[float, float, float]]]:
     """Return (x in m, weight in N) of point masses; (start, end in m, weight in N/m) of others."""
-    stiffeners, count = segment.stiffener_masses, len(segment.diaphragms)
-    points = [(p.x, p.mass * gravity) for p in (*segment.masses, *stiffeners[:count])]
+    points = [(point.x, point.mass * gravity) for point in segment.masses]
     spread = [(segment.start, segment.end, segment.mass_per_length * gravity)]
     if segment.head_section is not None:
         steps = pairwise(np.linspace(segment.start, segment.end, _STEPS + 1).tolist())
         ends = [(a, b, segment.section_at(a), segment.section_at(b)) for a, b in steps]
         weight = segment.material.density * gravity
         spread = [(a, b, weight * mean_area(tail, head)) for a, b, tail, head in ends]
-    for collar, mass in zip(segment.collars, stiffeners[count:], strict=False):
-        spread.append((*collar.span, mass.mass * gravity / collar.length))
+    for (start, end), mass in segment.stiffeners:
+        if start == end:
+            points.append((start, mass * gravity))
+        else:
+            spread.append((start, end, mass * gravity / (end - start)))
     return points, spread
 
 

@@ -187,10 +187,9 @@ class Section(Protocol):
 
     @property
     def buckling_widths(self) -> tuple[float, ...]:
-        """The width of each plate in m for buckling, between the midpoints of bends.
+        """The width of each plate in m for buckling, between midpoints of bends (EN 1993-1-3, 5.1).
 
-        It is the notional flat width of EN 1993-1-3, 5.1: a bend of the mid-line radius R and the
-        angle φ shortens a plate by R (tan φ/2 − sin φ/2).
+        A bend of the mid-line radius R and the angle φ takes R (tan φ/2 − sin φ/2) of it.
         """
         return tuple(plate.length for plate in self.plates)
 

@@ -240,26 +240,23 @@ class Segment:
         return (*self.masses, *self.stiffener_masses)
 
     @property
+    def stiffeners(self) -> list[tuple[tuple[float, float], float]]:
+        """The x of both ends in m and the mass in kg of each diaphragm and collar."""
+        if self.section is None:
+            return []
+        density = self.material.density
+        return [
+            ((plate.x, plate.x), density * self.section_at(plate.x).enclosed_area * plate.thickness)
+            for plate in self.diaphragms
+        ] + [
+            (collar.span, density * self.mean_width(collar) * collar.length * collar.thickness)
+            for collar in self.collars
+        ]
+
+    @property
     def stiffener_masses(self) -> tuple[PointMass, ...]:
         """The diaphragms and collars as point masses; empty without a section."""
-        if self.section is None:
-            return ()
-        density = self.material.density
-        of_diaphragms = (
-            PointMass(
-                diaphragm.x,
-                density * self.section_at(diaphragm.x).enclosed_area * diaphragm.thickness,
-            )
-            for diaphragm in self.diaphragms
-        )
-        of_collars = (
-            PointMass(
-                collar.midpoint,
-                density * self.mean_width(collar) * collar.length * collar.thickness,
-            )
-            for collar in self.collars
-        )
-        return (*of_diaphragms, *of_collars)
+        return tuple(PointMass(0.5 * sum(ends), mass) for ends, mass in self.stiffeners)
 
     @property
     def mass(self) -> float:

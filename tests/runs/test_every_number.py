@@ -29,7 +29,7 @@ EXEMPT = {
         "SectionTable", "UnequalBoxTable", "PolygonTable", "HexagonTable", "OctagonTable", "UTable",
     ),
     "its range follows from the joint or the cylinder (sanity)": (
-        "JointTable.play", "lateral_play", "extension", "ground",
+        "JointTable.play", "lateral_play", "extension", "ground", "EarthPoint",
     ),
     "its range follows from the boom (chart.run)": ("ChartTable",),
     "a part of the play, which is checked": ("play_above", "lateral_play_right"),
