@@ -212,9 +212,8 @@ class PolygonSection(Section):
         near = _SAME * float(np.ptp(corners, axis=0).max())
         low = np.flatnonzero(corners[:, 1] < corners[:, 1].min() + near)
         first = low[corners[low, 0].argmin()]
-        return (
-            np.roll(corners, -first, axis=0), np.roll(thicknesses, -first), np.roll(radii, -first)
-        )  # fmt: skip
+        walls, bends = (np.roll(each, -first) for each in (thicknesses, radii))
+        return np.roll(corners, -first, axis=0), walls, bends
 
 
 def _of_arrays(corners: Array, thicknesses: Array, radii: Array) -> PolygonSection:

@@ -328,8 +328,7 @@ def configurations(case: Case, boom: Boom) -> Iterator[Configuration]:
     Raises:
         ValueError: a length is not between that of the retracted boom and that of the case.
     """
-    chart, of_joints = chart_of(case), sum(_extensions(case).values())
-    shortest = boom.tip - foot_of(boom) - of_joints
+    chart, shortest = chart_of(case), boom.tip - foot_of(boom) - sum(_extensions(case).values())
     for extension in chart.extensions or ([] if chart.lengths else [{}]):
         own = _extensions(combine(case, load_case_of(case, 0.0, extension, 0.0)))
         yield Configuration(extension, shortest + sum(own.values()))
