@@ -322,7 +322,6 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float], radii: Seque
 
 
 def _check_bends(radii: Sequence[float], plates: Sequence[Plate]) -> None:
-    """Check the radii of bends at the starts of plates."""
     if len(radii) != len(plates):
         raise SectionError(f"{len(plates)} corners have as many radii, got {len(radii)}")
     for k, (radius, plate) in enumerate(zip(radii, plates, strict=True)):
