@@ -263,7 +263,9 @@ def measure_segment(
         for fibre in range(len(fibres.z)):
             at = fibres.x, fibres.y[fibre], fibres.z[fibre]
             stress = fibres.stress(fibre, curves)
-            yield Measured("stress", segment.name, "", stress, time, at, segment.yield_strength)
+            strength = float(fibres.strengths[fibre])
+            limit = segment.yield_strength if np.isnan(strength) else strength
+            yield Measured("stress", segment.name, "", stress, time, at, limit)
 
 
 def _reactions(states: States, number: int) -> Iterator[Measured]:

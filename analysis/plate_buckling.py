@@ -39,11 +39,12 @@ class PlateStress(NamedTuple):
     edges: Array
     fibres: Array  #: (2, num_states, num_places) axial stress at the outer corners in Pa
     shear: Array  #: (num_states, num_places) mean shear stress in Pa, not negative
+    width: float  #: width in m for buckling
 
     @property
     def slenderness(self) -> float:
-        """The width over the thickness."""
-        return self.plate.length / self.plate.thickness
+        """The width for buckling over the thickness."""
+        return self.width / self.plate.thickness
 
 
 def normal_coefficient(ratio: float | Array) -> Array:
@@ -153,7 +154,7 @@ def _plates(
         (lateral_shear, dict(section.shear_plates("y"))),
     ]
     corners = np.transpose(outer_corners(section))
-    for k, plate in enumerate(section.plates):
+    for k, (plate, width) in enumerate(zip(section.plates, section.buckling_widths, strict=True)):
         outer = corners[[k, (k + 1) % len(section.plates)]]
         edges, fibres = (
             np.array([mean + along_y * y + along_z * z for y, z in ends])
@@ -161,7 +162,7 @@ def _plates(
         )
         along = sum(np.abs(force * shares.get(k, 0.0)) for force, shares in forces)
         flow = along / plate.length + np.abs(torque) / (2.0 * section.enclosed_area)
-        yield PlateStress(segment, plate, x, edges, fibres, flow / plate.thickness)
+        yield PlateStress(segment, plate, x, edges, fibres, flow / plate.thickness, width)
 
 
 def reduced_stress(

@@ -126,7 +126,7 @@ def _of_plates(states: States, resistance: Resistance, curve: ReductionCurve) ->
 def strong_plates(states: States) -> Iterator[tuple[PlateStress, float]]:
     """Yield the stresses of each plate with a yield strength, and this strength in Pa."""
     for plate in plate_stresses(states):
-        strength = plate.segment.material.strength(plate.plate.thickness)
+        strength = plate.segment.strength(plate.plate)
         if strength is not None:
             yield plate, strength
 

@@ -158,7 +158,7 @@ def extremes(
 ) -> Iterator[Row]:
     """Yield the row with the extreme of each measured quantity; none without values.
 
-    Of equal extremes the first one counts.
+    Of equal extremes the first one counts, of different limits that with the largest utilisation.
     """
     rows: dict[tuple[str, str, str], Row] = {}
     for measurement in measured:
@@ -175,7 +175,8 @@ def extremes(
             None if measurement.time is None else float(measurement.time[step]), measurement.limit,
         )  # fmt: skip
         other = rows.setdefault(row.key, row)
-        if sign * (abs(row.value) - abs(other.value)) > _ROUND_OFF * abs(other.value):
+        size, largest = (abs(each.value) / (each.limit or 1.0) for each in (row, other))
+        if sign * (size - largest) > _ROUND_OFF * largest:
             rows[row.key] = row
     yield from rows.values()
 

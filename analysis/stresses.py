@@ -29,6 +29,7 @@ class Fibres:
     of_moment: Array  #: stress (num_fibres, num_places) in Pa for a vertical moment of 1 N·m
     of_lateral: Array  #: stress (num_fibres, num_places) in Pa for a lateral moment of 1 N·m
     of_normal: Array  #: stress (num_places,) in Pa for a normal force of 1 N
+    strengths: Array  #: least yield strength (num_fibres,) in Pa of its plates; NaN if unknown
 
     @classmethod
     def of(cls, segment: Segment, line: Line) -> Fibres | None:
@@ -37,10 +38,11 @@ class Fibres:
             return None
         spatial = "lateral_moment" in line.rows
         there = [segment.prismatic_at(x) for x in line.x.tolist()]
-        y, z = _corners(segment, line.x, spatial)
+        y, z, strengths = _corners(segment, line.x, spatial)
         of_moment = z / _each(there, "second_moment_of_area")
         of_lateral = y / _each(there, "lateral.second_moment_of_area") if spatial else y
-        return cls(line.x, y, z, of_moment, of_lateral, 1.0 / _each(there, "section.area"))
+        of_normal = 1.0 / _each(there, "section.area")
+        return cls(line.x, y, z, of_moment, of_lateral, of_normal, strengths)
 
     def stress(self, fibre: int, curves: Mapping[LineQuantity, Array]) -> Array:
         """Return the stress (..., num_places) in Pa of a fibre under section forces."""
@@ -54,8 +56,8 @@ def _each(segments: Sequence[Segment], number: str) -> Array:
     return np.array([attrgetter(number)(segment) for segment in segments])
 
 
-def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
-    """Return y and z (num_fibres, num_places) in m of the outer corners of a segment.
+def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array, Array]:
+    """Return y and z (num_fibres, num_places) in m of outer corners, and strengths of plates there.
 
     For a planar boom y is 0, and corners with the same z count once.
     """
@@ -63,10 +65,14 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array]:
     corners = np.array([outer_corners(segment.section_at(place)) for place in different])
     points = np.broadcast_to(corners, (x.size, *corners.shape[1:]))
     y, z = np.moveaxis(points, 0, -1)
+    plates = [segment.section_at(end).plates for end in segment.ends]
+    known = np.array([[segment.strength(plate) or np.nan for plate in each] for each in plates])
+    strengths = np.fmin.reduce([*known, *np.roll(known, 1, axis=1)])
     if spatial:
-        return y, z
-    _, heights = np.unique(z[:, 0], return_index=True)
-    return np.zeros_like(z[heights]), z[heights]
+        return y, z, strengths
+    _, heights, groups = np.unique(z[:, 0], return_index=True, return_inverse=True)
+    least = [np.fmin.reduce(strengths[groups == k]) for k in range(heights.size)]
+    return np.zeros_like(z[heights]), z[heights], np.array(least)
 
 
 def outer_corners(section: Section) -> tuple[Array, Array]:

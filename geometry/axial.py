@@ -321,26 +321,16 @@ def _weights(
     """Return (x in m, weight in N) of point masses; (start, end in m, weight in N/m) of others."""
     points = [(point.x, point.mass * gravity) for point in segment.masses]
     spread = [(segment.start, segment.end, segment.mass_per_length * gravity)]
-    density = segment.material.density
     if segment.head_section is not None:
         steps = pairwise(np.linspace(segment.start, segment.end, _STEPS + 1).tolist())
         ends = [(a, b, segment.section_at(a), segment.section_at(b)) for a, b in steps]
-        spread = [(a, b, density * mean_area(tail, head) * gravity) for a, b, tail, head in ends]
-    if segment.section is not None:
-        points += [
-            (
-                diaphragm.x,
-                density
-                * gravity
-                * segment.section_at(diaphragm.x).enclosed_area
-                * diaphragm.thickness,
-            )
-            for diaphragm in segment.diaphragms
-        ]
-        spread += [
-            (*collar.span, density * gravity * segment.mean_width(collar) * collar.thickness)
-            for collar in segment.collars
-        ]
+        weight = segment.material.density * gravity
+        spread = [(a, b, weight * mean_area(tail, head)) for a, b, tail, head in ends]
+    for (start, end), mass in segment.stiffeners:
+        if start == end:
+            points.append((start, mass * gravity))
+        else:
+            spread.append((start, end, mass * gravity / (end - start)))
     return points, spread
 
 

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import field, replace
 from math import cos, hypot, isfinite, pi, sin
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
-from pydantic import BeforeValidator, GetCoreSchemaHandler
-from pydantic_core import CoreSchema, PydanticCustomError
+from pydantic import BeforeValidator
+from pydantic_core import PydanticCustomError
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.fields import (
@@ -40,9 +40,6 @@ class EarthPoint:
     """the vertical distance in m below the foot pin"""
 
 
-_Coordinates = tuple[Number, Number]
-
-
 def _ground(value: Any) -> Any:
     """Validate a pair or a point in earth axes. Errors of a union type would be unreadable."""
     if isinstance(value, EarthPoint):
@@ -56,18 +53,12 @@ def _ground(value: Any) -> Any:
     raise PydanticCustomError("ground", "a point of the ground")
 
 
-class _AnyGround:
-    """Validation of a point of the ground: in the axes of the boom, or in earth axes."""
-
-    def __get_pydantic_core_schema__(
-        self, source: Any, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        check = BeforeValidator(_ground, json_schema_input_type=_Coordinates | EarthPoint)
-        return handler.generate_schema(Annotated[_Coordinates | EarthPoint, check])
-
-
-# Type of a point of the ground in the axes of the boom. In a case it may be an EarthPoint.
-Ground = Annotated[tuple[float, float], _AnyGround(), In("m")]
+if TYPE_CHECKING:
+    # In the axes of the boom. In a case it may be an EarthPoint.
+    Ground = tuple[float, float]
+else:
+    _Points = tuple[Number, Number] | EarthPoint
+    Ground = Annotated[_Points, BeforeValidator(_ground, json_schema_input_type=_Points), In("m")]
 
 
 @part

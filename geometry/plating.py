@@ -11,7 +11,6 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.mesh import SegmentMesh
 from protractile.geometry.section import Section
 from protractile.geometry.segment import Segment
-from protractile.geometry.taper import areas
 
 # Tolerance for x as a fraction of a segment's length: below any triangle, above round-off.
 _DIGITS = 9
@@ -23,8 +22,8 @@ class PlatedMesh(SegmentMesh):
 
     thickness: Array  #: thickness (num_triangles,) in m
     plain: Array  #: thickness (num_triangles,) in m without collars, 0 on diaphragms
-    #: weight (num_triangles,) in m that distributes a uniform line load over the walls: ``plain``,
-    #: in a tapered segment times the mean area over the area of the section
+    #: weight (num_triangles,) in m that distributes a uniform line load over the walls: ``plain``
+    #: times the mean area of the segment over that of its plates here
     load_weight: Array
 
     @property
@@ -61,14 +60,16 @@ def add_thickness(segment: Segment, mesh: SegmentMesh) -> PlatedMesh:
             the segment.
     """
     assert segment.section is not None
-    x = mesh.along
-    plain = even = plain_thickness(segment.section, mesh)
+    x, plain = mesh.along, plain_thickness(segment.section, mesh)
+    # Meshes have no bends.
+    plates = [segment.section_at(place).plates for place in np.linspace(*segment.ends, 3).tolist()]
+    areas = [sum(plate.length * plate.thickness for plate in each) for each in plates]
+    even = plain * (segment.area / areas[0])
     if segment.head_section is not None:
         # Rounding gives mirror images exactly the same thickness.
         part = np.round((x - segment.start) / segment.length, _DIGITS)
         plain = plain + part * (plain_thickness(segment.head_section, mesh) - plain)
-        parabola = np.polyfit([0.0, 0.5, 1.0], areas(segment.section, segment.head_section), 2)
-        even = plain * segment.area / np.polyval(parabola, part)
+        even = plain * segment.area / np.polyval(np.polyfit([0.0, 0.5, 1.0], areas, 2), part)
     thickness = plain.copy()
     for collar in segment.collars:
         start, end = collar.span

@@ -11,7 +11,7 @@ which q_s is quadratic.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from numbers import Real
 
@@ -29,7 +29,7 @@ from protractile.geometry.section import (
     Section,
     SectionError,
 )
-from protractile.geometry.walls import trapezoids
+from protractile.geometry.walls import half_turns, moments, trapezoids
 
 # Fraction of a section's size below which two places are the same.
 _SAME = 1.0e-9
@@ -54,7 +54,9 @@ class PolygonSection(Section):
     """Closed section of flat plates, described by the corners of their mid-lines.
 
     Area, centroid and second moments include the thickness of plates, with mitred corners as in
-    :class:`.geometry.box.BoxSection`. Shear areas follow from the shear flow of the mid-lines.
+    :class:`.geometry.box.BoxSection`, and with ring sectors in place of bent corners. So does the
+    torsion constant. Plates reach to the sharp corners of their mid-lines, from which shear areas
+    and forces of plates follow.
 
     >>> corners = ((-0.15, -0.3), (0.15, -0.3), (0.2, 0.3), (-0.2, 0.3))
     >>> trapezoid = pt.PolygonSection(corners, thicknesses=(0.01, 0.006, 0.008, 0.006))
@@ -65,17 +67,22 @@ class PolygonSection(Section):
         corners: (y, z) in m of the corners in order, clockwise or anticlockwise, from any origin.
         thicknesses: thicknesses in m of the plates, each from a corner to the next; the last plate
             closes the cell.
+        radii: radius of the mid-line in m of the bend at each corner, 0 at a sharp one; none unless
+            given.
 
     Raises:
         SectionError: there are fewer than three corners, a size is invalid, a plate has no length,
-            the polygon is not convex, or walls fill the cell.
+            the polygon is not convex, walls fill the cell, or a bend does not fit.
     """
 
     corners: tuple[Offset, ...]
     thicknesses: tuple[float, ...]
+    radii: tuple[float, ...] = ()
 
     def __post_init__(self) -> None:
-        _check(self.corners, self.thicknesses)
+        if not self.radii:
+            object.__setattr__(self, "radii", (0.0,) * len(self.corners))
+        _check(self.corners, self.thicknesses, self.radii)
 
     @cached_property
     def plates(self) -> tuple[Plate, ...]:
@@ -88,25 +95,41 @@ class PolygonSection(Section):
         return _plates(corners, self.upwards[1])
 
     @cached_property
+    def _cut(self) -> Array:
+        """The length (num_corners,) in m that half of a bend is shorter than its sharp corner."""
+        half = half_turns(self.plates)
+        return np.asarray(self.upwards[2] * (np.tan(half) - half))
+
+    @cached_property
     def area(self) -> float:
         """The cross-sectional area in m²."""
-        return float(sum(plate.length * plate.thickness for plate in self.plates))
+        whole = sum(plate.length * plate.thickness for plate in self.plates)
+        return float(whole - 2.0 * self._cut @ self.upwards[1])
 
     @cached_property
     def second_moment_of_area(self) -> float:
         """The second moment about y (bending in the plane x-z) in m⁴."""
-        return float(_moments(trapezoids(self.plates))[3])
+        return float(moments(self.plates, self.upwards[2])[3])
 
     @cached_property
     def lateral_second_moment_of_area(self) -> float:
         """The second moment about z (bending in the plane x-y) in m⁴."""
-        return float(_moments(trapezoids(self.plates))[2])
+        return float(moments(self.plates, self.upwards[2])[2])
 
     @cached_property
     def torsion_constant(self) -> float:
         """The torsion constant in m⁴ (Bredt 1896)."""
+        _, thicknesses, radii = self.upwards
         around = sum(plate.length / plate.thickness for plate in self.plates)
-        return 4.0 * self.enclosed_area**2 / around
+        around -= float((2.0 * self._cut / thicknesses).sum())
+        return 4.0 * (self.enclosed_area - float(radii @ self._cut)) ** 2 / around
+
+    @cached_property
+    def buckling_widths(self) -> tuple[float, ...]:
+        half = half_turns(self.plates)
+        beyond = self.upwards[2] * (np.tan(half) - np.sin(half))
+        both = (beyond + np.roll(beyond, -1)).tolist()
+        return tuple(plate.length - part for plate, part in zip(self.plates, both, strict=True))
 
     @cached_property
     def shear_area(self) -> float:
@@ -121,7 +144,8 @@ class PolygonSection(Section):
     @cached_property
     def centroid(self) -> Offset:
         """The centroid (y, z) in m in the coordinates of ``corners``."""
-        parts = _moments(trapezoids(_plates(*self.upwards)))
+        corners, thicknesses, radii = self.upwards
+        parts = moments(_plates(corners, thicknesses), radii)
         return float(parts[0]), float(parts[1])
 
     @cached_property
@@ -139,16 +163,17 @@ class PolygonSection(Section):
     @cached_property
     def mirrors(self) -> tuple[Direction, ...]:
         """The normals of the symmetry planes of corners and thicknesses."""
-        corners, thicknesses = self.upwards
+        corners, thicknesses, radii = self.upwards
         corners = corners - np.array(self.centroid)
         midpoints = 0.5 * (corners + np.roll(corners, -1, axis=0))
+        sizes = np.concatenate([radii, thicknesses])
         directions: list[Direction] = []
         for axis in COMPONENT:
             places = np.vstack([corners, midpoints])
             partners = _partners(places, _mirror(places, axis))
             beside = np.linalg.norm(_mirror(places, axis)[partners] - places, axis=1)
-            alike = thicknesses[partners[len(corners) :] - len(corners)] == thicknesses
-            if beside.max() < _SAME * np.abs(corners).max() and alike.all():
+            alike = (sizes[partners] == sizes).all()
+            if beside.max() < _SAME * np.abs(corners).max() and alike:
                 directions.append(axis)
         return tuple(directions)
 
@@ -165,26 +190,61 @@ class PolygonSection(Section):
     def __str__(self) -> str:
         sizes = " x ".join(f"{1e3 * self.size(axis):.4g}" for axis in ("z", "y"))
         walls = " / ".join(dict.fromkeys(f"{1e3 * plate.thickness:.4g}" for plate in self.plates))
-        return f"{sizes} x {walls}, {len(self.plates)} plates"
+        bends = ", ".join(f"{1e3 * radius:.4g}" for radius in dict.fromkeys(self.radii) if radius)
+        return f"{sizes} x {walls}, {len(self.plates)} plates{bends and f', R {bends}'}"
 
     def turned(self) -> PolygonSection:
-        return PolygonSection(tuple((z, y) for y, z in self.corners), self.thicknesses)
+        return replace(self, corners=tuple((z, y) for y, z in self.corners))
 
     def within_outline(self) -> PolygonSection:
-        corners = trapezoids(_plates(*self.upwards))[:, 3]
-        walls = tuple(self.upwards[1].tolist())
-        return PolygonSection(tuple((y, z) for y, z in corners.tolist()), walls)
+        corners, walls, radii = self.upwards
+        inner = trapezoids(_plates(corners, walls))[:, 3]
+        return _of_arrays(inner, walls, np.where(radii > 0.0, radii - 0.5 * walls, 0.0))
 
     @cached_property
-    def upwards(self) -> tuple[Array, Array]:
-        """The corners (num_plates, 2) and thicknesses (num_plates,) in m in the order of plates."""
+    def upwards(self) -> tuple[Array, Array, Array]:
+        """The corners (num_plates, 2), and thicknesses and radii (num_plates,) in m, as plates."""
         corners, thicknesses = np.array(self.corners), np.array(self.thicknesses)
+        radii = np.array(self.radii)
         if _double_enclosed_area(corners) < 0.0:
             corners, thicknesses = corners[::-1], np.roll(thicknesses[::-1], -1)
+            radii = radii[::-1]
         near = _SAME * float(np.ptp(corners, axis=0).max())
         low = np.flatnonzero(corners[:, 1] < corners[:, 1].min() + near)
         first = low[corners[low, 0].argmin()]
-        return np.roll(corners, -first, axis=0), np.roll(thicknesses, -first)
+        walls, bends = (np.roll(each, -first) for each in (thicknesses, radii))
+        return np.roll(corners, -first, axis=0), walls, bends
+
+
+def _of_arrays(corners: Array, thicknesses: Array, radii: Array) -> PolygonSection:
+    places = tuple((y, z) for y, z in corners.tolist())
+    return PolygonSection(places, tuple(thicknesses.tolist()), tuple(radii.tolist()))
+
+
+def bent(section: Section, radius: float, below: float = np.inf) -> PolygonSection:
+    """Return a section with bends at its corners, except at welds of different thickness.
+
+    >>> round(pt.bent(pt.hexagon(0.5, 0.4, 0.2, 0.006, 0.006, 0.006), radius=0.03).area, 7)
+    0.0087302
+
+    Args:
+        section: section of flat plates.
+        radius: radius of the mid-line in m.
+        below: z in m of the corners of a polygon below which they are bent; all unless given.
+
+    Raises:
+        SectionError: no corner is bent, or as in :class:`PolygonSection`.
+    """
+    if not isinstance(section, PolygonSection):
+        walls = tuple(plate.thickness for plate in section.plates)
+        section = PolygonSection(tuple(plate.start for plate in section.plates), walls)
+    corners, thicknesses, radii = section.upwards
+    bends = (thicknesses == np.roll(thicknesses, 1)) & (corners[:, 1] < below)
+    if not bends.any():
+        raise SectionError(
+            "bend_radius has no corner between plates of one thickness; leave it out"
+        )
+    return _of_arrays(corners, thicknesses, np.where(bends, radius, radii))
 
 
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:
@@ -208,13 +268,12 @@ def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> S
     section = PolygonSection(tuple(corners), tuple(thicknesses))
     if len(section.plates) != 4 or len(section.faces) != 4:
         # Tapers need corners in the order of plates.
-        ordered, walls = section.upwards
-        return PolygonSection(tuple((y, z) for y, z in ordered.tolist()), tuple(walls.tolist()))
+        return _of_arrays(*section.upwards)
     bottom, right, top, left = (plate.thickness for plate in section.plates)
     return BoxSection(section.size("z"), section.size("y"), top, right, bottom, left)
 
 
-def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
+def _check(corners: Sequence[Offset], thicknesses: Sequence[float], radii: Sequence[float]) -> None:
     if len(corners) < 3:
         raise SectionError(f"a closed polygon has three corners at least, got {len(corners)}")
     if len(thicknesses) != len(corners):
@@ -235,17 +294,14 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
     places = np.array(corners)
     if _double_enclosed_area(places) < 0.0:
         places = places * [-1.0, 1.0]
-    sides = np.roll(places, -1, axis=0) - places
-    lengths = np.linalg.norm(sides, axis=1)
-    for number, length in enumerate(lengths, start=1):
-        if length <= _SAME * lengths.sum():
+    plates = _plates(places, np.array(thicknesses))
+    around = sum(plate.length for plate in plates)
+    for number, plate in enumerate(plates, start=1):
+        if plate.length <= _SAME * around:
             raise SectionError(
                 f"corners {number} and {number % len(corners) + 1} are one; give each once"
             )
-    tangents = sides / lengths[:, None]
-    before = np.roll(tangents, 1, axis=0)
-    sines = before[:, 0] * tangents[:, 1] - before[:, 1] * tangents[:, 0]
-    turns = np.arctan2(sines, (before * tangents).sum(axis=1))
+    turns = 2.0 * half_turns(plates)
     for number, turn in enumerate(turns, start=1):
         if not _LEAST_TURN <= turn <= _MOST_TURN:
             how = "back" if abs(turn) > _MOST_TURN else "inwards"
@@ -254,12 +310,34 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float]) -> None:
             )
     if turns.sum() > 3.0 * np.pi:
         raise SectionError("the plates go around more than once")
-    quads = trapezoids(_plates(places, np.array(thicknesses)))
-    for number, (inwards, tangent) in enumerate(zip(quads, tangents, strict=True), start=1):
-        if (inwards[2] - inwards[3]) @ tangent <= 0.0:
+    for number, (inwards, plate) in enumerate(
+        zip(trapezoids(plates), plates, strict=True), start=1
+    ):
+        if (inwards[2] - inwards[3]) @ plate.tangent <= 0.0:
             raise SectionError(
                 f"plate {number} of {thicknesses[number - 1]} m and its neighbours leave no room "
                 "in the polygon; they must be thinner"
+            )
+    _check_bends(radii, plates)
+
+
+def _check_bends(radii: Sequence[float], plates: Sequence[Plate]) -> None:
+    if len(radii) != len(plates):
+        raise SectionError(f"{len(plates)} corners have as many radii, got {len(radii)}")
+    for k, (radius, plate) in enumerate(zip(radii, plates, strict=True)):
+        least = 0.5 * plate.thickness
+        alike = plates[k - 1].thickness == plate.thickness
+        if radius != 0.0 and not (is_positive(radius) and radius >= least and alike):
+            raise SectionError(
+                f"the mid-line of a bend must have a radius of at least {least:g} m, half of the "
+                f"thickness on both of its sides, got {radius:g} m"
+            )
+    ends = np.array(radii) * np.tan(half_turns(plates))
+    for plate, taken in zip(plates, ends + np.roll(ends, -1), strict=True):
+        if taken > (1.0 + _SAME) * plate.length:
+            raise SectionError(
+                f"bends take {taken:g} m of a plate of {plate.length:g} m; their radius must be "
+                "smaller"
             )
 
 
@@ -309,20 +387,6 @@ def _partners(places: Array, images: Array) -> Indices:
     """Return the index (num_places,) of the mirror image nearest to each place."""
     distances = np.linalg.norm(places[:, None] - images, axis=2)
     return np.asarray(distances.argmin(axis=1))
-
-
-def _moments(polygons: Array) -> Array:
-    """Return the common centroid in m, and ∫ y² dA and ∫ z² dA in m⁴, by Green's theorem.
-
-    Args:
-        polygons: (num_polygons, num_corners, 2) in m, anticlockwise.
-    """
-    after = np.roll(polygons, -1, axis=1)
-    cross = polygons[..., 0] * after[..., 1] - polygons[..., 1] * after[..., 0]
-    first = ((polygons + after) * cross[..., None]).sum(axis=(0, 1)) / 6.0
-    squares = polygons**2 + polygons * after + after**2
-    second = (squares * cross[..., None]).sum(axis=(0, 1)) / 12.0
-    return np.concatenate([first / (0.5 * cross.sum()), second])
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,7 @@ import numpy as np
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.fields import check_numbers
-from protractile.geometry.polygon import PolygonSection
+from protractile.geometry.polygon import PolygonSection, bent
 from protractile.geometry.section import SectionError
 
 
@@ -73,8 +73,10 @@ def u_section(
 ) -> PolygonSection:
     """Return a U-section with a flat top; each bend consists of plates tangent to its circle.
 
+    Area, second moments and torsion constant are those of the circle.
+
     >>> print(pt.u_section(0.5, 0.4, radius=0.15, facets=3, top=0.008, bottom=0.006, web=0.006))
-    500 x 400 x 6 / 8, 10 plates
+    500 x 400 x 6 / 8, 10 plates, R 150
 
     Args:
         height: distance between bottom and top.
@@ -103,7 +105,8 @@ def u_section(
     y = 0.5 * width - radius + corner * np.sin(angles)
     z = -0.5 * height + radius - corner * np.cos(angles)
     right = np.vstack([2.0 * np.column_stack([y, z]), [width, height]])
-    return _mirror_right_half(right, [bottom, *[bottom] * facets, web, top])
+    sharp = _mirror_right_half(right, [bottom, *[bottom] * facets, web, top])
+    return bent(sharp, radius, below=0.5 * height)
 
 
 def _mirror_right_half(

@@ -186,6 +186,14 @@ class Section(Protocol):
         return sum(plate.length for plate in self.plates)
 
     @property
+    def buckling_widths(self) -> tuple[float, ...]:
+        """The width of each plate in m for buckling, between midpoints of bends (EN 1993-1-3, 5.1).
+
+        A bend of the mid-line radius R and the angle φ takes R (tan φ/2 − sin φ/2) of it.
+        """
+        return tuple(plate.length for plate in self.plates)
+
+    @property
     def enclosed_area(self) -> float:
         """The area within the mid-lines in m²."""
         start, end = (np.array([getattr(p, at) for p in self.plates]) for at in ("start", "end"))

@@ -27,7 +27,7 @@ from protractile.geometry.fields import (
 )
 from protractile.geometry.material import Material
 from protractile.geometry.place import Place, resolve_distances
-from protractile.geometry.section import Direction, Section
+from protractile.geometry.section import Direction, Plate, Section
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Support
 from protractile.geometry.taper import (
@@ -102,6 +102,8 @@ class Segment:
         compression: axial force, see :func:`.geometry.axial.with_compression`.
         shear_stiffnesses: G A_s in N along z and along y, if they differ from the values of the
             section.
+        yield_strengths: pairs of a plate, or of a side for all of its plates, and its yield
+            strength in Pa; other plates have that of the material.
     """
 
     name: str
@@ -122,6 +124,7 @@ class Segment:
     diaphragms: tuple[Diaphragm, ...] = ()
     compression: Compression = NO_COMPRESSION
     shear_stiffnesses: tuple[Positive, Positive] | None = None
+    yield_strengths: tuple[tuple[str, Positive], ...] = ()
 
     def __post_init__(self) -> None:
         for group in ("supports", "masses", "collars", "diaphragms"):
@@ -189,13 +192,19 @@ class Segment:
         assert self.section is not None
         return mean_area(self.section, self.head_section)
 
+    def strength(self, plate: Plate) -> float | None:
+        """Return the yield strength of a plate in Pa; None if unknown."""
+        own = dict(self.yield_strengths)
+        of_side = own.get(plate.name.partition("-")[0], self.material.strength(plate.thickness))
+        return own.get(plate.name, of_side)
+
     @property
     def yield_strength(self) -> float | None:
         """The minimum yield strength of the plates in Pa; None if unknown."""
         if self.section is None:
             return self.material.yield_strength
         plates = (plate for x in self.ends for plate in self.section_at(x).plates)
-        strengths = (self.material.strength(plate.thickness) for plate in plates)
+        strengths = map(self.strength, plates)
         return min((strength for strength in strengths if strength is not None), default=None)
 
     @property
@@ -231,26 +240,23 @@ class Segment:
         return (*self.masses, *self.stiffener_masses)
 
     @property
+    def stiffeners(self) -> list[tuple[tuple[float, float], float]]:
+        """The x of both ends in m and the mass in kg of each diaphragm and collar."""
+        if self.section is None:
+            return []
+        density = self.material.density
+        return [
+            ((plate.x, plate.x), density * self.section_at(plate.x).enclosed_area * plate.thickness)
+            for plate in self.diaphragms
+        ] + [
+            (collar.span, density * self.mean_width(collar) * collar.length * collar.thickness)
+            for collar in self.collars
+        ]
+
+    @property
     def stiffener_masses(self) -> tuple[PointMass, ...]:
         """The diaphragms and collars as point masses; empty without a section."""
-        if self.section is None:
-            return ()
-        density = self.material.density
-        of_diaphragms = (
-            PointMass(
-                diaphragm.x,
-                density * self.section_at(diaphragm.x).enclosed_area * diaphragm.thickness,
-            )
-            for diaphragm in self.diaphragms
-        )
-        of_collars = (
-            PointMass(
-                collar.midpoint,
-                density * self.mean_width(collar) * collar.length * collar.thickness,
-            )
-            for collar in self.collars
-        )
-        return (*of_diaphragms, *of_collars)
+        return tuple(PointMass(0.5 * sum(ends), mass) for ends, mass in self.stiffeners)
 
     @property
     def mass(self) -> float:

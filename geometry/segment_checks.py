@@ -48,6 +48,12 @@ def check_segment(segment: Segment, where: str) -> None:
         segment.check_place(f"{where}.masses", mass.x)
     _check_collars(segment, where)
     _check_diaphragms(segment, where)
+    plates = [] if segment.section is None else [each.name for each in segment.section.plates]
+    names = dict.fromkeys([*(name.partition("-")[0] for name in plates), *plates])
+    for name, _ in segment.yield_strengths:
+        if name not in names:
+            what = f"{name!r} is no plate of {segment.name!r}; give {choices([*names])}"
+            raise BoomError(f"{where}.yield_strengths", what)
 
 
 def _check_taper(segment: Segment, where: str) -> None:

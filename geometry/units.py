@@ -129,7 +129,7 @@ class System:
 
     def text(self, value: float, si: str, digits: int = 4) -> str:
         """Return a value, given in an SI unit, as text in the system's unit: ``12.5 mm``."""
-        return f"{self.of(value, si):.{digits}g} {self.label(si)}"
+        return f"{float(f'{self.of(value, si):.{digits}g}'):.9g} {self.label(si)}"
 
 
 def scale(value: float, size: Fraction) -> float:

@@ -16,6 +16,9 @@ from protractile.geometry.segment import Segment
 # would be long between different thicknesses.
 _STRAIGHT = 0.1
 
+# Gauss points and weights along a bend, exact to round-off.
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
+
 # Component of a normal below which a plate does not limit a shift.
 _ALONG = 1.0e-9
 
@@ -26,16 +29,25 @@ def normals(plates: Sequence[Plate]) -> Array:
     return np.column_stack([tangents[:, 1], -tangents[:, 0]])
 
 
-def trapezoids(plates: Sequence[Plate]) -> Array:
+def half_turns(plates: Sequence[Plate]) -> Array:
+    """Return half of the angle (num_plates,) in rad by which mid-lines turn before each plate."""
+    after = normals(plates)
+    before = np.roll(after, 1, axis=0)
+    sines = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return np.asarray(0.5 * np.arctan2(sines, (before * after).sum(axis=1)))
+
+
+def trapezoids(plates: Sequence[Plate], radii: Array | float = 0.0) -> Array:
     """Return the corners (num_plates, 4, 2) in m of thick plates, anticlockwise, outer edge first.
 
-    Neighbours are mitred, so that the trapezoids fill the wall.
+    Neighbours are mitred, so that the trapezoids fill the wall. Plates end at their bends, which
+    have the mid-line ``radii`` (num_plates,) in m at their starts.
     """
     start, end = (np.array([getattr(plate, at) for plate in plates]) for at in ("start", "end"))
     normal, half = normals(plates), 0.5 * np.array([plate.thickness for plate in plates])
     before, half_before = np.roll(normal, 1, axis=0), np.roll(half, 1)
     sine = before[:, 0] * normal[:, 1] - before[:, 1] * normal[:, 0]
-    mitred = np.abs(sine) > _STRAIGHT
+    mitred = (np.abs(sine) > _STRAIGHT) & (radii == np.zeros(len(plates)))
     corner = np.column_stack(
         [
             half_before * normal[:, 1] - half * before[:, 1],
@@ -46,7 +58,41 @@ def trapezoids(plates: Sequence[Plate]) -> Array:
     last = np.where(
         np.roll(mitred, -1)[:, None], np.roll(corner, -1, axis=0), half[:, None] * normal
     )
+    cut, tangent = radii * np.tan(half_turns(plates)), normal[:, ::-1] * [-1.0, 1.0]
+    start, end = start + cut[:, None] * tangent, end - np.roll(cut, -1)[:, None] * tangent
     return np.stack([start + first, end + last, end - last, start - first], axis=1)
+
+
+def moments(plates: Sequence[Plate], radii: Array) -> Array:
+    """Return the centroid in m, and ∫ y² dA and ∫ z² dA in m⁴.
+
+    Plates count by Green's theorem, and bends as ring sectors.
+
+    Args:
+        plates: plates in order, anticlockwise.
+        radii: radius (num_plates,) in m of the mid-line at the start of each plate.
+    """
+    polygons = trapezoids(plates, radii)
+    after = np.roll(polygons, -1, axis=1)
+    cross = polygons[..., 0] * after[..., 1] - polygons[..., 1] * after[..., 0]
+    area = 0.5 * cross.sum()
+    first = ((polygons + after) * cross[..., None]).sum(axis=(0, 1)) / 6.0
+    squares = polygons**2 + polygons * after + after**2
+    second = (squares * cross[..., None]).sum(axis=(0, 1)) / 12.0
+    for k, half in zip(np.flatnonzero(radii), half_turns(plates)[radii > 0.0], strict=True):
+        # The sector ends at the plate, whose first edge points to its centre.
+        radius, wall = radii[k], plates[k].thickness
+        y, z = polygons[k, 0] - polygons[k, 3]
+        angles = np.arctan2(z, y) + half * (_NODES - 1.0)
+        unit = np.column_stack([np.cos(angles), np.sin(angles)])
+        centre = 0.5 * (polygons[k, 0] + polygons[k, 3]) - radius * np.array([y, z]) / wall
+        # Integrals of r, r² and r³ over the thickness.
+        one, three = radius * wall, radius * wall * (radius**2 + 0.25 * wall**2)
+        two, weights = wall * (radius**2 + wall**2 / 12.0), half * _WEIGHTS
+        area += one * weights.sum()
+        first += weights @ (one * centre + two * unit)
+        second += weights @ (one * centre**2 + 2.0 * two * centre * unit + three * unit**2)
+    return np.concatenate([first / area, second])
 
 
 # Load cases and combinations have the same sections.

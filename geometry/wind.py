@@ -78,11 +78,8 @@ def wind_loads(
         for a, b in pairwise(np.linspace(start, end, steps + 1).tolist()):
             surface = trapezoids(segment.section_at(0.5 * (a + b)).plates)[:, :2]
             width, height = np.ptp(surface, axis=(0, 1)).tolist()
-            parts: tuple[tuple[Direction, float, float], ...] = (
-                ("y", height, lateral),
-                ("z", width, up),
-            )
-            for along, size, part in parts:
+            sizes: dict[Direction, tuple[float, float]] = {"y": (height, lateral), "z": (width, up)}
+            for along, (size, part) in sizes.items():
                 if abs(part) > SAME_PLACE:
                     force = pressure * shape_factors[number] * size * across * part
                     yield PartialLoad(number, along, force, None, history, span=(a, b))

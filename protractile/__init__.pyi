@@ -21,6 +21,7 @@ from protractile.geometry.support import Support as Support
 
 # Sections
 from protractile.geometry.polygon import PolygonSection as PolygonSection
+from protractile.geometry.polygon import bent as bent
 from protractile.geometry.polygon import closed_polygon as closed_polygon
 from protractile.geometry.profiles import hexagon as hexagon
 from protractile.geometry.profiles import octagon as octagon

@@ -31,7 +31,7 @@ from studies.study import Criterion, Piece, Progress, Verification, define_study
 
 LAW = PowerContact(stiffness=1.0e9, exponent=1.0)
 
-# Outer and inner sections that replace the boxes of the paper.
+# Outer and inner sections that replace the boxes of the paper, with the sharp folds of shells.
 SHAPES: Mapping[str, tuple[PolygonSection, PolygonSection]] = {
     "hexagon": (
         hexagon(0.50, 0.45, 0.25, 0.0065, 0.0065, 0.0065),
@@ -42,8 +42,8 @@ SHAPES: Mapping[str, tuple[PolygonSection, PolygonSection]] = {
         octagon(0.46, 0.31, 0.07, 0.006, 0.006, 0.005),
     ),
     "U": (
-        u_section(0.50, 0.34, 0.15, 3, top=0.008, bottom=0.006, web=0.006),
-        u_section(0.46, 0.29, 0.125, 3, top=0.006, bottom=0.005, web=0.005),
+        replace(u_section(0.50, 0.34, 0.15, 3, top=0.008, bottom=0.006, web=0.006), radii=()),
+        replace(u_section(0.46, 0.29, 0.125, 3, top=0.006, bottom=0.005, web=0.005), radii=()),
     ),
 }
 

@@ -274,11 +274,9 @@ def telescoped_joints(case: Case) -> tuple[JointTable, ...]:
         raise BoomError("telescoping", "no joint has an extension; give the largest one to each")
     travel = table.extension * sum(stroke for _, stroke in strokes.values())
     joints = list(case.joints)
-    for number in reversed(strokes) if table.order == "from the tip" else strokes:
-        least, stroke = strokes[number]
-        moved = min(stroke, travel)
-        if table.order == "in proportion":
-            moved = table.extension * stroke
+    from_tip, at_once = (table.order == order for order in ("from the tip", "in proportion"))
+    for number, (least, stroke) in sorted(strokes.items(), reverse=from_tip):
+        moved = table.extension * stroke if at_once else min(stroke, travel)
         travel -= moved
         joints[number] = replace(joints[number], extension=least + moved)
     return tuple(joints)

@@ -30,6 +30,10 @@ _LIKELY_UNITS = {
 _HEIGHT_OVER_GYRATION = 2.5
 
 
+# Usual yield strengths in Pa, and the factor beyond them at which one is impossible.
+_STRENGTHS = 1.0e7, 4.0e9, 10.0
+
+
 class UsualRange(NamedTuple):
     """A number of a case with its usual range."""
 
@@ -97,13 +101,16 @@ def material_ranges(tables: Mapping[str, Material]) -> Iterator[UsualRange]:
         for key, what, unit, limits in (
             ("youngs_modulus", "Young's modulus", "Pa", (1.0e9, 1.0e12, 3.0)),
             ("density", "the density", "kg/m^3", (500.0, 2.5e4, 1000.0)),
-            ("yield_strength", "the yield strength", "Pa", (1.0e7, 4.0e9, 10.0)),
+            ("yield_strength", "the yield strength", "Pa", _STRENGTHS),
         ):
             if (value := getattr(table, key)) is not None:
                 yield UsualRange(f"{where}.{key}", what, value, unit, *limits)
 
 
 def section_ranges(where: str, segment: Segment) -> Iterator[UsualRange]:
+    for plate, own in segment.yield_strengths:
+        key = f"{where}.yield_strengths.{plate}"
+        yield UsualRange(key, "the yield strength", own, "Pa", *_STRENGTHS)
     name, length, section = repr(segment.name), segment.length, segment.section
     low, high = length / 500.0, length / 5.0
     lateral = _lateral_ranges(where, segment)

@@ -24,7 +24,7 @@ from protractile.geometry.fields import (
 )
 from protractile.geometry.material import Material
 from protractile.geometry.place import End
-from protractile.geometry.polygon import closed_polygon
+from protractile.geometry.polygon import bent, closed_polygon
 from protractile.geometry.profiles import hexagon, octagon, u_section
 from protractile.geometry.section import Section
 from protractile.geometry.segment import PointMass
@@ -51,6 +51,9 @@ class ShapeTable(CaseTable):
     outside: Flag = False
     """whether heights, widths, corners and radii are those of the outer surface, as drawn, instead
     of mid-lines"""
+    bend_radius: Length | None = None
+    """the radius of mid-lines in m at bends, which are the corners between plates of one thickness;
+    other corners are welds; all are sharp unless given, except the bends of a U"""
 
     def section(self) -> Section:
         """Return the section that the keys define.
@@ -64,7 +67,8 @@ class ShapeTable(CaseTable):
 # Load cases and combinations share the sections of a case, which keep their properties.
 @lru_cache(maxsize=256)
 def _section(table: ShapeTable) -> Section:
-    made = type(table).make(**table.model_dump(exclude={"shape", "outside"}))
+    made = type(table).make(**table.model_dump(exclude={"shape", "outside", "bend_radius"}))
+    made = made if table.bend_radius is None else bent(made, table.bend_radius)
     return made.within_outline() if table.outside else made
 
 
@@ -163,7 +167,7 @@ class UTable(_FoldedTable):
     radius: Length
     """the radius of the bottom's two bends in m"""
     facets: Annotated[int, Field(strict=True, ge=1, le=MOST_FACETS)] = 3
-    """the number of flat plates in each bend, which touch its circle"""
+    """the number of flat plates in each bend, which touch its circle, in shells"""
 
 
 def _shape(value: Any) -> str:
@@ -213,6 +217,9 @@ class SegmentTable(CaseTable):
     """the second moment of area in m^4; follows from the section unless given"""
     rotary_inertia: Annotated[NotNegative, In("kg m")] | None = None
     """the rotary inertia in kg m; density times second moment unless given"""
+    yield_strengths: Annotated[dict[str, Positive], In("Pa")] = Field(default_factory=dict)
+    """plate or side = yield strength in Pa, such as bottom = 9.6e8, of plates that have another one
+    than the material"""
     height_to_width: Annotated[Positive, In("1")] | None = None
     """the ratio of height to width of the mid-lines, to infer the section of a box with uniform
     walls"""

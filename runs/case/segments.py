@@ -50,6 +50,7 @@ def segment_of(
         else None,
         collars=table.collars,
         diaphragms=table.diaphragms,
+        yield_strengths=tuple(table.yield_strengths.items()),
     )
 
 

@@ -11,6 +11,7 @@ import numpy as np
 from protractile.dynamics.excitation import InitialImpulse, Ramp, Step
 from protractile.geometry.boom import Boom
 from protractile.geometry.load import Load
+from protractile.geometry.typography import amount
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context
@@ -61,8 +62,8 @@ def sizes(context: Context) -> Iterator[str]:
     largest = max(map(abs, forces))
     if largest > MAX_LOAD * weight:
         yield (
-            f"a load of {largest:.4g} N is more than a hundred times the boom's weight of "
-            f"{weight:.4g} N; check the units"
+            f"a load of {amount(largest, 'N')} is more than a hundred times the boom's weight of "
+            f"{amount(weight, 'N')}; check the units"
         )
     for number, load in enumerate(boom.loads[: len(case.loads)], start=1):
         segment = boom.segments[load.segment]
@@ -70,13 +71,14 @@ def sizes(context: Context) -> Iterator[str]:
         if 0.0 < force < MIN_LOAD * weight:
             yield (
                 f"load[{number}]: {force:.4g} N is less than a thousandth of the boom's weight of "
-                f"{weight:.4g} N; check the units"
+                f"{amount(weight, 'N')}; check the units"
             )
         own = STANDARD_GRAVITY * segment.mass_per_length * segment.length
         if type(load) is Load and load.x is None and force > MAX_LINE_LOAD * own:
             yield (
                 f"load[{number}]: {load.magnitude:g} N/m along the whole of {segment.name!r} makes "
-                f"{force:.4g} N, {force / own:.2g} times its weight; a force at one place needs x"
+                f"{amount(force, 'N')}, {force / own:.2g} times its weight; a force at one place "
+                "needs x"
             )
         outer = next((joint.outer for joint in boom.joints if joint.inner == load.segment), None)
         if outer is not None and load.x is not None and load.x < boom.segments[outer].end:
@@ -87,20 +89,21 @@ def sizes(context: Context) -> Iterator[str]:
     lift, turn = np.sum(list(_constant_loads(boom)), axis=0)
     if lift > MAX_LIFT * weight:
         yield (
-            f"the loads pull upwards, by {lift:.4g} N in all; those that pull down, as weights "
-            "do, are negative"
+            f"the loads pull upwards, by {amount(lift, 'N')} in all; those that pull down, as "
+            "weights do, are negative"
         )
     elif case.gravity is not None and turn > 0.0:
         yield (
-            f"the loads lift the boom: about its base they turn it up by {turn:.4g} N m more than "
-            "weights turn it down; those that pull down are negative"
+            "the loads lift the boom: about its base they turn it up by "
+            f"{amount(turn, 'N m')} more than weights turn it down; those that pull down are "
+            "negative"
         )
     elif payload is not None and case.gravity is not None:
         uplift = sum(max(load.magnitude, 0.0) for load in added if load.x == boom.tip)
         if uplift > 0.5 * STANDARD_GRAVITY * payload.mass:
             yield (
-                f"the loads at the tip lift the payload by {uplift:.4g} N; loads that pull down "
-                "are negative"
+                f"the loads at the tip lift the payload by {amount(uplift, 'N')}; loads that pull "
+                "down are negative"
             )
 
 

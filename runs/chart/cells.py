@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
 from math import acos, atan2, degrees, hypot
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,9 +24,9 @@ from protractile.dynamics.failure import NUMERICAL_ERRORS
 from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.ground import force_name
 from protractile.geometry.typography import percent
-from protractile.runs.case.build import build_boom
+from protractile.runs.case.build import build_boom, telescoped_joints
 from protractile.runs.case.combinations import combine
-from protractile.runs.case.load_tables import LoadCaseTable
+from protractile.runs.case.load_tables import LoadCaseTable, TelescopingTable
 from protractile.runs.case.schema import Case
 from protractile.runs.chart.keys import ChartTable, Keys
 from protractile.runs.pipeline.beam_states import static_states
@@ -304,8 +304,10 @@ def load_case_of(
     """Return the load case of the chart with a payload in kg, extensions in m and an angle."""
     name = chart_of(case).load_case
     (table,) = (one for one in case.load_cases if one.name == name)
-    extended = {**table.extension, **extension}
-    return table.model_copy(update={"payload": payload, "extension": extended, "angle": angle})
+    changes: dict[str, Any] = {"payload": payload, "angle": angle}
+    if extension:
+        changes |= {"extension": {**table.extension, **extension}, "telescoped": None}
+    return table.model_copy(update=changes)
 
 
 def combined_case(case: Case, table: LoadCaseTable) -> Case:
@@ -326,34 +328,33 @@ def configurations(case: Case, boom: Boom) -> Iterator[Configuration]:
     Raises:
         ValueError: a length is not between that of the retracted boom and that of the case.
     """
-    chart, full = chart_of(case), boom.tip - foot_of(boom)
-    most = {one.inner: one.extension for one in case.joints if one.extension is not None}
-    lengths = {one.name: boom.segments[i].length for i, one in enumerate(case.segments)}
-    least = {
-        one.inner: max(0.0, lengths[one.inner] - lengths[one.outer])
-        for one in case.joints
-        if one.inner in most
-    }
-    strokes = {name: most[name] - least[name] for name in chart.order or most}
+    chart, shortest = chart_of(case), boom.tip - foot_of(boom) - sum(_extensions(case).values())
     for extension in chart.extensions or ([] if chart.lengths else [{}]):
-        shorter = sum(most[name] - extension.get(name, most[name]) for name in most)
-        yield Configuration(extension, full - shorter)
-    retracted = full - sum(most[name] - least[name] for name in most)
+        own = _extensions(combine(case, load_case_of(case, 0.0, extension, 0.0)))
+        yield Configuration(extension, shortest + sum(own.values()))
+    if not chart.lengths:
+        return
+    least, most = (shortest + sum(_telescoped(case, part).values()) for part in (0.0, 1.0))
     for number, length in enumerate(chart.lengths, start=1):
-        left = length - retracted
-        if not -_RADIUS <= left <= sum(strokes.values()) + _RADIUS:
+        if not least - _RADIUS <= length <= most + _RADIUS:
             raise ValueError(
-                f"chart.lengths[{number}]: must be from {retracted:g} m, with all segments "
-                f"retracted, to {retracted + sum(strokes.values()):g} m, got {length:g} m"
+                f"chart.lengths[{number}]: must be from {least:g} m, with all segments retracted, "
+                f"to {most:g} m, got {length:g} m"
             )
-        extension = dict(least)
-        for name, stroke in strokes.items():
-            share = stroke * left / sum(strokes.values())
-            if chart.order:
-                share = min(stroke, max(0.0, left))
-                left -= share
-            extension[name] += share
-        yield Configuration(extension, length)
+        part = min(max(0.0, (length - least) / (most - least or 1.0)), 1.0)
+        yield Configuration(_telescoped(case, part), length)
+
+
+def _telescoped(case: Case, part: float) -> dict[str, float]:
+    """Return the extensions in m by inner segment at a fraction of the stroke."""
+    table = (case.telescoping or TelescopingTable()).model_copy(update={"extension": part})
+    return _extensions(case.model_copy(update={"telescoping": table}))
+
+
+def _extensions(case: Case) -> dict[str, float]:
+    """Return the extensions in m of a case by inner segment."""
+    joints = telescoped_joints(case)
+    return {one.inner: one.extension for one in joints if one.extension is not None}
 
 
 def _tip(states: States) -> float:

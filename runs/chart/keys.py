@@ -30,10 +30,7 @@ class ChartTable(CaseTable):
     """the configurations: inner segment = extension in m, as in load cases"""
     lengths: Annotated[tuple[Positive, ...], In("m"), Field(max_length=_MOST)] = ()
     """the lengths in m from the foot pin to the tip, in place of extensions; joints extend up to
-    their extension in the case"""
-    order: tuple[str, ...] = ()
-    """the inner segments in the order in which they extend for lengths; in proportion unless
-    given"""
+    their extension in the case, as the table telescoping says"""
     combinations: Annotated[tuple[str, ...], Field(min_length=1)] | None = None
     """the names of the combinations whose proofs must hold; all with the load case unless given"""
     angles: Annotated[tuple[Angle, Angle], In("deg")] = (0.0, 80.0)

@@ -127,13 +127,11 @@ def plan(case: Case, file: str) -> list[Configuration]:
     if chart.extensions and chart.lengths:
         raise BadInput(file, "chart.lengths", "extensions are given; leave one of them out")
     inner = [one.inner for one in case.joints if one.extension is not None]
-    places = [("order", name) for name in chart.order]
     for number, extension in enumerate(chart.extensions, start=1):
-        places += [(f"extensions[{number}]", name) for name in extension]
-    for place, name in places:
-        if name not in inner:
-            what = f"{name!r} extends in no joint; give {choices(inner)}"
-            raise BadInput(file, f"chart.{place}", what)
+        for name in extension:
+            if name not in inner:
+                what = f"{name!r} extends in no joint; give {choices(inner)}"
+                raise BadInput(file, f"chart.extensions[{number}]", what)
     _check_combinations(case, file)
     try:
         planned = [*configurations(case, build_boom(case))]

@@ -150,12 +150,13 @@ class Draft:
         unit, system = unit_of(place, self.case), self.case.system
         ranges = [self._range(*self._numbers[control]) for control in keys]
         low, high = max(bounds[0] for bounds in ranges), min(bounds[1] for bounds in ranges)
+        help_text = describe(_field(self.case, place))
         in_unit = [system.of(number, unit or "1") for number in (value, low, high)]
         return Control(
             key,
             keys,
             self._label(keys),
-            describe(_field(self.case, place)),
+            re.sub(rf"(?<=\bin ){re.escape(unit or '-')}\b", system.unit(unit), help_text),
             in_unit[0],
             system.label(unit),
             (in_unit[1], in_unit[2]) if low < high else None,

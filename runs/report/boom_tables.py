@@ -12,7 +12,7 @@ from protractile.geometry.fit import room
 from protractile.geometry.section import Section
 from protractile.geometry.units import System
 from protractile.runs.case.schema import Case
-from protractile.runs.report.tables import Column, Table
+from protractile.runs.report.tables import Cell, Column, Table
 
 
 def segment_table(case: Case, boom: Boom) -> Table:
@@ -26,15 +26,10 @@ def segment_table(case: Case, boom: Boom) -> Table:
         boxes.append(f"{box}, inferred" if inferred else box)
     columns = [
         Column("segment", [segment.name for segment in segments]),
-        _spans(case.system, [segment.ends for segment in segments]),
-        column("mass", "kg/m", [segment.mass_per_length for segment in segments]),
+        Column(f"x\n{case.system.label('m')}", [_span(case.system, one.ends) for one in segments]),
+        Column("mass\nkg/m", [segment.mass_per_length for segment in segments], ".4g"),
         column("I_y", "m^4", [segment.second_moment_of_area for segment in segments]),
-        column(
-            "rotary inertia\nper length",
-            "kg m",
-            [segment.rotary_inertia for segment in segments],
-            ".3g",
-        ),
+        Column("rotary inertia\nper length\nkg m", [one.rotary_inertia for one in segments], ".3g"),
         Column("h × b of\nmid-lines, t of\nflange / web, mm", boxes),
     ]
     return Table("Segments", columns)
@@ -42,26 +37,15 @@ def segment_table(case: Case, boom: Boom) -> Table:
 
 def stiffener_table(boom: Boom, system: System) -> Table:
     """Return the table of stiffeners, for segments with sections."""
-    rows: list[tuple[str, str, tuple[float, float], float, float]] = []
+    rows: list[tuple[Cell, ...]] = []
     for segment in boom.segments:
-        if segment.section is None:
-            continue
-        for collar in segment.collars:
-            area = segment.mean_width(collar) * collar.length
-            name = ", ".join(("collar", *collar.walls))
-            rows.append((name, segment.name, collar.span, collar.thickness, area))
-        for plate in segment.diaphragms:
-            area, ends = segment.section_at(plate.x).enclosed_area, (plate.x, plate.x)
-            rows.append(("diaphragm", segment.name, ends, plate.thickness, area))
-    density = {segment.name: segment.material.density for segment in boom.segments}
-    columns = [
-        Column("stiffener", [row[0] for row in rows]),
-        Column("segment", [row[1] for row in rows]),
-        _spans(system, [row[2] for row in rows]),
-        Column("thickness", [row[3] for row in rows], ".3g", "mm"),
-        Column("mass", [density[row[1]] * row[3] * row[4] for row in rows], ".3g", "kg"),
-    ]
-    return Table("Stiffeners", columns)
+        parts = [("diaphragm", plate.thickness) for plate in segment.diaphragms]
+        parts += [(", ".join(("collar", *one.walls)), one.thickness) for one in segment.collars]
+        for (name, thickness), (ends, mass) in zip(parts, segment.stiffeners, strict=False):
+            rows.append((name, segment.name, _span(system, ends), thickness, mass))
+    columns = ("thickness", ".3g", "mm"), ("mass", ".3g", "kg")
+    headings = ("stiffener", "segment", f"x\n{system.label('m')}", *columns)
+    return Table.of_rows("", "Stiffeners", headings, rows)
 
 
 def joint_table(case: Case, boom: Boom) -> Table:
@@ -118,9 +102,8 @@ def column_in_units(
     return Column(f"{title}\n{system.label(si)}", [system.of(value, si) for value in values], form)
 
 
-def _spans(system: System, ends: Sequence[tuple[float, float]]) -> Column:
-    texts = [[f"{system.of(x, 'm'):g}" for x in dict.fromkeys(both)] for both in ends]
-    return Column(f"x\n{system.label('m')}", ["–".join(text) for text in texts])
+def _span(system: System, ends: tuple[float, float]) -> str:
+    return "–".join(f"{system.of(x, 'm'):g}" for x in dict.fromkeys(ends))
 
 
 def _size(section: Section) -> str:
@@ -154,7 +137,7 @@ def panel_table(weakest: Sequence[Row], system: System) -> Table:
     """Return the table of the plate of each segment that buckles first by panel formulas."""
     columns = "segment", "wall", f"x\n{system.label('m')}", ("buckling factor", ".3g")
     rows = [
-        (row.part, row.place, f"{system.of(row.x or 0.0, 'm'):.4g}", row.value) for row in weakest
+        (row.part, row.place, f"{system.of(row.x or 0.0, 'm'):.6g}", row.value) for row in weakest
     ]
     note = (
         "Static state under the maximum loads. Walls are long panels on simple supports, with "

@@ -10,7 +10,7 @@ import numpy as np
 
 from protractile.dynamics.excitation import resolving_times
 from protractile.geometry.boom import Boom
-from protractile.geometry.load import Load, Moment, PartialLoad, Torque
+from protractile.geometry.load import Load, PartialLoad, Torque
 from protractile.geometry.typography import SHOWN, in_shown_unit
 from protractile.geometry.units import System
 from protractile.runs.case.actions import head_moments, thrusts, wind
@@ -57,74 +57,58 @@ def release_note(case: Case) -> str:
 
 
 def _rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
-    if case.gravity is not None:
-        for direction, acceleration in (("z", -case.gravity.across), (_AXIAL, case.gravity.along)):
-            if acceleration:
-                yield _LoadRow("gravity", _ALL, direction, _CONSTANT, acceleration * boom.mass, "N")
-        yield from _hoist_rows(case, boom)
+    gravity, tip = case.gravity, _place(boom, len(boom.segments) - 1, boom.tip, case.system)
+    if gravity is not None:
+        weighing = [("gravity", _ALL, _CONSTANT, boom.mass)]
+        if case.hoist is not None:
+            history = _CONSTANT if case.hoist.hanging else "from lift-off"
+            history = "until t = 0" if case.hoist.dropped else history
+            weighing.append(("hoist", tip, history, case.hoist.mass))
+        for key, place, history, mass in weighing:
+            for direction, part in (("z", -gravity.across), (_AXIAL, gravity.along)):
+                if part:
+                    yield _LoadRow(key, place, direction, history, part * mass, "N")
     for i, segment in enumerate(case.segments, start=1):
         for key, direction in (("load", "z"), ("lateral_load", "y")):
             if load := getattr(segment, key):
                 key = f"segment[{i}].{key}"
                 yield _LoadRow(key, segment.name, direction, _CONSTANT, load, "N/m")
-    for i, (table, load) in enumerate(zip(case.loads, boom.loads, strict=False), start=1):
-        place = _place(boom, load, case.system)
+    for i, (table, of) in enumerate(zip(case.loads, boom.loads, strict=False), start=1):
+        place = _place_of(boom, of, case.system)
         direction = f"{table.direction}, moment" if table.moment else table.direction
         yield _history_row(f"load[{i}]", place, direction, table, case.time.duration)
-    if case.payload is not None and case.gravity is None and case.payload.gravity != 0.0:
-        weight = boom.loads[len(case.loads)]
-        place = _place(boom, weight, case.system)
-        yield _LoadRow("payload", place, "z", _CONSTANT, weight.magnitude, "N")
+    if case.payload is not None and gravity is None and case.payload.gravity != 0.0:
+        weight = boom.loads[len(case.loads)].magnitude
+        yield _LoadRow("payload", tip, "z", _CONSTANT, weight, "N")
     for i, base in enumerate(case.base, start=1):
         yield _history_row(f"base[{i}]", _ALL, base.direction, base, case.time.duration)
-    yield from _tip_rows(case, boom)
+    if case.head is not None:
+        for of in head_moments(case, case.head, len(boom.segments) - 1, boom.tip):
+            direction = "torque" if isinstance(of, Torque) else f"{of.direction}, moment"
+            yield _LoadRow("head", tip, direction, _CONSTANT, of.magnitude, "N m")
+    if case.wind is not None:
+        for of in wind(case, case.wind, boom.segments, boom.joints):
+            unit = {PartialLoad: "N/m", Load: "N"}.get(type(of), "N m")
+            largest = of.magnitude * getattr(of.history, "peak", 1.0)
+            place, history = _place_of(boom, of, case.system), case.wind.description or _CONSTANT
+            yield _LoadRow("wind", place, of.direction, history, largest, unit)
+    for lead in boom.leads:
+        yield _LoadRow("rope", tip, "to the winch", _CONSTANT, lead.force, "N")
     for i, thrust in enumerate(thrusts(case, boom.segments), start=1):
-        name = boom.segments[thrust.segment].name
-        place = f"{name} at {case.system.text(thrust.x, 'm', 5)}"
+        place = _place(boom, thrust.segment, thrust.x, case.system)
         yield _LoadRow(f"axial[{i}]", place, _AXIAL, _CONSTANT, thrust.force, "N")
 
 
-def _tip_rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
-    """Yield the moments of the head, the wind, and the lead of the rope."""
-    last, end, system = len(boom.segments) - 1, boom.tip, case.system
-    if case.head is not None:
-        for load in head_moments(case, case.head, last, end):
-            direction = "torque" if isinstance(load, Torque) else f"{load.direction}, moment"
-            place = _place(boom, load, system)
-            yield _LoadRow("head", place, direction, _CONSTANT, load.magnitude, "N m")
-    if case.wind is not None:
-        for load in wind(case, case.wind, boom.segments, boom.joints):
-            unit = "N/m" if isinstance(load, PartialLoad) else "N"
-            unit = "N m" if isinstance(load, Moment) else unit
-            history = case.wind.description or _CONSTANT
-            largest = load.magnitude * getattr(load.history, "peak", 1.0)
-            yield _LoadRow(
-                "wind", _place(boom, load, system), load.direction, history, largest, unit
-            )
-    for lead in boom.leads:
-        place = f"{boom.segments[lead.segment].name} at {system.text(lead.x, 'm', 5)}"
-        yield _LoadRow("rope", place, "to the winch", _CONSTANT, lead.force, "N")
+def _place(boom: Boom, segment: int, x: float, system: System) -> str:
+    return f"{boom.segments[segment].name} at {system.text(x, 'm', 5)}"
 
 
-def _hoist_rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
-    """Yield the weight of the load on the rope, across and along the boom."""
-    if case.hoist is None or case.gravity is None:
-        return
-    history = _CONSTANT if case.hoist.hanging else "from lift-off"
-    history = "until t = 0" if case.hoist.dropped else history
-    place = f"{boom.segments[-1].name} at {case.system.text(boom.segments[-1].end, 'm', 5)}"
-    for direction, acceleration in (("z", -case.gravity.across), (_AXIAL, case.gravity.along)):
-        if acceleration:
-            weight = acceleration * case.hoist.mass
-            yield _LoadRow("hoist", place, direction, history, weight, "N")
-
-
-def _place(boom: Boom, load: Load, system: System) -> str:
+def _place_of(boom: Boom, load: Load, system: System) -> str:
     name = boom.segments[load.segment].name
     if isinstance(load, PartialLoad):
         start, end = (system.of(x, "m") for x in load.span)
         return f"{name}, {start:.5g}–{end:.5g} {system.label('m')}"
-    return name if load.x is None else f"{name} at {system.text(load.x, 'm', 5)}"
+    return name if load.x is None else _place(boom, load.segment, load.x, system)
 
 
 def _history_row(

@@ -3,6 +3,7 @@
 
 import re
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -19,7 +20,8 @@ TRAPEZOID = PolygonSection(
 )
 HEXAGON = hexagon(0.50, 0.45, 0.25, top=0.006, bottom=0.008, web=0.005)
 OCTAGON = octagon(0.50, 0.40, 0.10, top=0.006, bottom=0.006, web=0.005)
-U = u_section(0.50, 0.35, 0.15, 3, top=0.008, bottom=0.006, web=0.005)
+# The plates of a U, without the circle of its bends.
+U = replace(u_section(0.50, 0.35, 0.15, 3, top=0.008, bottom=0.006, web=0.005), radii=())
 ALL = {"trapezoid": TRAPEZOID, "hexagon": HEXAGON, "octagon": OCTAGON, "u": U}
 
 

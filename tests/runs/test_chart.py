@@ -274,7 +274,7 @@ def test_envelope_of_a_rated_payload() -> None:
 
 
 def test_configurations() -> None:
-    """Reference: by construction, in proportion and one after the other."""
+    """Reference: by construction, in proportion."""
     tables = rigid()
     tables["segment"].append(tables["segment"][1] | {"name": "tip"})
     tables["joint"].append(tables["joint"][0] | {"outer": "fly", "inner": "tip", "extension": 3.0})
@@ -282,14 +282,31 @@ def test_configurations() -> None:
     shared = [one.extension for one in run.plan(pt.load_case(tables), "case")]
     assert [one["fly"] for one in shared] == pytest.approx([0.0, 2.0, 6.0])
     assert [one["tip"] for one in shared] == pytest.approx([0.0, 1.0, 3.0])
-    tables["chart"]["order"] = ["tip", "fly"]
-    ordered = [one.extension for one in run.plan(pt.load_case(tables), "case")]
-    assert [one["tip"] for one in ordered] == pytest.approx([0.0, 3.0, 3.0])
-    assert [one["fly"] for one in ordered] == pytest.approx([0.0, 0.0, 6.0])
-    del tables["chart"]["lengths"], tables["chart"]["order"]
+    del tables["chart"]["lengths"]
     tables["chart"]["extensions"] = [{"fly": 4.0}, {}]
     lengths = [one.length for one in run.plan(pt.load_case(tables), "case")]
     assert lengths == pytest.approx([15.0, 17.0])
+
+
+def test_configurations_follow_the_table_telescoping() -> None:
+    """Reference: by construction, strokes of 5.5 and 2.5 m from 0.5 m on, from the tip."""
+    tables = rigid(lengths=[9.0, 13.0, 17.0], radii=[4.0])
+    tables["segment"].append(tables["segment"][1] | {"name": "tip"})
+    tables["joint"].append(tables["joint"][0] | {"outer": "fly", "inner": "tip", "extension": 3.0})
+    tables["telescoping"] = {"extension": 0.25, "order": "from the tip", "retracted": 0.5}
+    planned = run.plan(pt.load_case(tables), "case")
+    assert [one.extension["tip"] for one in planned] == pytest.approx([0.5, 3.0, 3.0])
+    assert [one.extension["fly"] for one in planned] == pytest.approx([0.5, 2.0, 6.0])
+    tables["chart"]["lengths"] = [8.5]
+    with pytest.raises(BadInput) as error:
+        run.plan(pt.load_case(tables), "case")
+    assert str(error.value) == (
+        "case: chart.lengths[1]: must be from 9 m, with all segments retracted, to 17 m, got 8.5 m"
+    )
+    tables["chart"] |= {"lengths": [], "extensions": [{"tip": 1.0}, {}]}
+    tables["load_case"][0]["telescoped"] = 0.5
+    planned = run.plan(pt.load_case(tables), "case")
+    assert [one.length for one in planned] == pytest.approx([8.0 + 6.0 + 1.0, 9.0 + 4.0])
 
 
 @pytest.mark.parametrize(
@@ -301,8 +318,8 @@ def test_configurations() -> None:
          "chart.radii[1]: must be at most 14 m, the reach of the longest boom, got 15 m"),
         ({"chart": {"load_case": "lift", "radii": [4.0], "lengths": [15.0]}},
          "chart.lengths[1]: must be from 8 m, with all segments retracted, to 14 m, got 15 m"),
-        ({"chart": {"load_case": "lift", "radii": [4.0], "order": ["base"]}},
-         "chart.order: 'base' extends in no joint; give 'fly'"),
+        ({"chart": {"load_case": "lift", "radii": [4.0], "extensions": [{"base": 1.0}]}},
+         "chart.extensions[1]: 'base' extends in no joint; give 'fly'"),
         ({"chart": {"load_case": "lift", "radii": [4.0], "combinations": ["B"]}},
          "chart.combinations: 'B' is no combination; give 'A'"),
         ({"combination": []},

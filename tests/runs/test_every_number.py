@@ -22,14 +22,14 @@ EXEMPT = {
         "x", "from", "to", "span", "across", "stations", "locked_at",
     ),
     "its range follows from its material and section (part_ranges)": (
-        "youngs_modulus", "density", "yield_strength", "mass_per_length", "torsion_constant",
-        "second_moment_of_area", "lateral_second_moment_of_area",
+        "youngs_modulus", "density", "yield_strength", "yield_strengths", "mass_per_length",
+        "torsion_constant", "second_moment_of_area", "lateral_second_moment_of_area",
     ),
     "the sizes of the whole section have ranges (part_ranges)": (
         "SectionTable", "UnequalBoxTable", "PolygonTable", "HexagonTable", "OctagonTable", "UTable",
     ),
     "its range follows from the joint or the cylinder (sanity)": (
-        "JointTable.play", "lateral_play", "extension", "ground",
+        "JointTable.play", "lateral_play", "extension", "ground", "EarthPoint",
     ),
     "its range follows from the boom (chart.run)": ("ChartTable",),
     "a part of the play, which is checked": ("play_above", "lateral_play_right"),

@@ -66,6 +66,7 @@ def test_controls_have_the_unit_of_the_case(tmp_path: Path) -> None:
     path = tmp_path / "shown.toml"
     path.write_text(f'shown_units = "mm-t-s"\n{text}', encoding="utf-8")
     control = Draft.load(str(path)).control("joint[1].play")
+    assert control.help.startswith("the play in mm, the sum")
     # The mid-lines are 300 and 256 mm high; the flanges of 6 and 5 mm take 11 mm.
     assert (control.value, control.unit, control.range) == (3.0, "mm", (0.0, pytest.approx(33.0)))
     changed = Draft.load(str(path)).changed({"joint[1].play": 4.5})

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Proofs of combinations: formulas by hand, the table, the exit status and the report."""
 
+import re
 from math import pi, sqrt
 from pathlib import Path
 
@@ -12,13 +13,14 @@ from protractile.analysis.plate_buckling import (
     reduced_stress,
     shear_reduction,
 )
-from protractile.analysis.rows import Row
+from protractile.analysis.rows import Row, Rows
 from protractile.cases import run_case
 from protractile.geometry.box import BoxSection
 from protractile.geometry.material import Material
 from protractile.geometry.segment import Segment
 from protractile.runs.pipeline.combinations import combination_rows, combination_states
 from protractile.runs.pipeline.proofs import Proofs, prove
+from protractile.runs.pipeline.proofs import proofs_of as rows_of_proofs
 from protractile.runs.pipeline.summary import Summary
 from protractile.runs.report.additions import Addition
 from protractile.runs.report.document import render
@@ -27,6 +29,7 @@ from tests.runs.case_texts import (
     CLAMPED,
     HINGED,
     STEEL,
+    as_toml,
     box,
     elements,
     joint,
@@ -95,7 +98,7 @@ def test_reduced_stress_of_a_wall() -> None:
     box = BoxSection(height=0.36, width=0.36, flange=0.006, web=0.006)
     arm = Segment.of_section("arm", 0.0, 5.0, steel, box)
     edges, shear = np.full((2, 1, 1), -150e6), np.array([[40e6]])
-    wall = PlateStress(arm, box.plates[0], np.zeros(1), edges, edges, shear)
+    wall = PlateStress(arm, box.plates[0], np.zeros(1), edges, edges, shear, 0.36)
     unit = pi**2 * 2.1e11 / (12.0 * 0.91 * 60.0**2)
     pressed, sheared = 150e6 / (4.0 * unit), 40e6 / (5.34 * unit)
     # For uniform compression (10.6) is 1/α = 1/2α_x + √(1/4α_x² + 1/α_τ²).
@@ -146,6 +149,25 @@ def test_yield_plate_and_deflection_of_a_cantilever(tmp_path: Path) -> None:
     assert tip.value == pytest.approx(bent + force * LENGTH / shear_stiffness(), rel=2e-3)
     assert tip.limit == 0.05
     assert not any("deflection" in note for note in proofs.notes)
+
+
+def test_plates_have_their_own_steel(tmp_path: Path) -> None:
+    """Reference: other input, the whole arm of the steel of each plate."""
+
+    def rows(text: str) -> Rows:
+        case = read_case(tmp_path, text)
+        (states,) = (one for one in combination_states(case) if "loaded" in one.combined.name)
+        return Rows([*rows_of_proofs(states, case), *states.rows.where(quantity="stress")])
+
+    steels = {"bottom": 9.6e8, "right": 6.9e8, "left": 6.9e8}
+    mixed = rows(ARM.replace("collars", f"yield_strengths = {as_toml(steels)}\ncollars", 1))
+    for plate, strength in {**steels, "top": 3.45e8}.items():
+        whole = rows(re.sub("yield_by_thickness = .*", f"yield_strength = {strength}", ARM))
+        for kind in ("yield", "plate"):
+            (one,), (other,) = (each.where(quantity=kind, place=plate) for each in (mixed, whole))
+            assert one.utilisation == pytest.approx(other.utilisation, rel=1e-12)
+    # The outer fibres have the steel of the weaker plate, those above that of the top.
+    assert {row.limit for row in mixed.where(quantity="stress")} == {3.45e8}
 
 
 def test_a_combination_in_motion(tmp_path: Path) -> None:
@@ -321,6 +343,8 @@ def test_shipped_cases_are_proved() -> None:
          "material.yield_by_thickness: thicknesses must rise; entry 2 repeats that of entry 1"),
         (("yield_by", "yield_strength = 3e8\nyield_by"),
          "material: has yield_strength and yield_by_thickness; give one of them"),
+        (("collars", "yield_strengths = { web = 9.6e8 }\ncollars"), "segment[1].yield_strengths: "
+         "'web' is no plate of 'arm'; give 'bottom', 'right', 'top' or 'left'"),
         (('["empty", "loaded"]', '["empty", "full"]'), "spectrum[1].load_cases: 'full' is no load "
          "case; give 'empty', 'loaded' or 'pulled'"),
     ],

@@ -151,7 +151,7 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
         ("mass = 300.0", "mass = 3.0",
          "the payload of 3 kg is less than a fiftieth of the boom's 472 kg; check the units"),
         ("0.004 }", "0.004 }\nload = -4.7e6",
-         "a load of 2.82e+07 N is more than a hundred times the boom's weight of 7542 N; "
+         "a load of 28200 kN is more than a hundred times the boom's weight of 7.54 kN; "
          "check the units"),
         (PLAY, "play = 0.003\nstiffness = 1e4\n",
          "the compliance of the contacts of 'fly' in 'beam' is 0.000103 m/N, above 8.43e-06 m/N "
@@ -171,7 +171,7 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
          "segment[2].masses: the 300 kg of the payload are repeated at the tip; leave one of them "
          "out"),
         ('x = "head", magnitude', "magnitude",
-         "load[1]: -1595 N/m along the whole of 'fly' makes 9570 N, 5.4 times its weight; a force "
+         "load[1]: -1595 N/m along the whole of 'fly' makes 9.57 kN, 5.4 times its weight; a force "
          "at one place needs x"),
         ("[0.7, -1.1]", "[4.1, -1.1]",
          "cylinder[1].ground: the lower end at x = 4.1 m is farther out than the lug at 2.4 m; "
@@ -200,10 +200,10 @@ def test_impossible_numbers_are_refused(tmp_path: Path, old: str, new: str, line
          "segment[2].load: -296.3 N/m is the weight of 'fly', which the table gravity adds "
          "already; leave it out"),
         ("-1595.0", "15950.0",
-         "the loads pull upwards, by 1.062e+04 N in all; those that pull down, as weights do, are "
+         "the loads pull upwards, by 10.6 kN in all; those that pull down, as weights do, are "
          "negative"),
         ("-1595.0", "4500.0",
-         "the loads lift the boom: about its base they turn it up by 1.043e+04 N m more than "
+         "the loads lift the boom: about its base they turn it up by 10.4 kN m more than "
          "weights turn it down; those that pull down are negative"),
     ],
 )  # fmt: skip

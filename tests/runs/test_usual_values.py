@@ -126,7 +126,7 @@ def test_senseless_values_are_refused(tmp_path: Path, old: str, new: str, line: 
         ("dead = [1.2, 1.0], payload = 1.3, wind = 1.1", "dead = 0.0, payload = 0.0, wind = 0.0",
          "combination[1].factors: all are 0, so that no load acts"),
         ("magnitude = -30.0", "magnitude = -110000.0",
-         "load_case[1].load[1].magnitude: -1.1e+05 N/m is "),
+         "load_case[1].load[1].magnitude: -110000 N/m is "),
         ("[[joint]]", PUSH + "[[joint]]",
          "base[1]: its table ends at 1 s with 100 % of its peak, which acts until the run ends; "),
         ("density = 7850.0", "density = 7850.0\nyield_by_thickness = [[0.005, 3.55e8]]",

@@ -15,6 +15,7 @@ from protractile.dynamics.motion import Motion
 from protractile.geometry.boom import Boom, BoomError, Diaphragm, Joint, Pad, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
+from protractile.geometry.polygon import bent
 from protractile.geometry.profiles import hexagon, u_section
 from protractile.geometry.section import COMPONENT, Section
 from protractile.geometry.taper import mean_area
@@ -37,6 +38,10 @@ ENDS: Mapping[str, tuple[Section, Section]] = {
     "hexagon": (
         hexagon(0.40, 0.36, 0.2, 0.0065, 0.0065, 0.0065),
         hexagon(0.25, 0.26, 0.15, 0.005, 0.005, 0.005),
+    ),
+    "bends": (
+        bent(hexagon(0.40, 0.36, 0.2, 0.006, 0.006, 0.006), 0.03),
+        bent(hexagon(0.25, 0.26, 0.15, 0.006, 0.006, 0.006), 0.02),
     ),
     "U": (
         u_section(0.40, 0.34, 0.12, 3, top=0.008, bottom=0.006, web=0.006),
