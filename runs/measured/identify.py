@@ -142,6 +142,13 @@ class Identification:
         return sorted(helpful, key=lambda entry: float(entry[1].min()))
 
     @property
+    def tables(self) -> list[Table]:
+        """The tables of unknowns, their correlation, the fit, and what else to measure."""
+        several = [self.correlation_table()] if len(self.keys) > 1 else []
+        further = self.helpful_table()
+        return [self.table(), *several, self.after.table(), *([further] if further.rows else [])]
+
+    @property
     def headings(self) -> Sequence[str]:
         """The last parts of the keys as headings, or the keys where these are not unique."""
         short = [key.rpartition(".")[2].replace("_", "\n") for key in self.keys]
@@ -174,35 +181,33 @@ class Identification:
                 "The errors are those of independent readings: systematic says how far readings "
                 "and model share an error."
             )
+        name, ratios = self.helpful[0]
+        if ratios.min() < HELPS:
+            left = f"{percent(ratios.min(), 2)} of the error of {self.keys[int(ratios.argmin())]}"
+            notes.append(f"One more channel, {name}, would leave {left}.")
+        else:
+            least = percent(1.0 - HELPS)
+            notes.append(f"No other channel would reduce an error by more than {least}.")
         heads = {"unknown": "", "unit": ""} | dict.fromkeys(("case", "identified"), ".4g")
         heads |= dict.fromkeys(("standard\nerror", "in %"), ".2g") | {"": ""}
         return Table.of_rows("unknowns", "Identified numbers", heads, rows, notes)
 
     def correlation_table(self) -> Table:
         """Return a table of the correlation between the unknowns."""
-        rows = [
-            (key, *(None if np.isnan(part) else float(part) for part in row))
-            for key, row in zip(self.keys, self.found.correlation, strict=True)
-        ]
+        parts = np.where(np.isnan(self.found.correlation), None, self.found.correlation)
+        rows = [(key, *row) for key, row in zip(self.keys, parts.tolist(), strict=True)]
         heads = {"": ""} | dict.fromkeys(self.headings, ".2f")
         return Table.of_rows("correlation", "Correlation of the unknowns", heads, rows)
 
     def helpful_table(self) -> Table:
-        """Return a table of the channels that would determine the unknowns better."""
-        rows = list[tuple[Cell, ...]]()
-        for name, ratios in self.helpful[:MOST_ROWS]:
-            if ratios.min() < HELPS:
-                rows.append((name, *map(float, ratios)))
+        """Return a table of the channels that would determine the unknowns better, if any."""
+        helpful = [entry for entry in self.helpful if entry[1].min() < HELPS][:MOST_ROWS]
+        rows: list[tuple[Cell, ...]] = [(name, *map(float, ratios)) for name, ratios in helpful]
         notes = [
             f"Standard error of each unknown with {READINGS} readings of one more channel over the "
             f"error without it. The uncertainty of a reading is {percent(UNCERTAINTY)} of the "
             "range, of a tape measure 1 mm."
         ]
-        if rows:
-            name, ratios = self.helpful[0]
-            best = int(np.argmin(ratios))
-            left = f"{percent(ratios[best], 2)} of the error of {self.keys[best]}"
-            notes.insert(0, f"One more channel, {name}, would leave {left}.")
         heads = {"one more channel": ""} | dict.fromkeys(self.headings, ".2f")
         return Table.of_rows("helpful", "What else to measure", heads, rows, notes)
 
@@ -280,8 +285,8 @@ def identify(
         except BadInput as fault:
             what = f"{bound[k]:g} is not valid: {fault.what}"
             raise BadInput(file, f"--unknown {keys[k]}", what) from None
-    residuals = Residuals.of(experiment, keys, start)
-    found = fit(residuals, low, high, start, starts, progress, residuals.step)
+    curves = Residuals.of(experiment, keys, start).of_curves
+    found = fit(curves, low, high, start, starts, progress, windows=curves.windows)
     # Near the solution it is known what errors the readings share, and which motions are chaotic.
     residuals = Residuals.of(experiment, keys, found.values).with_shared_errors(found.values)
     searched = found.starts

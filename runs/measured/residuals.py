@@ -15,26 +15,96 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import interp1d
+from scipy.signal import find_peaks, periodogram
 
-from protractile.analysis.low_pass import CUTOFF_SHARE
+from protractile.analysis.low_pass import CUTOFF_SHARE, PROMINENCE, filter_low_pass, mean_period
+from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.predictability import SHARES, horizon
 from protractile.geometry.arrays import Array
 from protractile.runs.measured.experiment import Experiment
-from protractile.runs.measured.fit import STEP
+from protractile.runs.measured.fit import STEP, Marks
 from protractile.runs.measured.keys import Channel
-from protractile.runs.measured.signals import STEADY, Features, even
 from protractile.runs.sweep.distances import CHANGE
 
 # Relative changes of the loads of an ensemble, and number of repetitions of the noise.
 MEMBERS = (0.0, CHANGE, -CHANGE, 0.5 * CHANGE, -0.5 * CHANGE)
 NOISES = 20
+# Parts of the squared changes of a channel in growing windows of its readings.
+WINDOWS = np.array([0.1, 0.3, 0.6, 1.0])
 # Step of differences for features, whose scatter hides small changes.
 COARSE = 2.0e-2
+# Number of features that may be fitted, the first ones.
+STEADY = 8
+# Factor by which zeros lengthen a signal, so that its spectrum is dense; share of the largest peak
+# below which a peak is noise.
+_PADDING, _LEAST_PEAK = 8, 0.1
 # Least uncertainty of a feature, as a fraction of itself, and residual of a feature that only the
 # readings have.
 LEAST, MISSING = 1.0e-3, 10.0
+
+
+class Features(NamedTuple):
+    """Features of a signal; slightly changed data do not change the first ``STEADY`` ones much."""
+
+    mean: float  #: mean
+    low: float  #: tenth percentile
+    high: float  #: ninetieth percentile
+    slow: float  #: standard deviation of the part below the cut-off
+    fast: float  #: standard deviation of the part above it
+    peak: float  #: first peak of the slow part
+    time_of_peak: float  #: its time in s
+    period: float  #: mean time between the peaks of the slow part in s
+    frequency: float  #: frequency in Hz with the largest amplitude
+    decay: float  #: damping ratio by the heights of the peaks
+
+    @classmethod
+    def of(cls, time: Array, values: Array, cutoff: float) -> Features:
+        """Return the features of a signal; NaN for those that it does not have.
+
+        Args:
+            time: evenly spaced times (num_times,) in s.
+            values: signal (num_times,).
+            cutoff: cut-off in Hz of the slow part.
+        """
+        step, size = float(time[1] - time[0]), _PADDING * values.size
+        try:
+            slow = filter_low_pass(values, step, cutoff)
+        except ValueError:
+            slow = values
+        off = slow - slow[0]
+        side = float(np.sign(off[np.abs(off).argmax()]))
+        peaks, _ = find_peaks(side * slow, prominence=PROMINENCE * np.ptp(slow))
+        at, peak = (time[peaks[0]], slow[peaks[0]]) if peaks.size else (np.nan, np.nan)
+        low, high = np.quantile(values, (0.1, 0.9))
+        frequencies, power = periodogram(values, 1.0 / step, "hann", size, "constant")
+        return cls(
+            values.mean(), low, high, slow.std(), (values - slow).std(), peak, at,
+            mean_period(time, slow), float(frequencies[power.argmax()]), decay(time, values),
+        )  # fmt: skip
+
+
+def decay(time: Array, values: Array) -> float:
+    """Return the damping ratio by the heights of the peaks of a signal; NaN without three peaks.
+
+    The logarithms of the heights above the mean of the last half have a straight line.
+    """
+    swing = values - values[values.size // 2 :].mean()
+    least = _LEAST_PEAK * np.array([swing.max(), np.ptp(swing)])
+    peaks, _ = find_peaks(swing, height=least[0], prominence=least[1])
+    if peaks.size < 3:
+        return float("nan")
+    rate = -np.polyfit(time[peaks], np.log(swing[peaks]), 1)[0]
+    return float(rate * np.diff(time[peaks]).mean() / (2.0 * np.pi))
+
+
+def even(time: Array, values: Array) -> tuple[Array, Array]:
+    """Return a signal (..., num_times) at evenly spaced times, with gaps closed linearly."""
+    grid = np.linspace(time[0], time[-1], 1 + round(np.ptp(time) / float(np.median(np.diff(time)))))
+    return grid, interp1d(time, values)(grid)
 
 
 @dataclass(frozen=True)
@@ -89,12 +159,41 @@ class Residuals:
         """The step of differences for a Jacobian, as a fraction of the range of each unknown."""
         return STEP if all(known is None for known in self.features) else COARSE
 
+    @property
+    def of_curves(self) -> Residuals:
+        """The residuals of the curves of all channels, also of chaotic ones."""
+        single = replace(self.experiment, perturbations=(0.0,))
+        return replace(self, experiment=single, features=[None] * len(self.features))
+
+    @property
+    def windows(self) -> Marks:
+        """Growing windows (num_windows, num_readings) of curves up to the end of predictability.
+
+        They end when the sum of the squared changes of a channel has reached a part of the whole.
+        Single values are in all of them.
+        """
+        masks = []
+        for channel, end in zip(self.experiment.channels, self.horizons, strict=True):
+            readings = channel.readings
+            inside = np.full(1, True) if channel.table is None else channel.times <= end
+            grown = np.cumsum(inside * (readings - readings[0]) ** 2)
+            masks.append(inside & (grown <= WINDOWS[:, None] * grown[-1]))
+        return np.hstack(masks)
+
     def __call__(self, values: Array) -> Array:
         """Return the residuals (num_residuals,) at values (num_unknowns,) of the unknowns."""
         return np.concatenate(self.parts(self.experiment.evaluate(self.settings(values))))
 
     def parts(self, evaluated: Sequence[tuple[Channel, Array]]) -> list[Array]:
-        """Return the residuals of each channel from their values."""
+        """Return the residuals of each channel from their values.
+
+        Raises:
+            NumericsError: the model has no value of a channel.
+        """
+        for channel, members in evaluated:
+            if np.isnan(members).any():
+                what = "no equilibrium at t = 0, too few modes, or a joint that turns freely"
+                raise NumericsError(f"the model has no value of {channel.name!r}: {what}")
         plain = [
             (members[0] - channel.readings) / channel.uncertainty
             if known is None
@@ -126,14 +225,15 @@ def shared_errors(
     λ are the eigenvalues of U Uᵀ.
     """
     if known is not None:
-        errors = [np.nan_to_num(_steady_features(channel, members, cutoff).mean(axis=0)) / known[1]]
+        errors = [_steady_features(channel, members, cutoff).mean(axis=0) / known[1]]
     else:
         zero = members[0].mean() if channel.relative else 0.0
         errors = [(members[0] - zero) / channel.uncertainty]
         if channel.table is not None:
             time = channel.times
             errors.append(time * np.gradient(members[0], time) / channel.uncertainty)
-    columns = channel.systematic * np.array(errors).T
+    # Some signals lack some features.
+    columns = channel.systematic * np.nan_to_num(np.array(errors).T)
     directions, sizes, _ = np.linalg.svd(columns, full_matrices=False)
     return directions, 1.0 / np.sqrt(1.0 + sizes**2)
 
@@ -159,7 +259,8 @@ def _noisy_features(channel: Channel, members: Array, cutoff: float) -> tuple[Ar
     target = 2.0 * clean - np.mean(noisy, axis=0)
     scatter = _steady_features(channel, members, cutoff).std(axis=0, ddof=1)
     parts = np.nan_to_num(scatter), np.std(noisy, axis=0, ddof=1), LEAST * np.abs(target)
-    return target, np.linalg.norm(parts, axis=0)
+    uncertainty = np.linalg.norm(parts, axis=0)
+    return target, np.where(uncertainty > 0.0, uncertainty, np.nan)
 
 
 def _feature_residuals(
