@@ -67,7 +67,7 @@ def wear_rows(states: States, model: str, life: Life, tip: float = 0.0) -> Itera
             farthest[station.number] = float(way.max())
             # A station at the tail moves with the inner segment.
             rides = np.isclose(station.x, boom.segments[station.segment].start)
-            x = station.x + rides * farthest[station.number]
+            x = station.x + (farthest[station.number] if rides else 0.0)
             rises[station.number][x] = deepest["above"] - deepest["below"]
     fall = 0.0
     for joint, rise in rises.items():

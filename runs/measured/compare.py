@@ -122,10 +122,8 @@ class Comparison:
             factor, unit = of.channel.measures.factor, of.channel.measures.shown_unit
             end = "" if np.isinf(of.until) else f"\nup to {number(of.until)} s"
             bias = None if of.channel.relative else factor * of.bias
-            alike = None if np.isnan(of.correlation) else of.correlation
-            mark = "✓" if of.agrees else "✗"
-            name = f"{of.channel.name}{end}"
-            rows.append((name, unit, bias, factor * of.rms, alike, of.misfit, mark))
+            mark, name = "✓" if of.agrees else "✗", f"{of.channel.name}{end}"
+            rows.append((name, unit, bias, factor * of.rms, of.correlation, of.misfit, mark))
         notes = [f"caution: {what}" for of in self.agreements for what in of.mistakes]
         notes.append(
             "Bias: mean of model less reading. Misfit: difference over its uncertainty, 1 if "

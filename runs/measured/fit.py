@@ -217,10 +217,11 @@ def fit(
     """
     from scipy.stats import qmc
 
-    lower, span = np.asarray(low, dtype=float), np.subtract(high, low).astype(float)
+    lower, span = np.asarray(low, dtype=float), np.subtract(high, low)
     given = np.clip((np.asarray(start, dtype=float) - lower) / span, 1e-3, 1.0 - 1e-3)
     held = np.full(span.size, True)
-    parts = [np.append(window, held) for window in windows] or [slice(None)]
+    parts: list[Marks | slice] = [np.append(window, held) for window in windows]
+    parts = parts or [slice(None)]
     search = _Search(residuals, lower, span, given, step, parts)
     points = qmc.Sobol(span.size, seed=SEED).random_base2((SCAN * span.size - 1).bit_length())
     scores = list[float]()
@@ -243,8 +244,8 @@ def fit(
     for radius in ZOOM if starts > 1 and 2.0 * best.cost > ROUGH**2 * best.fun.size else ():
         near = np.clip(best.x + radius * (2.0 * points - 1.0), 0.0, 1.0)
         best = min(best, search.descend(min(near, key=search.score)), key=lambda end: end.cost)
-    own, high = slice(-span.size), lower + span
-    return Fit(lower, high, lower + span * best.x, best.fun[own], best.jac[own], costs)
+    own = slice(-span.size)
+    return Fit(lower, lower + span, lower + span * best.x, best.fun[own], best.jac[own], costs)
 
 
 def jacobian(residuals: Residuals, u: Array, step: float = STEP) -> Array:

@@ -19,7 +19,7 @@ from protractile.runs.measured.compare import Comparison
 from protractile.runs.measured.experiment import Experiment
 from protractile.runs.measured.fit import STEP, Fit, fit, jacobian, profile
 from protractile.runs.measured.keys import Channel
-from protractile.runs.measured.residuals import Residuals, reduce_shared, shared_errors
+from protractile.runs.measured.residuals import Residuals, Target
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report.tables import Cell, Table
 
@@ -136,8 +136,9 @@ class Identification:
             size = OF_TAPE if channel.value == 0.0 and channel.measures.unit == "m" else size
             if size > 0.0:
                 known = {"uncertainty": size, "systematic": systematic}
-                errors = shared_errors(channel.model_copy(update=known), values[None])
-                left = self.found.covariance_with(reduce_shared(slope / size, errors))
+                sized = channel.model_copy(update=known)
+                target = Target.of_readings(sized).with_shared_errors(sized, values[None])
+                left = self.found.covariance_with(target.reduce(slope / size))
                 helpful.append((channel.name, np.sqrt(np.diag(left) / alone)))
         return sorted(helpful, key=lambda entry: float(entry[1].min()))
 
@@ -194,8 +195,7 @@ class Identification:
 
     def correlation_table(self) -> Table:
         """Return a table of the correlation between the unknowns."""
-        parts = np.where(np.isnan(self.found.correlation), None, self.found.correlation)
-        rows = [(key, *row) for key, row in zip(self.keys, parts.tolist(), strict=True)]
+        rows = [(key, *row) for key, row in zip(self.keys, self.found.correlation, strict=True)]
         heads = {"": ""} | dict.fromkeys(self.headings, ".2f")
         return Table.of_rows("correlation", "Correlation of the unknowns", heads, rows)
 

@@ -107,6 +107,82 @@ def even(time: Array, values: Array) -> tuple[Array, Array]:
     return grid, interp1d(time, values)(grid)
 
 
+def features_of(channel: Channel, curves: Array, cutoff: float) -> list[Features]:
+    """Return the features of curves (num_curves, num_times) at the times of a channel."""
+    time, rows = even(channel.times, curves)
+    return [Features.of(time, row, cutoff) for row in rows]
+
+
+@dataclass(frozen=True)
+class Target:
+    """What the model of a channel should meet: its readings, or features of chaotic ones."""
+
+    values: Array  #: values (num_values,); NaN for a feature that the readings do not have
+    uncertainty: Array  #: their standard uncertainties (num_values,)
+    cutoff: float | None = None  #: cut-off in Hz of the slow part for features; None for readings
+    #: orthonormal directions (num_values, num_errors) of the errors that all readings share, and
+    #: the part 1/√(1 + λ) of each that is left, with the eigenvalues λ of U Uᵀ; None without errors
+    shared: tuple[Array, Array] | None = None
+
+    @classmethod
+    def of_readings(cls, channel: Channel) -> Target:
+        """Return the readings of a channel."""
+        return cls(channel.readings, np.full(channel.readings.size, channel.uncertainty))
+
+    @classmethod
+    def of_features(cls, channel: Channel, members: Array, cutoff: float) -> Target:
+        """Return the features of the readings without the part of their noise.
+
+        ``members`` (num_motions, num_times) are slightly different motions of the model.
+        """
+        readings, none = channel.readings, np.zeros(0)
+        noise = np.random.default_rng(0).normal(0.0, channel.uncertainty, (NOISES, readings.size))
+        noise[0] = 0.0
+        several = cls(none, none, cutoff)
+        clean, *noisy = several._steady(channel, readings + noise)
+        # The noise of the readings changes a feature as much as the same noise once more.
+        values = 2.0 * clean - np.mean(noisy, axis=0)
+        scatter = np.nan_to_num(several._steady(channel, members).std(axis=0, ddof=1))
+        parts = scatter, np.std(noisy, axis=0, ddof=1), LEAST * np.abs(values)
+        return cls(values, np.linalg.norm(parts, axis=0), cutoff)
+
+    def _steady(self, channel: Channel, curves: Array) -> Array:
+        """Return the features (num_curves, STEADY) that slightly changed data change little."""
+        return np.array(features_of(channel, curves, self.cutoff or np.inf))[:, :STEADY]
+
+    def describe(self, channel: Channel, members: Array) -> Array:
+        """Return the values (num_values,) of a model from its motions (num_motions, num_times)."""
+        steady = members if self.cutoff is None else self._steady(channel, members)
+        return np.asarray(steady[0] if self.cutoff is None else steady.mean(axis=0))
+
+    def residuals(self, channel: Channel, members: Array) -> Array:
+        """Return the residuals (num_values,); 0 for features that the readings do not have."""
+        off = self.describe(channel, members) - self.values
+        if self.cutoff is not None:
+            known = np.isfinite(self.values) & (self.uncertainty > 0.0)
+            size = np.where(known, self.uncertainty, np.inf)
+            return self.reduce(np.where(known, np.nan_to_num(off / size, nan=MISSING), 0.0))
+        return self.reduce(off / self.uncertainty)
+
+    def reduce(self, off: Array) -> Array:
+        """Return differences (num_values, ...) over uncertainties, less those by shared errors."""
+        if self.shared is None:
+            return off
+        directions, left = self.shared
+        return np.asarray(off - ((1.0 - left) * directions) @ (directions.T @ off))
+
+    def with_shared_errors(self, channel: Channel, members: Array) -> Target:
+        """Return the target with the errors that its values share near motions of the model."""
+        curve = channel.table is not None and self.cutoff is None
+        size = self.describe(channel, members)
+        errors = [size - size.mean() if channel.relative and curve else size]
+        errors += [channel.times * np.gradient(size, channel.times)] if curve else []
+        # Some signals lack some features.
+        columns = np.nan_to_num(channel.systematic * np.array(errors) / self.uncertainty)
+        directions, sizes, _ = np.linalg.svd(columns.T, full_matrices=False)
+        return replace(self, shared=(directions, 1.0 / np.sqrt(1.0 + sizes**2)))
+
+
 @dataclass(frozen=True)
 class Residuals:
     """Residuals of all channels as a function of unknowns."""
@@ -115,11 +191,7 @@ class Residuals:
     keys: Sequence[str]  #: keys of the unknowns
     cutoff: float  #: cut-off in Hz of the slow part of a motion
     horizons: Sequence[float]  #: end of predictability in s of each channel; infinite for none
-    #: features of the readings and their uncertainties, of chaotic channels; None for others
-    features: Sequence[tuple[Array, Array] | None]
-    #: directions (num_residuals, num_errors) of the shared errors of each channel, and the part of
-    #: each that is left; empty without shared errors
-    shared: Sequence[tuple[Array, Array]] = ()
+    targets: Sequence[Target]  #: what each channel should meet
 
     @classmethod
     def of(cls, experiment: Experiment, keys: Sequence[str], values: Array) -> Residuals:
@@ -127,28 +199,22 @@ class Residuals:
         settings = dict(zip(keys, map(float, values), strict=True))
         cutoff = CUTOFF_SHARE * experiment.first_frequency(settings)
         several = replace(experiment, perturbations=MEMBERS)
-        computed = several.evaluate(settings)
-        horizons = [
-            np.inf
-            if channel.table is None
-            else float(np.nan_to_num(horizon(both[:2], channel.times, SHARES[0]), nan=np.inf))
-            for channel, both in computed
-        ]
-        features = [
-            None if np.isinf(end) else _noisy_features(channel, members, cutoff)
-            for (channel, members), end in zip(computed, horizons, strict=True)
-        ]
-        chosen = several if any(known is not None for known in features) else experiment
-        return cls(chosen, keys, cutoff, horizons, features)
+        horizons, targets = list[float](), list[Target]()
+        for channel, members in several.evaluate(settings):
+            end = np.nan
+            if channel.table is not None:
+                end = horizon(members[:2], channel.times, SHARES[0])
+            horizons.append(float(np.nan_to_num(end, nan=np.inf)))
+            readings = Target.of_readings(channel)
+            chaotic = np.isfinite(end)
+            targets.append(Target.of_features(channel, members, cutoff) if chaotic else readings)
+        chosen = several if np.isfinite(horizons).any() else experiment
+        return cls(chosen, keys, cutoff, horizons, targets)
 
     def with_shared_errors(self, values: Array) -> Residuals:
         """Return the residuals of generalised least squares near these values of the unknowns."""
-        evaluated = self.experiment.evaluate(self.settings(values))
-        shared = [
-            shared_errors(channel, members, known, self.cutoff)
-            for (channel, members), known in zip(evaluated, self.features, strict=True)
-        ]
-        return replace(self, shared=shared)
+        pairs = zip(self.targets, self._evaluate(values), strict=True)
+        return replace(self, targets=[target.with_shared_errors(*pair) for target, pair in pairs])
 
     def settings(self, values: Array) -> dict[str, float]:
         """Return the values (num_unknowns,) of the unknowns by key."""
@@ -157,17 +223,17 @@ class Residuals:
     @property
     def step(self) -> float:
         """The step of differences for a Jacobian, as a fraction of the range of each unknown."""
-        return STEP if all(known is None for known in self.features) else COARSE
+        return STEP if all(target.cutoff is None for target in self.targets) else COARSE
 
     @property
     def of_curves(self) -> Residuals:
         """The residuals of the curves of all channels, also of chaotic ones."""
         single = replace(self.experiment, perturbations=(0.0,))
-        return replace(self, experiment=single, features=[None] * len(self.features))
+        return replace(self, experiment=single, targets=[*map(Target.of_readings, single.channels)])
 
     @property
-    def windows(self) -> Marks:
-        """Growing windows (num_windows, num_readings) of curves up to the end of predictability.
+    def windows(self) -> list[Marks]:
+        """Growing windows (num_readings,) of curves up to the end of predictability.
 
         They end when the sum of the squared changes of a channel has reached a part of the whole.
         Single values are in all of them.
@@ -178,94 +244,26 @@ class Residuals:
             inside = np.full(1, True) if channel.table is None else channel.times <= end
             grown = np.cumsum(inside * (readings - readings[0]) ** 2)
             masks.append(inside & (grown <= WINDOWS[:, None] * grown[-1]))
-        return np.hstack(masks)
+        return [*np.hstack(masks)]
 
     def __call__(self, values: Array) -> Array:
         """Return the residuals (num_residuals,) at values (num_unknowns,) of the unknowns."""
-        return np.concatenate(self.parts(self.experiment.evaluate(self.settings(values))))
+        return np.concatenate(self.parts(self._evaluate(values)))
 
-    def parts(self, evaluated: Sequence[tuple[Channel, Array]]) -> list[Array]:
-        """Return the residuals of each channel from their values.
+    def _evaluate(self, values: Array) -> list[tuple[Channel, Array]]:
+        """Return the channels with their values.
 
         Raises:
             NumericsError: the model has no value of a channel.
         """
+        evaluated = self.experiment.evaluate(self.settings(values))
         for channel, members in evaluated:
             if np.isnan(members).any():
-                what = "no equilibrium at t = 0, too few modes, or a joint that turns freely"
+                what = "no equilibrium at t = 0, too few modes, or a motion that diverges"
                 raise NumericsError(f"the model has no value of {channel.name!r}: {what}")
-        plain = [
-            (members[0] - channel.readings) / channel.uncertainty
-            if known is None
-            else _feature_residuals(channel, members, self.cutoff, *known)
-            for (channel, members), known in zip(evaluated, self.features, strict=True)
-        ]
-        if not self.shared:
-            return plain
-        return [reduce_shared(off, errors) for off, errors in zip(plain, self.shared, strict=True)]
+        return evaluated
 
-
-def reduce_shared(off: Array, errors: tuple[Array, Array]) -> Array:
-    """Return differences (num_readings, ...) over uncertainties, less those by shared errors.
-
-    ``errors`` are those of :func:`shared_errors`.
-    """
-    directions, left = errors
-    return np.asarray(off - ((1.0 - left) * directions) @ (directions.T @ off))
-
-
-def shared_errors(
-    channel: Channel,
-    members: Array,
-    known: tuple[Array, Array] | None = None,
-    cutoff: float = np.inf,
-) -> tuple[Array, Array]:
-    """Return orthonormal directions of errors that all readings share, and 1/√(1 + λ) of each.
-
-    λ are the eigenvalues of U Uᵀ.
-    """
-    if known is not None:
-        errors = [_steady_features(channel, members, cutoff).mean(axis=0) / known[1]]
-    else:
-        zero = members[0].mean() if channel.relative else 0.0
-        errors = [(members[0] - zero) / channel.uncertainty]
-        if channel.table is not None:
-            time = channel.times
-            errors.append(time * np.gradient(members[0], time) / channel.uncertainty)
-    # Some signals lack some features.
-    columns = channel.systematic * np.nan_to_num(np.array(errors).T)
-    directions, sizes, _ = np.linalg.svd(columns, full_matrices=False)
-    return directions, 1.0 / np.sqrt(1.0 + sizes**2)
-
-
-def features_of(channel: Channel, curves: Array, cutoff: float) -> list[Features]:
-    """Return the features of curves (num_curves, num_times) at the times of a channel."""
-    time, rows = even(channel.times, curves)
-    return [Features.of(time, row, cutoff) for row in rows]
-
-
-def _steady_features(channel: Channel, curves: Array, cutoff: float) -> Array:
-    """Return the features (num_curves, num_features) that slightly changed data change little."""
-    return np.array(features_of(channel, curves, cutoff))[:, :STEADY]
-
-
-def _noisy_features(channel: Channel, members: Array, cutoff: float) -> tuple[Array, Array]:
-    """Return features of readings without the part of their noise, and their uncertainties."""
-    readings = channel.readings
-    noise = np.random.default_rng(0).normal(0.0, channel.uncertainty, (NOISES, readings.size))
-    noise[0] = 0.0
-    clean, *noisy = _steady_features(channel, readings + noise, cutoff)
-    # The noise of the readings changes a feature as much as the same noise once more.
-    target = 2.0 * clean - np.mean(noisy, axis=0)
-    scatter = _steady_features(channel, members, cutoff).std(axis=0, ddof=1)
-    parts = np.nan_to_num(scatter), np.std(noisy, axis=0, ddof=1), LEAST * np.abs(target)
-    uncertainty = np.linalg.norm(parts, axis=0)
-    return target, np.where(uncertainty > 0.0, uncertainty, np.nan)
-
-
-def _feature_residuals(
-    channel: Channel, members: Array, cutoff: float, target: Array, uncertainty: Array
-) -> Array:
-    off = (_steady_features(channel, members, cutoff).mean(axis=0) - target) / uncertainty
-    known = np.isfinite(target) & np.isfinite(uncertainty)
-    return np.where(known, np.nan_to_num(off, nan=MISSING), 0.0)
+    def parts(self, evaluated: Sequence[tuple[Channel, Array]]) -> list[Array]:
+        """Return the residuals of each channel from their values."""
+        pairs = zip(self.targets, evaluated, strict=True)
+        return [target.residuals(*pair) for target, pair in pairs]
