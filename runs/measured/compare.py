@@ -136,7 +136,7 @@ class Comparison:
             )
         heads = {"channel": "", "unit": "", "bias": ".3g", "RMS": ".3g"}
         heads |= {"corre-\nlation": ".3f", "misfit": ".2f", "agrees": ""}
-        return Table.of_rows(title.split()[0].lower(), title, heads, rows, notes)
+        return Table.of_rows(title.lower().replace(" ", "-"), title, heads, rows, notes)
 
     def vibrations(self) -> Table:
         """Return a table of frequency, decay, peak and parts of the vibration of each channel."""

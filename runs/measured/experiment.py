@@ -25,7 +25,6 @@ from protractile.geometry.observation import KINDS
 from protractile.geometry.place import at
 from protractile.geometry.section import EACH_SIDE
 from protractile.geometry.typography import choices
-from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.calibration import CalibratedTable
 from protractile.runs.case.kinds.model import BuildContext
@@ -36,24 +35,8 @@ from protractile.runs.measured.keys import Channel, Keys
 from protractile.runs.pipeline.models import MotionPlan, build, build_on, complete_system
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.ranks import single_rank
+from protractile.runs.sweep import points, variation
 from protractile.runs.sweep.distances import varied_data
-from protractile.runs.sweep.points import (
-    chosen_beam,
-    hold_plates,
-    infer_plates,
-    set_numbers,
-    tables_of,
-)
-from protractile.runs.sweep.variation import (
-    InvalidVariation,
-    Place,
-    Tables,
-    Variation,
-    find,
-    numbers,
-    unit_of,
-    with_size,
-)
 
 if TYPE_CHECKING:
     from protractile.beam_model.calibration import Calibration
@@ -77,8 +60,7 @@ class Computed:
     def read(self, channel: Channel) -> Array:
         """Return the values (num_motions, num_times) at the times of a channel, or a single one.
 
-        NaN without an equilibrium, for a mode that the model lacks, and for a joint that turns
-        freely.
+        NaN without an equilibrium, and for a mode that the model lacks.
         """
         if channel.table is not None:
             times = channel.times
@@ -130,7 +112,7 @@ def free_travel(boom: Boom) -> float:
     """Return the travel of the tip in m between its contacts, of rigid segments.
 
     In each joint the inner segment moves and turns until contacts close. So its travel is the
-    solution of a linear program with two unknowns, and the joints add up. NaN if one turns freely.
+    solution of a linear program with two unknowns, and the joints add up.
     """
     from scipy.optimize import linprog
 
@@ -148,7 +130,7 @@ def free_travel(boom: Boom) -> float:
         for sign in (1.0, -1.0):
             arm = sign * np.array([1.0, boom.tip - origin])
             end = linprog(arm, rows, clearances, bounds=(None, None))
-            travel -= np.nan if end.status else end.fun
+            travel -= end.fun
     return travel
 
 
@@ -173,12 +155,7 @@ class Experiment:
     def channels(self) -> Sequence[Channel]:
         """The channels, without readings outside of the run."""
         assert isinstance(self.case, Keys)
-        channels, end = [], self.case.time.duration
-        for channel in self.case.measured:
-            pairs = zip(channel.table or (), channel.times.tolist(), strict=True)
-            table = tuple(pair for pair, time in pairs if 0.0 <= time <= end) or None
-            channels.append(channel.model_copy(update={"table": table}))
-        return channels
+        return [channel.until(self.case.time.duration) for channel in self.case.measured]
 
     @cached_property
     def _of_beam(self) -> Case:
@@ -191,7 +168,7 @@ class Experiment:
             what = "missing; give a [[measured]] for each channel, with its readings"
             raise BadInput(self.file, "measured", what)
         beams = [model.name for model in self.case.models if not model.meshed]
-        names = chosen_beam(self.case, None if self.model is None else [self.model])
+        names = points.chosen_beam(self.case, None if self.model is None else [self.model])
         if not {*names} & {*beams}:
             wrong = f"{self.model!r} is not a beam of the case; give {choices(beams or ['a beam'])}"
             raise BadInput(self.file, "--model", wrong if self.model else "the case has no beam")
@@ -210,30 +187,32 @@ class Experiment:
         """The case with the beam alone, and with plates as they are."""
         if any(place.shapes_sections for key in self.keys for place in self.places(key)):
             return self._of_beam
-        return hold_plates(self._of_beam, infer_plates(self._of_beam))
+        return points.hold_plates(self._of_beam, points.infer_plates(self._of_beam))
 
     @cached_property
-    def _tables(self) -> Tables:
-        return tables_of(self.whole)
+    def _tables(self) -> variation.Tables:
+        return points.tables_of(self.whole)
 
     @property
-    def _own(self) -> Tables:
+    def _own(self) -> variation.Tables:
         """The numbers of channels that may be unknown."""
         return {_OWN: [channel.model_dump(include={"time_offset"}) for channel in self.channels]}
 
-    def places(self, key: str) -> tuple[Place, ...]:
+    def places(self, key: str) -> tuple[variation.Place, ...]:
         """Return the places of the numbers at a key.
 
         Raises:
             BadInput: the case has no such number.
         """
-        tables = tables_of(self._of_beam) | self._own
+        tables = points.tables_of(self._of_beam) | self._own
         try:
-            return tuple(with_size(place, self._of_beam) for place in find(key, tables))
-        except InvalidVariation as reason:
+            return tuple(
+                variation.with_size(place, self._of_beam) for place in variation.find(key, tables)
+            )
+        except variation.InvalidVariation as reason:
             what = str(reason)
         except (LookupError, AttributeError):
-            known = [place.name for place, _ in numbers(tables)]
+            known = [place.name for place, _ in variation.numbers(tables)]
             near = get_close_matches(key, known) or known
             what = f"is not a number of the case; give {choices(near)}"
         raise BadInput(self.file, key, what)
@@ -245,17 +224,17 @@ class Experiment:
             BadInput: the case has no such number.
         """
         place = self.places(key)[0]
-        known = {found.steps: value for found, value in numbers(self._tables | self._own)}
+        known = {found.steps: value for found, value in variation.numbers(self._tables | self._own)}
         if place.steps not in known:
             what = "is not a number of the case; give it a value, from which the search starts"
             raise BadInput(self.file, key, what)
-        unit, system = unit_of(place, self._of_beam) or "1", self.case.system
+        unit, system = variation.unit_of(place, self._of_beam) or "1", self.case.system
         return system.of(known[place.steps], unit), system.label(unit)
 
-    def variations(self, settings: Settings) -> list[tuple[Variation, float]]:
+    def variations(self, settings: Settings) -> list[tuple[variation.Variation, float]]:
         """Return the numbers of the boom with their places, without those of channels."""
         return [
-            (Variation(key, (value,), self.places(key)), value)
+            (variation.Variation(key, (value,), self.places(key)), value)
             for key, value in settings.items()
             if not key.startswith(_OWN)
         ]
@@ -266,7 +245,7 @@ class Experiment:
         Raises:
             BadInput: a key is unknown, or a number exceeds its limits.
         """
-        case = set_numbers(self.file, self.whole, self._tables, self.variations(settings))
+        case = points.set_numbers(self.file, self.whole, self._tables, self.variations(settings))
         own = self._own
         for key in (key for key in settings if key.startswith(_OWN)):
             for place in self.places(key):
@@ -276,14 +255,6 @@ class Experiment:
             for channel, numbers_of_channel in zip(self.channels, own[_OWN], strict=True)
         )
         return case.model_copy(update={"measured": tuple(channels)})
-
-    def check(self, settings: Settings) -> None:
-        """Check the case with other numbers.
-
-        Raises:
-            BadInput: it is not valid.
-        """
-        case_file.check(self.changed(settings), self.file)
 
     def evaluate(self, settings: Settings) -> list[tuple[Channel, Array]]:
         """Return all channels with their values (num_motions, num_times), of single ones (1, 1).

@@ -26,8 +26,9 @@ Marks = npt.NDArray[np.bool_]
 
 # Step of the differences of the Jacobian, as a fraction of the range of each unknown.
 STEP = 1.0e-3
-# Relative change of χ² and of unknowns at which a search ends, and its largest number of steps.
-TOLERANCE, MOST_STEPS = 1.0e-4, 30
+# Relative change of χ² and of unknowns at which a search ends, also within the first windows, and
+# its largest number of steps.
+TOLERANCE, FIRST, MOST_STEPS = 1.0e-4, 1.0e-2, 30
 # Residual of an unknown at a distance of its range from the start of the first search. It holds
 # unknowns without effect where they are, and moves others by far less than their errors.
 HOLD = 1.0e-2
@@ -39,9 +40,8 @@ SCAN, SEED = 32, 0
 UNDETERMINED = 1.0 / np.sqrt(12.0)
 # Component of such a combination from which an unknown is not determined either.
 PART = 0.3
-# Misfit above which a search goes on around the best end, at distances of these fractions of the
-# ranges: impacts make χ² rough.
-ROUGH, ZOOM = 1.2, (0.03, 0.01, 0.003)
+# Misfit above which the points evolve, since impacts make χ² rough, and number of generations.
+ROUGH, GENERATIONS = 1.2, 30
 # Relative difference of χ² up to which two starts have the same minimum.
 SAME = 1.0e-2
 # Increase of χ² over s² at the ends of an interval of 95 %.
@@ -172,10 +172,13 @@ class _Search:
 
         found, _ = OptimizeResult(x=begin), self(begin)
         for window in self.windows:
+            limits = dict.fromkeys(
+                ("ftol", "xtol", "gtol"), TOLERANCE if window is self.windows[-1] else FIRST
+            )
             found = least_squares(
                 lambda u, window=window: self.attempt(u)[window], found.x,
-                lambda u, window=window: jacobian(self, u, self.step)[window], bounds=(0.0, 1.0),
-                ftol=TOLERANCE, xtol=TOLERANCE, gtol=TOLERANCE, max_nfev=MOST_STEPS,
+                lambda u, window=window: jacobian(self, u, self.step)[window],
+                bounds=(0.0, 1.0), max_nfev=MOST_STEPS, **limits,
             )  # fmt: skip
         return found
 
@@ -194,7 +197,8 @@ def fit(
 
     Residuals of a vibration have many minima, one for each period by which it is late, but those of
     its first part have few. So each search fits growing windows of the readings. All but the first
-    start from the quasi-random points with the smallest product of χ² over all windows.
+    start from the quasi-random points with the smallest product of χ² over all windows. If the
+    misfit remains large, the best points evolve (differential evolution, Storn and Price 1997).
 
     >>> x = np.linspace(0.0, 1.0, 50)
     >>> line = fit(lambda p: (p[0] + p[1] * x - (2.0 + 3.0 * x)) / 0.1, [0, 0], [9, 9], [1, 1])
@@ -209,12 +213,13 @@ def fit(
         starts: number of searches.
         report: callback that receives the completed fraction, 0 to 1.
         step: step of the differences of the Jacobian, as a fraction of the range of each unknown.
-        windows: True (num_readings,) for the readings of each window, of which the last has all;
-            all readings at once unless given.
+        windows: True (num_readings,) for the readings of each window, of which the last one has
+            all that are fitted; all readings at once unless given.
 
     Raises:
         NumericsError: the residuals cannot be computed at any start.
     """
+    from scipy.optimize import differential_evolution
     from scipy.stats import qmc
 
     lower, span = np.asarray(low, dtype=float), np.subtract(high, low)
@@ -240,10 +245,14 @@ def fit(
         what = f"the model cannot be computed between the bounds: {search.failure}"
         raise NumericsError(what)
     best = min(ends, key=lambda end: float(end.cost))
-    search.windows = parts[-1:]
-    for radius in ZOOM if starts > 1 and 2.0 * best.cost > ROUGH**2 * best.fun.size else ():
-        near = np.clip(best.x + radius * (2.0 * points - 1.0), 0.0, 1.0)
-        best = min(best, search.descend(min(near, key=search.score)), key=lambda end: end.cost)
+    if starts > 1 and 2.0 * best.cost > ROUGH**2 * best.fun.size:
+        bred = points[np.argsort(scores)[: len(points) // 4]]
+        evolved = differential_evolution(
+            search.score, [(0.0, 1.0)] * span.size, init=bred, x0=best.x, maxiter=GENERATIONS,
+            polish=False, seed=SEED,
+        )  # fmt: skip
+        search.windows = parts[-1:]
+        best = min(best, search.descend(evolved.x), key=lambda end: end.cost)
     own = slice(-span.size)
     return Fit(lower, lower + span, lower + span * best.x, best.fun[own], best.jac[own], costs)
 

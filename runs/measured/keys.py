@@ -133,6 +133,12 @@ class Channel(CaseTable):
         pairs = self.table or ((0.0, self.value or 0.0),)
         return np.array([reading for _, reading in pairs])
 
+    def until(self, end: float) -> Channel:
+        """Return the channel with its readings from 0 to ``end`` in s of the run."""
+        pairs = zip(self.table or (), self.times.tolist(), strict=True)
+        table = tuple(pair for pair, time in pairs if 0.0 <= time <= end) or None
+        return self.model_copy(update={"table": table})
+
     def declared_units(self, key: str) -> tuple[str, ...]:
         unit = self.measures.unit
         if key == "table":
@@ -179,7 +185,7 @@ def check(case: Case, boom: Boom) -> None:
     names, end = [channel.name for channel in case.measured], case.time.duration
     for number, channel in enumerate(case.measured):
         where, quantity, segment = f"measured[{number + 1}]", channel.quantity, None
-        inside = (channel.times >= 0.0) & (channel.times <= end)
+        inside = channel.until(end).times
         try:
             if channel.placed:
                 (place,) = replace(boom, observations=(channel.output,)).observations
@@ -189,7 +195,7 @@ def check(case: Case, boom: Boom) -> None:
         rules = (
             (channel.name in names[:number], "name",
              f"{channel.name!r} is the name of another channel already; give each its own"),
-            (channel.table is not None and inside.sum() < 2, "time_offset",
+            (channel.table is not None and inside.size < 2, "time_offset",
              f"has no two readings from 0 to {end:g} s of the run"),
             (quantity == "cylinder_force" and channel.number > len(boom.cylinders), "number",
              f"the boom has {len(boom.cylinders)} cylinders"),

@@ -99,7 +99,7 @@ def write_identification(
     ]
     lead = [f"Identified from {found.residuals.size} readings or features of readings."]
     lead += [f"The readings do not determine {join_words(loose)}."] if loose else []
-    tables = [*identification.tables, identification.before.table("Before")]
+    tables = [*identification.tables, identification.before.table("Model and readings before")]
     title = f"{case.title}: identified from readings"
     write_pictures(figures, folder)
     write_atomically(folder / REPORT, figure_page(title, figures, tables, lead))

@@ -178,7 +178,8 @@ class Target:
         errors = [size - size.mean() if channel.relative and curve else size]
         errors += [channel.times * np.gradient(size, channel.times)] if curve else []
         # Some signals lack some features.
-        columns = np.nan_to_num(channel.systematic * np.array(errors) / self.uncertainty)
+        with np.errstate(all="ignore"):
+            columns = np.nan_to_num(channel.systematic * np.array(errors) / self.uncertainty)
         directions, sizes, _ = np.linalg.svd(columns.T, full_matrices=False)
         return replace(self, shared=(directions, 1.0 / np.sqrt(1.0 + sizes**2)))
 
