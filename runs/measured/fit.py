@@ -11,6 +11,7 @@ marked.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -59,7 +60,7 @@ class Fit:
     values: Array  #: values (num_unknowns,) of the unknowns
     residuals: Array  #: (model − reading)/uncertainty (num_readings,)
     jacobian: Array  #: derivatives (num_readings, num_unknowns) by unknowns over their ranges
-    #: χ² of each start, NaN for one that failed
+    #: χ² of each start, then of evolved points if any; NaN for a start that failed
     starts: Array
 
     @cached_property
@@ -252,7 +253,10 @@ def fit(
             polish=False, seed=SEED,
         )  # fmt: skip
         search.windows = parts[-1:]
-        best = min(best, search.descend(evolved.x), key=lambda end: end.cost)
+        with suppress(*NUMERICAL_ERRORS):
+            ends.append(search.descend(evolved.x))
+            costs = np.append(costs, 2.0 * ends[-1].cost)
+        best = min(ends, key=lambda end: float(end.cost))
     own = slice(-span.size)
     return Fit(lower, lower + span, lower + span * best.x, best.fun[own], best.jac[own], costs)
 
