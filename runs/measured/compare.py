@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from scipy.signal import correlate, correlation_lags
+from scipy.signal import argrelmin, correlate, correlation_lags
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import TO_PERCENT, number
@@ -26,8 +26,11 @@ if TYPE_CHECKING:
 # uncertainty of 95 % (Guide to the Expression of Uncertainty in Measurement, 2008).
 AGREES = 2.0
 # Ratios of units that are often confused, besides 1000, by SI unit; ratio of sizes from which they
-# count as equal; mean square difference at another time over that without a time offset.
-_FACTORS, _NEAR, _BETTER = {"rad": 57.3, "m/s2": 9.81, "1": 1.0e6}, 0.7, 0.1
+# count as equal.
+_FACTORS, _NEAR = {"rad": 57.3, "m/s2": 9.81, "1": 1.0e6}, 0.7
+# Mean square difference at another time over that without a time offset, below which the clock may
+# be wrong; ratio up to which the differences at two times count as equal.
+_BETTER, _ALIKE = 0.1, 4.0
 
 
 class Agreement(NamedTuple):
@@ -179,13 +182,15 @@ def likely_mistakes(channel: Channel, both: Array) -> Iterator[str]:
     time, curves = even(channel.times[: both.shape[1]], both)
     readings, model = curves
     ones, lags = np.ones(time.size), correlation_lags(time.size, time.size)
-    # Mean square differences over the common times.
-    off = (
-        correlate(model**2, ones) + correlate(ones, readings**2) - 2.0 * correlate(model, readings)
-    )
-    off = np.where(2 * np.abs(lags) <= time.size, off / correlate(ones, ones), np.inf)
-    lag = float(lags[off.argmin()] * (time[1] - time[0]))
-    if off.min() < _BETTER * off[lags == 0][0]:
+    # Mean square differences over the common times, of at least half the record.
+    squares = correlate(model**2, ones) + correlate(ones, readings**2)
+    off = (squares - 2.0 * correlate(model, readings)) / correlate(ones, ones)
+    off = np.where(2 * np.abs(lags) <= time.size, off, np.inf)
+    # A model with another frequency fits about as well some periods later.
+    least = np.intersect1d(argrelmin(off)[0], np.flatnonzero(off <= _ALIKE * off.min()))
+    near = least[np.abs(lags[least]).argmin()] if least.size else off.argmin()
+    lag = float(lags[near] * (time[1] - time[0]))
+    if off[near] < _BETTER * off[lags == 0][0]:
         yield (
             f"{name}: the readings fit the model {number(abs(lag))} s "
             f"{'later' if lag > 0.0 else 'earlier'}; give time_offset = "
