@@ -76,9 +76,12 @@ def evaluate_rest(
 
 
 def evaluate_motion(
-    states: States, name: str, life: Life, play: bool = True
+    states: States, name: str, life: Life, play: bool = True, tip: float = 0.0
 ) -> tuple[list[Row], list[Curve]]:
-    """Return extremes, fatigue damage, wear and envelopes of a motion."""
+    """Return extremes, fatigue damage, wear and envelopes of a motion.
+
+    ``tip`` is the largest static deflection of the tip in m, to which wear adds.
+    """
     rows, curves = [*extremes(measure_boom(states), name, MOTION, play)], list[Curve]()
     for number, (segment, line) in enumerate(
         zip(states.boom.segments, states.model.lines, strict=True)
@@ -90,7 +93,7 @@ def evaluate_motion(
         if HAS_RAINFLOW:
             stresses = [measurement for measurement in measured if measurement.quantity == "stress"]
             rows += life_rows(stresses, name, play, life)
-    rows += wear_rows(states, name, life) if play else ()
+    rows += wear_rows(states, name, life, tip) if play else ()
     if states.recorded is not None and "rope_force_peak" in states.recorded:
         weight = states.recorded["rope_force_peak"].attrs["weight"]
         rows.append(Row(name, REST, play, "rope_force", "rope", "", weight))
@@ -113,5 +116,7 @@ def evaluate(
     rests = States.of(model, equilibria(model.system, instants(model.system, duration)))
     extended = States.of(model, extended_equilibria(model.system, duration))
     rows, curves, first = evaluate_rest(name, rests, extended, panels)
-    more_rows, more_curves = evaluate_motion(States.in_motion(model, motion), name, life)
+    tip = max((abs(row.value) for row in rows if row.quantity == "tip"), default=0.0)
+    moving = States.in_motion(model, motion)
+    more_rows, more_curves = evaluate_motion(moving, name, life, tip=tip)
     return [*rows, *more_rows], [*curves, *more_curves], first

@@ -97,6 +97,7 @@ class Life(NamedTuple):
     partial_factor: float = 1.0  #: factor of stress ranges
     repeats: float = 1.0  #: number of runs in the service life
     wear: float | None = None  #: coefficient of wear of the pads in mm³/(N m); None without wear
+    tip: float | None = None  #: limit of the tip deflection at rest with worn pads in m; None: none
 
 
 def life_rows(stresses: Sequence[Measured], model: str, play: bool, life: Life) -> Iterator[Row]:

@@ -108,8 +108,12 @@ MEASURED: Mapping[str, Quantity] = {
         _unswept(
             "wear", "m", "wear of a pad", shown="mm", limit="the thickness of the pad", short="wear"
         ),
-        _unswept("wear_life", "1", "runs until a pad is worn through"),
+        _unswept("wear_life", "1", "runs until wear reaches its limit"),
         _unswept("worn_play", "m", "play after wear", shown="mm"),
+        _unswept(
+            "worn_tip", "m", "static tip deflection after wear", shown="mm",
+            limit="the limit of the tip at rest", short="wear",
+        ),
         _unswept("frequency", "Hz", "natural frequency"),
         _unswept("plate_buckling", "1", "plate buckling factor, panel formulas", lowest=True),
         _unswept("cycles", "1", "stress cycles of a run"),

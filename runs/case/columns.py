@@ -14,11 +14,13 @@ import re
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
+from difflib import get_close_matches
 from math import pi
 from pathlib import Path
 
 import numpy as np
 
+from protractile.geometry.typography import choices
 from protractile.geometry.units import Unit
 from protractile.runs.case.limits import MOST_TIMES
 from protractile.runs.case.user_files import read_any_text
@@ -261,7 +263,11 @@ def _choose_columns(
     else:
         indices = []
         for name, _ in map(_split_heading, names):
-            if (count := column_names.count(name)) != 1:
+            if name not in column_names:
+                near = get_close_matches(name, column_names) or column_names
+                what = f"has no column {shorten(name)!r} in line {heading.line}"
+                raise _FileError(what, f"give {choices(near)}")
+            if (count := column_names.count(name)) > 1:
                 what = f"has {count} columns {shorten(name)!r} in line {heading.line}"
                 raise _FileError(what, "name columns that it has once")
             indices.append(column_names.index(name))

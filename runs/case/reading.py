@@ -25,6 +25,7 @@ from protractile.geometry.boom import Boom, BoomError
 from protractile.geometry.fields import describe, is_number
 from protractile.geometry.typography import choices
 from protractile.geometry.units import System, scale
+from protractile.runs import clients
 from protractile.runs.case.build import build_boom, check_ensemble_data, check_names
 from protractile.runs.case.columns import FileColumn, read_pairs
 from protractile.runs.case.combinations import check_combinations
@@ -124,6 +125,7 @@ def check(case: Case, path: str) -> CheckedCase:
         with translated_errors(path):
             _check_time(case.time)
             _check_boom(checked)
+            clients.check(case, checked.boom)
     except BadInput as fault:
         raise BadInput(fault.file, fault.key, case.system.convert(fault.what)) from None
     except ArithmeticError as error:

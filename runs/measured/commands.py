@@ -3,14 +3,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from protractile.runs import options
 from protractile.runs.process import ending, ranks, terminal
 from protractile.runs.process.terminal import Terminal, printable
+
+if TYPE_CHECKING:
+    from protractile.runs.report.tables import Table
 
 Model = Annotated[
     str | None,
@@ -41,10 +45,7 @@ def compare(
     folder = prepare(out or f"runs/out/{Path(case).stem}-compared", case, page.CSV)
     with atomic_folder(folder) as part:
         page.write_comparison(comparison, part)
-    print(printable(str(folder / page.REPORT)))
-    for table in (comparison.table(), comparison.vibrations()):
-        if table.rows:
-            table.show(Terminal())
+    _show(folder / page.REPORT, comparison.tables)
     return 0
 
 
@@ -82,7 +83,7 @@ def identify(
     from protractile.runs.case import reading
     from protractile.runs.folder.files import atomic_folder
     from protractile.runs.measured import identify as identifying
-    from protractile.runs.measured import page, predict
+    from protractile.runs.measured import page
     from protractile.runs.pipeline.results import prepare
     from protractile.runs.sweep.sampling import check_count
 
@@ -100,14 +101,16 @@ def identify(
         with atomic_folder(folder) as part:
             page.write_identification(found, part, [*unknowns] if profile else ())
         if samples is not None:
-            predict.predict(found, samples, folder, report_progress)
-    print(printable(str(folder / page.REPORT)))
-    tables = [found.table(), found.after.table(), found.helpful_table()]
-    if len(unknowns) > 1:
-        tables.insert(1, found.correlation_table())
+            page.predict(found, samples, folder, report_progress)
+    _show(folder / page.REPORT, found.tables)
+    return 0
+
+
+def _show(report: Path, tables: Sequence[Table]) -> None:
+    """Print the path of a report and its tables."""
+    print(printable(str(report)))
     for table in tables:
         table.show(Terminal())
-    return 0
 
 
 COMMANDS = (compare, identify)

@@ -11,12 +11,13 @@ marked.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from contextlib import suppress
+from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import count
 
 import numpy as np
 import numpy.typing as npt
+from scipy.optimize import OptimizeResult
 
 from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
 from protractile.geometry.arrays import Array
@@ -26,18 +27,22 @@ Marks = npt.NDArray[np.bool_]
 
 # Step of the differences of the Jacobian, as a fraction of the range of each unknown.
 STEP = 1.0e-3
-# Relative change of χ² and of unknowns at which a search ends, and its largest number of steps.
-TOLERANCE, MOST_STEPS = 1.0e-4, 30
+# Relative change of χ² and of unknowns at which a search ends, also within the first windows, and
+# its largest number of steps.
+TOLERANCE, FIRST, MOST_STEPS = 1.0e-4, 1.0e-2, 30
 # Residual of an unknown at a distance of its range from the start of the first search. It holds
 # unknowns without effect where they are, and moves others by far less than their errors.
 HOLD = 1.0e-2
-# Seed of the starts, by which all runs have the same.
-SEED = 0
+# Number of points for each unknown among which starts are chosen, and their seed, by which all runs
+# have the same.
+SCAN, SEED = 32, 0
 # Standard error of a combination of unknowns, over their ranges, from which the readings do not
 # determine it: that of a uniform distribution over the bounds.
 UNDETERMINED = 1.0 / np.sqrt(12.0)
 # Component of such a combination from which an unknown is not determined either.
 PART = 0.3
+# Misfit above which the points evolve, since impacts make χ² rough, and number of generations.
+ROUGH, GENERATIONS = 1.2, 30
 # Relative difference of χ² up to which two starts have the same minimum.
 SAME = 1.0e-2
 # Increase of χ² over s² at the ends of an interval of 95 %.
@@ -55,7 +60,7 @@ class Fit:
     values: Array  #: values (num_unknowns,) of the unknowns
     residuals: Array  #: (model − reading)/uncertainty (num_readings,)
     jacobian: Array  #: derivatives (num_readings, num_unknowns) by unknowns over their ranges
-    #: χ² of each start, NaN for one that failed
+    #: χ² of each start, then of evolved points if any; NaN for a start that failed
     starts: Array
 
     @cached_property
@@ -122,6 +127,63 @@ class Fit:
         return np.asarray(scale**2 * np.outer(span, span) * np.linalg.inv(rows.T @ rows))
 
 
+@dataclass
+class _Search:
+    """Residuals of unknowns over their ranges, and their least squares within growing windows."""
+
+    residuals: Residuals
+    low: Array  #: lower bounds (num_unknowns,)
+    span: Array  #: ranges (num_unknowns,)
+    given: Array  #: unknowns (num_unknowns,) of the first search, from 0 to 1
+    step: float  #: step of the differences of the Jacobian
+    windows: Sequence[Marks | slice]  #: readings of each window
+    failure: str = ""  #: reason why the last point could not be computed
+    _last: dict[bytes, Array] = field(default_factory=dict)
+
+    def __call__(self, u: Array) -> Array:
+        """Return the residuals at ``u``, then those that hold unknowns without effect."""
+        # A search asks for the residuals of a point, then for its derivatives.
+        if (point := u.tobytes()) not in self._last:
+            off = np.append(self.residuals(self.low + self.span * u), HOLD * (u - self.given))
+            self._last = {point: off}
+        return self._last[point]
+
+    def attempt(self, u: Array) -> Array:
+        """Return the residuals; at a point that cannot be computed they are infinite."""
+        try:
+            return self(u)
+        except NUMERICAL_ERRORS as error:
+            self.failure = str(error)
+            return np.full_like(next(iter(self._last.values()), self.given), np.inf)
+
+    def score(self, u: Array) -> float:
+        """Return the mean logarithm of χ² over the windows; infinite for a point that fails."""
+        off = self.attempt(u)
+        if not np.isfinite(off).all():
+            return np.inf
+        return float(np.mean([np.log(off[window] @ off[window]) for window in self.windows]))
+
+    def descend(self, begin: Array) -> OptimizeResult:
+        """Return the least squares of the last window, from those of the windows before.
+
+        Raises:
+            NumericsError: the residuals cannot be computed at ``begin`` or beside a later point.
+        """
+        from scipy.optimize import least_squares
+
+        found, _ = OptimizeResult(x=begin), self(begin)
+        for window in self.windows:
+            limits = dict.fromkeys(
+                ("ftol", "xtol", "gtol"), TOLERANCE if window is self.windows[-1] else FIRST
+            )
+            found = least_squares(
+                lambda u, window=window: self.attempt(u)[window], found.x,
+                lambda u, window=window: jacobian(self, u, self.step)[window],
+                bounds=(0.0, 1.0), max_nfev=MOST_STEPS, **limits,
+            )  # fmt: skip
+        return found
+
+
 def fit(
     residuals: Residuals,
     low: Sequence[float] | Array,
@@ -130,8 +192,14 @@ def fit(
     starts: int = 1,
     report: Callable[[float], None] = lambda part: None,
     step: float = STEP,
+    windows: Sequence[Marks] = (),
 ) -> Fit:
     """Return the unknowns within bounds that have the smallest sum of squared residuals.
+
+    Residuals of a vibration have many minima, one for each period by which it is late, but those of
+    its first part have few. So each search fits growing windows of the readings. All but the first
+    start from the quasi-random points with the smallest product of χ² over all windows. If the
+    misfit remains large, the best points evolve (differential evolution, Storn and Price 1997).
 
     >>> x = np.linspace(0.0, 1.0, 50)
     >>> line = fit(lambda p: (p[0] + p[1] * x - (2.0 + 3.0 * x)) / 0.1, [0, 0], [9, 9], [1, 1])
@@ -143,58 +211,54 @@ def fit(
             (num_unknowns,).
         low, high: bounds (num_unknowns,).
         start: values (num_unknowns,) from which the first search starts.
-        starts: number of searches; all but the first start from quasi-random points.
+        starts: number of searches.
         report: callback that receives the completed fraction, 0 to 1.
         step: step of the differences of the Jacobian, as a fraction of the range of each unknown.
+        windows: True (num_readings,) for the readings of each window, of which the last one has
+            all that are fitted; all readings at once unless given.
 
     Raises:
         NumericsError: the residuals cannot be computed at any start.
     """
-    from scipy.optimize import least_squares
+    from scipy.optimize import differential_evolution
     from scipy.stats import qmc
 
-    lower, upper = np.asarray(low, dtype=float), np.asarray(high, dtype=float)
-    span = upper - lower
-
-    begins = [np.clip((np.asarray(start, dtype=float) - lower) / span, 1e-3, 1.0 - 1e-3)]
-
-    last: dict[bytes, Array] = {}
-
-    def scaled(u: Array) -> Array:
-        # The search asks for the residuals of a point, then for its derivatives.
-        if (point := u.tobytes()) not in last:
-            last.clear()
-            last[point] = np.append(residuals(lower + span * u), HOLD * (u - begins[0]))
-        return last[point]
-
-    def attempt(u: Array) -> Array:
-        # A trial point that cannot be computed is rejected by its infinite residuals.
+    lower, span = np.asarray(low, dtype=float), np.subtract(high, low)
+    given = np.clip((np.asarray(start, dtype=float) - lower) / span, 1e-3, 1.0 - 1e-3)
+    held = np.full(span.size, True)
+    parts: list[Marks | slice] = [np.append(window, held) for window in windows]
+    parts = parts or [slice(None)]
+    search = _Search(residuals, lower, span, given, step, parts)
+    points = qmc.Sobol(span.size, seed=SEED).random_base2((SCAN * span.size - 1).bit_length())
+    scores = list[float]()
+    for number, point in enumerate(points if starts > 1 else (), start=1):
+        scores.append(search.score(point))
+        report(0.5 * number / len(points))
+    ends, costs = [], np.full(starts, np.nan)
+    for number, begin in enumerate([given, *points[np.argsort(scores)[: starts - 1]]]):
         try:
-            return scaled(u)
-        except NUMERICAL_ERRORS:
-            return np.full_like(first, np.inf)
-
-    if starts > 1:
-        points = qmc.Sobol(span.size, seed=SEED).random_base2(max(1, (starts - 2).bit_length()))
-        begins += [*points[: starts - 1]]
-    best, costs, failure = None, np.full(starts, np.nan), ""
-    for number, begin in zip(count(), begins):
-        try:
-            first = scaled(begin)
-            found = least_squares(
-                attempt, begin, lambda u: jacobian(scaled, u, step), bounds=(0.0, 1.0),
-                ftol=TOLERANCE, xtol=TOLERANCE, gtol=TOLERANCE, max_nfev=MOST_STEPS,
-            )  # fmt: skip
-            costs[number] = 2.0 * found.cost
-            if best is None or found.cost < best.cost:
-                best = found
+            ends.append(search.descend(begin))
+            costs[number] = 2.0 * ends[-1].cost
         except NUMERICAL_ERRORS as error:
-            failure = str(error)
-        report((number + 1) / starts)
-    if best is None:
-        raise NumericsError(f"the model cannot be computed between the bounds: {failure}")
+            search.failure = str(error)
+        report(0.5 + 0.5 * (number + 1) / starts)
+    if not ends:
+        what = f"the model cannot be computed between the bounds: {search.failure}"
+        raise NumericsError(what)
+    best = min(ends, key=lambda end: float(end.cost))
+    if starts > 1 and 2.0 * best.cost > ROUGH**2 * best.fun.size:
+        bred = points[np.argsort(scores)[: len(points) // 4]]
+        evolved = differential_evolution(
+            search.score, [(0.0, 1.0)] * span.size, init=bred, x0=best.x, maxiter=GENERATIONS,
+            polish=False, seed=SEED,
+        )  # fmt: skip
+        search.windows = parts[-1:]
+        with suppress(*NUMERICAL_ERRORS):
+            ends.append(search.descend(evolved.x))
+            costs = np.append(costs, 2.0 * ends[-1].cost)
+        best = min(ends, key=lambda end: float(end.cost))
     own = slice(-span.size)
-    return Fit(lower, upper, lower + span * best.x, best.fun[own], best.jac[own], costs)
+    return Fit(lower, lower + span, lower + span * best.x, best.fun[own], best.jac[own], costs)
 
 
 def jacobian(residuals: Residuals, u: Array, step: float = STEP) -> Array:
@@ -202,9 +266,10 @@ def jacobian(residuals: Residuals, u: Array, step: float = STEP) -> Array:
 
     They point to the middle of the range.
     """
-    here, steps = residuals(u), np.where(u > 0.5, -step, step)
-    moved = (residuals(u + change) for change in np.diag(steps))
-    return np.asarray(np.array([there - here for there in moved]).T / steps)
+    from scipy.optimize import approx_fprime
+
+    slopes = approx_fprime(u, residuals, np.where(u > 0.5, -step, step))
+    return np.asarray(slopes).reshape(-1, u.size)
 
 
 def profile(residuals: Residuals, found: Fit, number: int) -> tuple[Array, Array]:
@@ -216,20 +281,13 @@ def profile(residuals: Residuals, found: Fit, number: int) -> tuple[Array, Array
     reach = FARTHEST * found.errors[number] * np.linspace(-1.0, 1.0, PROFILE)
     within = found.low[number], found.high[number]
     values = np.unique(np.clip(found.values[number] + reach, *within))
-    others = np.arange(found.values.size) != number
+    low, high, others = (np.delete(x, number) for x in (found.low, found.high, found.values))
     increases = []
     for value in values:
-        whole = np.where(others, found.values, value)
 
-        def rest(part: Array, whole: Array = whole) -> Array:
-            whole = whole.copy()
-            whole[others] = part
-            return residuals(whole)
+        def rest(part: Array, value: float = value) -> Array:
+            return residuals(np.insert(part, number, value))
 
-        if others.any():
-            refit = fit(rest, found.low[others], found.high[others], found.values[others])
-            left = refit.residuals
-        else:
-            left = residuals(whole)
+        left = fit(rest, low, high, others).residuals if others.size else rest(others)
         increases.append(left @ left - found.residuals @ found.residuals)
     return values, np.array(increases) / max(1.0, found.misfit) ** 2

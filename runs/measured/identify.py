@@ -13,13 +13,14 @@ import numpy as np
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import number, percent
+from protractile.runs.case import reading
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
-from protractile.runs.measured.compare import Comparison
+from protractile.runs.measured.compare import AGREES, Comparison
 from protractile.runs.measured.experiment import Experiment
 from protractile.runs.measured.fit import STEP, Fit, fit, jacobian, profile
 from protractile.runs.measured.keys import Channel
-from protractile.runs.measured.residuals import Residuals, reduce_shared, shared_errors
+from protractile.runs.measured.residuals import Residuals, Target
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report.tables import Cell, Table
 
@@ -49,10 +50,6 @@ def parse(text: str, file: str) -> tuple[str, tuple[float, float]]:
         what = "not understood; give KEY=LOW:HIGH, such as joint.play=0:0.03"
         raise BadInput(file, f"--unknown {text}", what) from None
     return key, (low, high)
-
-
-# Misfit above which the model is wrong, or the minimum is not the right one.
-_WRONG = 2.0
 
 
 @dataclass(frozen=True)
@@ -109,7 +106,7 @@ class Identification:
 
     @cached_property
     def helpful(self) -> list[tuple[str, Array]]:
-        """Possible channels with the errors that they leave, as fractions of the errors without.
+        """Channels that would help, and the errors that they leave as fractions of those without.
 
         The first ones help most.
         """
@@ -136,10 +133,19 @@ class Identification:
             size = OF_TAPE if channel.value == 0.0 and channel.measures.unit == "m" else size
             if size > 0.0:
                 known = {"uncertainty": size, "systematic": systematic}
-                errors = shared_errors(channel.model_copy(update=known), values[None])
-                left = self.found.covariance_with(reduce_shared(slope / size, errors))
+                sized = channel.model_copy(update=known)
+                target = Target.of_readings(sized).with_shared_errors(sized, values[None])
+                left = self.found.covariance_with(target.reduce(slope / size))
                 helpful.append((channel.name, np.sqrt(np.diag(left) / alone)))
+        helpful = [entry for entry in helpful if entry[1].min() < HELPS]
         return sorted(helpful, key=lambda entry: float(entry[1].min()))
+
+    @property
+    def tables(self) -> list[Table]:
+        """The tables of unknowns, their correlation, the fit, and what else to measure."""
+        several = [self.correlation_table()] if len(self.keys) > 1 else []
+        further = [self.helpful_table()] if self.helpful else []
+        return [self.table(), *several, self.after.table(), *further]
 
     @property
     def headings(self) -> Sequence[str]:
@@ -164,7 +170,7 @@ class Identification:
         ]
         if found.misfit > 1.0:
             notes.append("The standard errors are already multiplied by this factor.")
-        if found.misfit > _WRONG:
+        if found.misfit > AGREES:
             notes.append(
                 "The model does not explain the readings: do not trust these numbers. Identify "
                 "from the tip alone first, from more starts, or with further unknowns."
@@ -174,61 +180,55 @@ class Identification:
                 "The errors are those of independent readings: systematic says how far readings "
                 "and model share an error."
             )
+        for name, ratios in self.helpful[:1]:
+            left = f"{percent(ratios.min(), 2)} of the error of {self.keys[int(ratios.argmin())]}"
+            notes.append(f"One more channel, {name}, would leave {left}.")
+        if not self.helpful:
+            notes.append(f"No other channel would leave less than {percent(HELPS)} of an error.")
         heads = {"unknown": "", "unit": ""} | dict.fromkeys(("case", "identified"), ".4g")
         heads |= dict.fromkeys(("standard\nerror", "in %"), ".2g") | {"": ""}
         return Table.of_rows("unknowns", "Identified numbers", heads, rows, notes)
 
     def correlation_table(self) -> Table:
         """Return a table of the correlation between the unknowns."""
-        rows = [
-            (key, *(None if np.isnan(part) else float(part) for part in row))
-            for key, row in zip(self.keys, self.found.correlation, strict=True)
-        ]
+        rows = [(key, *row) for key, row in zip(self.keys, self.found.correlation, strict=True)]
         heads = {"": ""} | dict.fromkeys(self.headings, ".2f")
         return Table.of_rows("correlation", "Correlation of the unknowns", heads, rows)
 
     def helpful_table(self) -> Table:
         """Return a table of the channels that would determine the unknowns better."""
-        rows = list[tuple[Cell, ...]]()
-        for name, ratios in self.helpful[:MOST_ROWS]:
-            if ratios.min() < HELPS:
-                rows.append((name, *map(float, ratios)))
+        rows: list[tuple[Cell, ...]] = [
+            (name, *of.tolist()) for name, of in self.helpful[:MOST_ROWS]
+        ]
         notes = [
             f"Standard error of each unknown with {READINGS} readings of one more channel over the "
             f"error without it. The uncertainty of a reading is {percent(UNCERTAINTY)} of the "
             "range, of a tape measure 1 mm."
         ]
-        if rows:
-            name, ratios = self.helpful[0]
-            best = int(np.argmin(ratios))
-            left = f"{percent(ratios[best], 2)} of the error of {self.keys[best]}"
-            notes.insert(0, f"One more channel, {name}, would leave {left}.")
         heads = {"one more channel": ""} | dict.fromkeys(self.headings, ".2f")
         return Table.of_rows("helpful", "What else to measure", heads, rows, notes)
 
 
 def _possible_channels(case: Case, relative: bool) -> Iterator[Channel]:
     """Yield channels that could be measured: over time, ``relative`` or not, and single values."""
-    times = np.linspace(0.0, case.time.duration, READINGS).tolist()
+    times, boom = np.linspace(0.0, case.time.duration, READINGS).tolist(), build_boom(case)
     over_time: dict[str, Any] = {"table": [(time, 0.0) for time in times], "relative": relative}
-    boom = build_boom(case)
-    kinds: list[dict[str, Any]] = [
-        {"name": f"{quantity} at {place} of {segment.name}", "quantity": quantity,
-         "segment": segment.name, "x": segment.start + part * segment.length, **over_time}
+    kinds: dict[str, dict[str, Any]] = {
+        f"{quantity} at {place} of {segment.name}": over_time
+        | {"quantity": quantity, "segment": segment.name,
+           "x": segment.start + part * segment.length}
         for segment, (place, part) in product(boom.segments, _PLACES.items())
         for quantity in ("strain", "rotation", "acceleration")
         if (segment.section is not None if quantity == "strain" else place == "head")
-    ]  # fmt: skip
-    kinds += [
-        {"name": f"force of cylinder {k}", "quantity": "cylinder_force", "number": k, **over_time}
-        for k in range(1, 1 + len(boom.cylinders))
-    ]
-    kinds.append({"name": "tip over time", "quantity": "tip", **over_time})
-    singles = {"tip at rest": "tip", "first frequency": "frequency", "free travel": "free_travel"}
-    kinds += [
-        {"name": name, "quantity": quantity, "value": 0.0} for name, quantity in singles.items()
-    ]
-    yield from (Channel.model_validate(keys | {"uncertainty": 1.0}) for keys in kinds)
+    }  # fmt: skip
+    for k in range(1, 1 + len(boom.cylinders)):
+        kinds[f"force of cylinder {k}"] = over_time | {"quantity": "cylinder_force", "number": k}
+    kinds["tip over time"] = over_time | {"quantity": "tip"}
+    kinds["tip at rest"] = {"quantity": "tip", "value": 0.0}
+    kinds["first frequency"] = {"quantity": "frequency", "value": 0.0}
+    kinds["free travel"] = {"quantity": "free_travel", "value": 0.0}
+    for name, keys in kinds.items():
+        yield Channel.model_validate({"name": name, "uncertainty": 1.0, **keys})
 
 
 def identify(
@@ -276,12 +276,14 @@ def identify(
     for k, bound in product(range(len(keys)), (low, high)):
         values = np.where(np.arange(len(keys)) == k, bound, start)
         try:
-            experiment.check(dict(zip(keys, values.tolist(), strict=True)))
+            reading.check(experiment.changed(dict(zip(keys, values.tolist(), strict=True))), file)
         except BadInput as fault:
             what = f"{bound[k]:g} is not valid: {fault.what}"
             raise BadInput(file, f"--unknown {keys[k]}", what) from None
-    residuals = Residuals.of(experiment, keys, start)
-    found = fit(residuals, low, high, start, starts, progress, residuals.step)
+    first = Residuals.of(experiment, keys, start)
+    # Features guide a single search on a chaotic motion; several searches tell its curves apart.
+    first, windows = (first.of_curves, first.windows) if starts > 1 else (first, [])
+    found = fit(first, low, high, start, starts, progress, first.step, windows)
     # Near the solution it is known what errors the readings share, and which motions are chaotic.
     residuals = Residuals.of(experiment, keys, found.values).with_shared_errors(found.values)
     searched = found.starts

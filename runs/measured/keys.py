@@ -4,17 +4,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Literal, Self, get_args
+from dataclasses import replace
+from typing import TYPE_CHECKING, Annotated, Literal, Self, cast, get_args
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from protractile.analysis.quantities import MEASURED, Quantity
 from protractile.geometry.arrays import Array
-from protractile.geometry.fields import Few, Flag, In, Name, Number, Positive, rising
+from protractile.geometry.boom import Boom
+from protractile.geometry.fields import BoomError, Few, Flag, In, Name, Number, Positive, rising
 from protractile.geometry.observation import KINDS, Recorded
 from protractile.geometry.place import Place
 from protractile.runs.case.limits import MOST_TIMES, CaseTable, Count, Text, error_at, unsuitable
+
+if TYPE_CHECKING:
+    from protractile.runs.case.schema import Case, ObserveTable
 
 # Quantities with a value at each time, and those that the boom has as a whole.
 Variable = Literal["tip", "tip_lateral", Recorded, "strain", "cylinder_force", "rope_force"]
@@ -47,7 +52,7 @@ class Channel(CaseTable):
 
     name: Name
     """the name of the channel in the results"""
-    quantity: Variable | Property
+    quantity: Literal[Variable, Property]
     """the quantity: deflection of the tip along z or y; deflection, rotation, velocity or
     acceleration at x; strain at x; force of a cylinder or of the hoist rope; and as single values a
     natural frequency, a damping ratio, or the free travel of the tip between its contacts"""
@@ -99,6 +104,20 @@ class Channel(CaseTable):
         return MEASURABLE[self.quantity]
 
     @property
+    def placed(self) -> bool:
+        """True if the quantity needs a place."""
+        return self.quantity == "strain" or self.quantity in KINDS
+
+    @property
+    def output(self) -> ObserveTable:
+        """The output of a model at the place of the channel; of strains its deflection."""
+        from protractile.runs.case.schema import ObserveTable
+
+        assert self.x is not None
+        quantity = "deflection" if self.quantity == "strain" else cast(Recorded, self.quantity)
+        return ObserveTable(f"measured {self.name}", self.segment, self.x, quantity)
+
+    @property
     def curve(self) -> str:
         """The name of the readings in messages on files."""
         return self.measures.title
@@ -114,6 +133,12 @@ class Channel(CaseTable):
         pairs = self.table or ((0.0, self.value or 0.0),)
         return np.array([reading for _, reading in pairs])
 
+    def until(self, end: float) -> Channel:
+        """Return the channel with its readings from 0 to ``end`` in s of the run."""
+        pairs = zip(self.table or (), self.times.tolist(), strict=True)
+        table = tuple(pair for pair, time in pairs if 0.0 <= time <= end) or None
+        return self.model_copy(update={"table": table})
+
     def declared_units(self, key: str) -> tuple[str, ...]:
         unit = self.measures.unit
         if key == "table":
@@ -123,26 +148,23 @@ class Channel(CaseTable):
     @model_validator(mode="after")
     def _is_complete(self) -> Self:
         """Check that the channel has one kind of data, and the place that it needs."""
-        for key in ("segment", "x"):
-            placed = self.quantity == "strain" or self.quantity in KINDS
-            if placed and getattr(self, key) is None:
+        curves, title = self.table is not None or self.file is not None, self.measures.title
+        for key in ["segment", "x"] * self.placed + ["value"] * (not curves):
+            if getattr(self, key) is None:
                 raise error_at(self, "missing", key)
-        curves = self.table is not None or self.file is not None
-        if self.value is None and not curves:
-            raise error_at(self, "missing", "value")
-        if self.value is not None and curves:
-            what = "the channel has readings over time; leave one of them out"
-            raise error_at(self, unsuitable(what), "value")
-        if curves and self.quantity in get_args(Property):
-            what = f"{self.measures.title} is a single value; give it as value"
-            raise error_at(self, unsuitable(what), "quantity")
-        if not curves and self.quantity in ("velocity", "acceleration", "rope_force"):
-            what = f"{self.measures.title} varies over time; give a table or a file"
-            raise error_at(self, unsuitable(what), "quantity")
-        if self.since and curves:
-            raise error_at(self, unsuitable("only a single value has this key"), "since")
-        if self.relative and not curves:
-            raise error_at(self, unsuitable("a single value has since instead"), "relative")
+        rules = (
+            (curves and self.value is not None, "value",
+             "the channel has readings over time; leave one of them out"),
+            (curves and self.quantity in get_args(Property), "quantity",
+             f"{title} is a single value; give it as value"),
+            (not curves and self.quantity in ("velocity", "acceleration", "rope_force"), "quantity",
+             f"{title} varies over time; give a table or a file"),
+            (curves and self.since, "since", "only a single value has this key"),
+            (not curves and self.relative, "relative", "a single value has since instead"),
+        )  # fmt: skip
+        for wrong, key, what in rules:
+            if wrong:
+                raise error_at(self, unsuitable(what), key)
         return self
 
 
@@ -151,3 +173,39 @@ class Keys(CaseTable):
 
     measured: Annotated[tuple[Channel, ...], Few] = ()
     """the measured channels, one [[measured]] each, for compare and identify"""
+
+
+def check(case: Case, boom: Boom) -> None:
+    """Check that the boom and the run of a case have what its channels measure.
+
+    Raises:
+        BoomError: a channel does not fit, or has the name of another one.
+    """
+    assert isinstance(case, Keys)
+    names, end = [channel.name for channel in case.measured], case.time.duration
+    for number, channel in enumerate(case.measured):
+        where, quantity, segment = f"measured[{number + 1}]", channel.quantity, None
+        inside = channel.until(end).times
+        try:
+            if channel.placed:
+                (place,) = replace(boom, observations=(channel.output,)).observations
+                segment = boom.segments[int(place.segment)]
+        except BoomError as error:
+            raise BoomError(f"{where}.{error.where.rpartition('.')[2]}", error.what) from None
+        rules = (
+            (channel.name in names[:number], "name",
+             f"{channel.name!r} is the name of another channel already; give each its own"),
+            (channel.table is not None and inside.size < 2, "time_offset",
+             f"has no two readings from 0 to {end:g} s of the run"),
+            (quantity == "cylinder_force" and channel.number > len(boom.cylinders), "number",
+             f"the boom has {len(boom.cylinders)} cylinders"),
+            (quantity == "rope_force" and case.hoist is None, "quantity",
+             "the case has no hoist, whose rope would have this force"),
+            (quantity == "tip_lateral" and not boom.spatial, "quantity",
+             "the boom is flat; give the joints lateral_play"),
+            (quantity == "strain" and segment is not None and segment.section is None, "segment",
+             f"{channel.segment!r} has no section, which strains need"),
+        )  # fmt: skip
+        for wrong, key, what in rules:
+            if wrong:
+                raise BoomError(f"{where}.{key}", what)

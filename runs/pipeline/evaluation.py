@@ -63,8 +63,8 @@ class Evaluation(NamedTuple):
 
 def life_of(case: Case) -> Life:
     """Return the data of fatigue damage and of wear of a case."""
-    life = case.life
-    return Life(life.detail_category, life.partial_factor, life.repeats, life.wear)
+    life, tip = case.life, None if case.limits is None else case.limits.tip_at_rest
+    return Life(life.detail_category, life.partial_factor, life.repeats, life.wear, tip)
 
 
 def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:

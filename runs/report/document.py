@@ -100,10 +100,14 @@ def render(
     )
 
 
-def figure_page(title: str, figures: Sequence[Figure]) -> str:
-    """Return a page of figures as one HTML text."""
+def figure_page(
+    title: str, figures: Sequence[Figure], tables: Sequence[Table] = (), lead: Sequence[str] = ()
+) -> str:
+    """Return a page of sentences, tables that have rows, and figures as one HTML text."""
     uris, plots = embed(figures, pictures=False)
-    return page("figures.html", uris, title=title, figures=figures, **plots)
+    filled = [table for table in tables if table.rows]
+    content: dict[str, Any] = {"title": title, "lead": lead, "tables": filled, "figures": figures}
+    return page("figures.html", uris, **content, **plots)
 
 
 def embed(figures: Sequence[Figure], pictures: bool) -> tuple[dict[str, str], dict[str, Any]]:

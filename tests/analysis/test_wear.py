@@ -51,7 +51,7 @@ def test_wear_of_a_constant_force() -> None:
         }
     )
     states = cast(States, SimpleNamespace(boom=boom, recorded=data))
-    rows = Rows(wear_rows(states, "beam", Life(repeats=10_000, wear=2.0e-6)))
+    rows = Rows(wear_rows(states, "beam", Life(repeats=10_000, wear=2.0e-6), 0.01))
     depth = 1.0e4 * 2.0e-15 * 0.5 * force * way / (0.1 * 0.05)
     assert [(row.place, row.value) for row in rows.where(quantity="wear")] == [
         ("station 1, above", pytest.approx(depth)),
@@ -66,6 +66,16 @@ def test_wear_of_a_constant_force() -> None:
     assert lives == [pytest.approx(1.0e4 * 0.02 / depth), pytest.approx(0.5e4 * 0.02 / depth)]
     assert rows.governing is not None
     assert rows.governing.utilisation == pytest.approx(2.0 * depth / 0.02)
+    # The tail rises by one depth, the head falls by two, and the tip turns about them. At the
+    # largest extension the tail, which rides on the fly, is closer to the head.
+    (tail, head), tip = boom.joints[0].stations, boom.tip + way
+    fall = (2.0 + 3.0 * (tip - head) / (head - tail - way)) * depth
+    (worn,) = rows.where(quantity="worn_tip")
+    assert worn.value == pytest.approx(0.01 + fall)
+    limited = Life(repeats=10_000, wear=2.0e-6, tip=0.05)
+    *_, worn, life = wear_rows(states, "beam", limited, 0.01)
+    assert (worn.limit, life.quantity) == (0.05, "wear_life")
+    assert life.value == pytest.approx(1.0e4 * 0.04 / fall)
     # Without a coefficient or a drive nothing wears.
     assert [*wear_rows(states, "beam", Life())] == []
     fixed = SimpleNamespace(boom=boom, recorded=data.drop_vars("extension"))

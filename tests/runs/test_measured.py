@@ -13,9 +13,8 @@ from protractile.cases import load_case, run_case
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.schema import Case
 from protractile.runs.measured.compare import compare
-from protractile.runs.measured.computed import free_travel
-from protractile.runs.measured.experiment import Experiment
-from protractile.runs.measured.signals import decay, main_frequency
+from protractile.runs.measured.experiment import Experiment, free_travel
+from protractile.runs.measured.residuals import Features
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report.additions import judge
 from protractile.runs.report.document import render
@@ -199,12 +198,12 @@ def test_a_model_agrees_with_itself_and_not_with_another() -> None:
     assert found.misfit == pytest.approx(1.0, abs=3.0 / np.sqrt(2.0 * tip.size))
     assert abs(found.bias) < 3.0e-3 / np.sqrt(tip.size)
     assert right.agrees
-    read, computed = found.features
+    read, computed = found.features.values()
     assert read.frequency == pytest.approx(computed.frequency, rel=0.02)
     assert right.frame.loc["tip", "slow_of_model"] == computed.slow
     other = compare(measured({**tables, "payload": {"mass": 150.0}}, channel("tip", table=table)))
     assert not other.agrees
-    assert other.agreements[0].features[1].frequency < 0.9 * computed.frequency
+    assert other.agreements[0].features["model"].frequency < 0.9 * computed.frequency
     # A zero that is unknown hides a constant difference.
     moved = [(time, reading + 0.5) for time, reading in table]
     relative = compare(measured(tables, channel("tip", table=moved, relative=True)))
@@ -212,13 +211,42 @@ def test_a_model_agrees_with_itself_and_not_with_another() -> None:
     assert relative.frame.loc["tip", "bias"] == pytest.approx(0.0, abs=1.0e-12)
 
 
+@pytest.mark.parametrize(
+    ("factor", "shift", "caution"),
+    [
+        (1.0, 0.0, ""),
+        (1000.0, 0.0, "tip: the readings have 1000 times the size of the model; their unit is m "
+         "unless the heading of the column gives another"),
+        (1.0, 0.12, "tip: the readings fit the model 0.12 s later; give time_offset = 0.12, or "
+         "identify measured.time_offset"),
+        (1.0, -0.05, "tip: the readings fit the model 0.05 s earlier; give time_offset = -0.05, or "
+         "identify measured.time_offset"),
+    ],
+)  # fmt: skip
+def test_a_wrong_unit_and_a_forgotten_time_offset_are_told(
+    factor: float, shift: float, caution: str
+) -> None:
+    """Reference: by construction, readings of the model in mm, or of a logger that started late."""
+    loads = [{"segment": "base", "x": "head", "magnitude": -500.0, "ramp": 0.3}]
+    tables = {**CANTILEVER, "load": loads, "damping": {"modal": 0.02}, "start": {"state": "rest"}}
+    times = np.arange(0.0, 1.0, 0.01)
+    blank = channel("tip", table=[(time, 0.0) for time in times.tolist()])
+    ((_, (tip, *_)),) = Experiment(measured(tables, blank), "case").evaluate({})
+    read_at = times[(times + shift >= 0.0) & (times + shift <= times[-1])]
+    late = factor * np.interp(read_at + shift, times, tip)
+    read = channel("tip", table=[*zip(read_at.tolist(), late.tolist(), strict=True)])
+    (agreement,) = compare(measured(tables, read | {"uncertainty": 1.0e-4})).agreements
+    assert agreement.mistakes == ([caution] if caution else [])
+
+
 def test_frequency_and_decay_of_a_damped_oscillation() -> None:
     """Reference: analytic."""
     time = np.linspace(0.0, 10.0, 2001)
     signal = np.exp(-0.03 * 2.0 * np.pi * 1.7 * time) * np.cos(2.0 * np.pi * 1.7 * time)
-    assert main_frequency(time, signal) == pytest.approx(1.7, rel=0.01)
-    assert decay(time, signal + 3.0) == pytest.approx(0.03, rel=0.02)
-    assert np.isnan(decay(time, time))
+    found = Features.of(time, signal + 3.0, 3.0)
+    assert found.frequency == pytest.approx(1.7, rel=0.01)
+    assert found.decay == pytest.approx(0.03, rel=0.02)
+    assert np.isnan(Features.of(time, time, 3.0).decay)
 
 
 @pytest.mark.parametrize(
@@ -250,14 +278,22 @@ def test_wrong_channels_are_refused(keys: dict[str, Any], what: str) -> None:
     ("keys", "what"),
     [
         ({"quantity": "strain", "segment": "fly", "x": 1.0, "value": 0.0},
-         "segment: 'fly' is not a segment; give 'base'"),
+         "measured[1].segment: 'fly' is no segment; give 'base'"),
         ({"quantity": "strain", "segment": "base", "x": 9.0, "value": 0.0},
-         "x: must be from 0 to 5 m, got 9 m"),
+         "measured[1].x: 9 m lies outside 'base'; it must be between 0 and 5 m"),
         ({"quantity": "acceleration", "segment": "base", "x": 9.0,
           "table": [(0.0, 0.0), (1.0, 0.0)]},
          "measured[1].x: 9 m lies outside 'base'; it must be between 0 and 5 m"),
         ({"quantity": "tip", "value": 0.0, "changes": {"payload.weight": 1.0}},
-         "payload.weight: is not a number of the case; give a key such as joint[1].play"),
+         "payload.weight: is not a number of the case; give 'payload.mass'"),
+        ({"quantity": "rope_force", "table": [(0.0, 0.0), (1.0, 0.0)]},
+         "measured[1].quantity: the case has no hoist, whose rope would have this force"),
+        ({"quantity": "cylinder_force", "value": 0.0},
+         "measured[1].number: the boom has 0 cylinders"),
+        ({"quantity": "tip", "valeu": 0.0},
+         "measured[1].valeu: unknown key; the nearest known one is value"),
+        ({"quantity": "tipp", "value": 0.0},
+         "measured[1].quantity: must be 'tip', 'tip_lateral', 'deflection', 'rotation', "),
         ({"quantity": "tip", "table": [(2.0, 0.0), (3.0, 0.0)]},
          "measured[1].time_offset: has no two readings from 0 to 1 s of the run"),
     ],
@@ -289,6 +325,5 @@ def test_the_report_of_a_run_has_the_readings() -> None:
     assert "Model and readings" in page
     results.case = load_case(CANTILEVER)
     assert judge(results).tables == []
-    wrong = channel("gauge", quantity="strain", segment="fly", x=1.0, value=0.0)
-    results.case = measured(CANTILEVER, wrong)
+    results.case = measured(CANTILEVER, channel("frequency", number=900, value=0.0))
     assert judge(results).tables == []

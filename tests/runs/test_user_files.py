@@ -170,7 +170,7 @@ OF_THREE = "t;F;v\n0;1;2\n1;1;2\n"
     [
         (OF_THREE, "", "'gust.csv' has 3 columns in line 1; name two of them"),
         (OF_THREE, '["t", "G"]',
-         "'gust.csv' has 0 columns 'G' in line 1; name columns that it has once"),
+         "'gust.csv' has no column 'G' in line 1; give 't', 'F' or 'v'"),
         ("0;1\n1;1\n", '["t", "F"]',
          "'gust.csv' has no heading; leave the names of columns out"),
         ("t (s);F\n0;1,5\n1;1.234,5\n", "",
