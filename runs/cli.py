@@ -201,9 +201,8 @@ def snapshot(
         try:
             times = sorted(set(time)) if time else None
             motion = Path(folder) / TRAJECTORIES
-            more = snapshots.ON_REQUEST
             with snapshots.start_rendering(
-                results, shells, motion, part, times, more=more
+                results, shells, motion, part, times, every_view=True
             ) as gather:
                 names_of_pictures = gather()
         except RenderingUnavailable as reason:
@@ -264,8 +263,7 @@ def sweep(
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         if comm is None or comm.rank == 0:
             sweep_runs.prepare(folder, case)
-        several = comm is not None and comm.size > 1
-        with members.rank_executor(comm) if several else workers.workers(None) as pool:
+        with members.rank_executor(comm, workers.workers) as pool:
             if pool is None:
                 return 0
             with terminal.display() as report_progress:

@@ -78,7 +78,7 @@ def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
         rows += extremes(measure_walls(loaded.boom, shell.stresses), model.name, MOTION)
         curves += histories(shell.stresses, model.name)
     design = ModelDesignResults(
-        buckling=shell.buckling.segments if shell and shell.buckling else [],
+        buckling=ran.buckling,
         residual_vibration=residual_vibration(loaded.system, trajectory, case, model),
         hoisting=hoisting(case, boom, trajectory),
         drives=crane_drives(case, boom, trajectory.data),

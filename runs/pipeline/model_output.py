@@ -17,7 +17,6 @@ import numpy.typing as npt
 
 from protractile.analysis.equilibria import equilibria
 from protractile.analysis.modes import MODES
-from protractile.analysis.wall_buckling import BuckledShell
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.line import Line, LineQuantity
 from protractile.dynamics.trajectory import Trajectory
@@ -57,8 +56,6 @@ class ShellOutput:
     #: largest of these stresses, and the forces in the walls at the time of this stress
     largest: StressSummary
     meshes: dict[str, PlatedMesh]  #: mesh of each segment, by name
-    #: buckling of the walls, with shapes in ``fields``; None without the table ``buckling``
-    buckling: BuckledShell | None = None
 
     @property
     def modes(self) -> xr.Dataset | None:
@@ -77,7 +74,6 @@ class ShellOutput:
         name: str,
         reduced: ReducedShell,
         trajectory: Trajectory,
-        buckling: BuckledShell | None = None,
     ) -> ShellOutput:
         """Return the output of a shell after its motion, on rank 0."""
         assert reduced.fields is not None
@@ -88,12 +84,10 @@ class ShellOutput:
             time=("time", trajectory.time, {"units": "s"}),
             **_modes(reduced),
         ).assign_attrs(model=name)
-        if buckling is not None and buckling.shapes is not None:
-            fields = fields.assign(buckling.shapes)
         shell = ShellStress.from_fields(fields)
         stresses = stress_near_places(shell, force_places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))
-        return cls(fields, stresses, summarise(shell, stresses), meshes, buckling)
+        return cls(fields, stresses, summarise(shell, stresses), meshes)
 
     def write_files(self, folder: Path, prefix: str) -> None:
         """Write stresses, field series and meshes to a folder that already has the fields.

@@ -24,7 +24,6 @@ def model_tables(results: Results) -> list[Table]:
     tables = (
         model_table(results),
         step_table(results),
-        lateral_peak_table(results),
         buckling_table(results),
         law_table(results),
         *calibration_tables(results),
@@ -184,27 +183,6 @@ def law_table(results: Results) -> Table:
             "more: specify them (joint.pad)."
         )
     return Table("Contact laws", columns, notes, "laws")
-
-
-def lateral_peak_table(results: Results) -> Table | None:
-    """Return the table of first tip peaks along z and along y; None for a planar boom."""
-    models, reference = results.summary.models, results.reference
-    if reference is None or "tip_lateral" not in models[reference].first_peak:
-        return None
-    columns = [Column("model", list(models))]
-    for place, way in (("tip", "vertical (z)"), ("tip_lateral", "lateral (y)")):
-        peaks = [model.first_peak[place] for model in models.values()]
-        other = models[reference].first_peak[place].height
-        differences = [
-            p.height / other - 1.0 if p.height is not None and other else None for p in peaks
-        ]
-        columns += [
-            Column(way, [time for time, _ in peaks], ".3f", "s"),
-            Column(way, [height for _, height in peaks], ".1f", "mm"),
-            Column(f"{way}, difference from {reference}", differences, ".2g", "%"),
-        ]
-    notes = [f"–: no peak within {results.case.time.duration:g} s."]
-    return Table("First vertical and lateral peaks of the tip", columns, notes, "space")
 
 
 def buckling_table(results: Results) -> Table | None:
