@@ -94,7 +94,6 @@ def run(
         from protractile.runs.pipeline.model_run import RunContext
         from protractile.runs.pipeline.results import prepare
         from protractile.runs.pipeline.run import run_case
-        from protractile.runs.report import output
         from protractile.runs.report.additions import judge
         from protractile.runs.report.terminal_tables import (
             print_failures,
@@ -120,12 +119,15 @@ def run(
                     [model.name for model in effective.models], Path(case).stem
                 ) as report_progress,
             ):
-                renderers = (
-                    () if no_pictures else ("protractile.runs.report.snapshots", "pyvista.plotting")
-                )
-                context = RunContext(comm, report_progress, cache, cache, helper, renderers)
+                pictures = "protractile.runs.report.snapshots", "pyvista.plotting"
+                writers = ("protractile.runs.report.output",)
+                tools = cache, cache, helper, () if no_pictures else pictures, writers
+                context = RunContext(comm, report_progress, *tools)
                 finished = run_case(effective, case, context, print_first_results)
                 assert finished is not None
+                # The libraries of figures take half a second, for which no number waits.
+                from protractile.runs.report import output
+
                 with output.write_in_two_steps(finished, part, not no_pictures, helper) as write:
                     finished.evaluate()
                     add_cautions(finished.results)

@@ -73,6 +73,8 @@ class RunContext:
     helper: Executor | None = None
     #: modules for pictures, which the helper imports after it has reduced a shell
     renderers: Sequence[str] = ()
+    #: modules that the thread of the beams imports after them, while a shell is built
+    writers: Sequence[str] = ()
 
     @property
     def first_rank(self) -> bool:
