@@ -101,7 +101,10 @@ class ShellOutput:
         meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
         for place in (meshes, series):
             place.mkdir(parents=True, exist_ok=True)
-        write_field_series(self.fields, series, series_times(self.fields))
+        times = self.fields["time"].values
+        frames = max(2, min(SERIES_FRAMES, TRIANGLES // self.fields.sizes["triangle"]))
+        even = np.linspace(times[0], times[-1], frames).tolist()
+        write_field_series(self.fields, series, even)
         if (modes := self.modes) is not None:
             of_modes = modes.assign_attrs(model=f"{modes.attrs['model']}-modes")
             write_field_series(of_modes, series, modes["time"].values.tolist())
@@ -167,13 +170,6 @@ def _modes(reduced: ReducedShell) -> dict[str, Any]:
         "contact_mode": ("contact_mode", omega[:MODES] / (2.0 * np.pi), {"units": "Hz"}),
         "contact_mode_shape": (("contact_mode", "mode"), modes / largest[:, None]),
     }
-
-
-def series_times(fields: xr.Dataset) -> list[float]:
-    """Return the evenly spaced times of a series in s, from the start to the end of the run."""
-    times = fields["time"].values
-    frames = max(2, min(SERIES_FRAMES, TRIANGLES // fields.sizes["triangle"]))
-    return [float(t) for t in np.linspace(times[0], times[-1], frames)]
 
 
 def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from PIL import Image
 
 from protractile.geometry.arrays import Array
@@ -109,7 +111,8 @@ def draw_boom(
     time, tip = scene.motion["time"].values, 1.0e3 * scene.motion["tip"].values
     sheet = Sheet(camera.pixels, 325, part)
     sheet.mark_x(camera, *view.span)
-    bar = sheet.colour_bar((1110, 150, 420, 40), view.largest, theme.STRESS)
+    scale = ScalarMappable(Normalize(0.0, view.largest), theme.STRESS)
+    bar = sheet.figure.colorbar(scale, cax=sheet.axes(1110, 150, 420, 40), orientation="horizontal")
     bar.set_label("von Mises stress (MPa)")
     curve = sheet.axes(150, 85, 820, 150)
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)

@@ -17,7 +17,8 @@ from protractile.runs.pipeline.results import Results
 from protractile.runs.report.opengl import RenderingUnavailable, require_opengl
 from protractile.runs.report.scene import Scene
 from protractile.runs.report.sheet import Snapshot
-from protractile.shell_model.stress.stresses import ShellStress, wall_forces
+from protractile.shell_model.stress.stresses import ShellStress
+from studies.reference_models.shell_readings import wall_forces
 from tests import at_once
 from tests.short_film import render_short
 from tests.system.run_folder import (
