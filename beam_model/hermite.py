@@ -17,6 +17,9 @@ _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
 # Coefficients of 1, t, t², t³ of the four functions of an element of unit length, in rows: value
 # and slope at its start, value and slope at its end.
 _FUNCTIONS = np.array([[1.0, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1, 1]])
+# Coefficients of their derivatives, in columns, by order; −1 is the integral from the start.
+_POWERS = {order: polyder(_FUNCTIONS, order, axis=1).T for order in range(3)}
+_POWERS[-1] = polyint(_FUNCTIONS, axis=1).T
 
 
 def sum_of_products(lefts: Sequence[Array], rights: Sequence[Array], free: Array) -> csc_matrix:
@@ -98,9 +101,8 @@ class HermiteAxis:
 
         The ``order`` −1 is the integral from the start of the element.
         """
-        powers = polyint(_FUNCTIONS, axis=1) if order < 0 else polyder(_FUNCTIONS, order, axis=1)
         lengths = self._lengths[elements]
-        values = polyval(parts, powers.T) / lengths**order
+        values = polyval(parts, _POWERS[order]) / lengths**order
         # Slopes are unknowns per metre.
         values[1::2] *= lengths
         return np.asarray(values)
