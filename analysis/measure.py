@@ -8,11 +8,12 @@ moment causes tension at the top, a positive lateral moment tension at larger y.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from protractile.analysis.model import AnalysisModel
 from protractile.analysis.pads import largest_forces, loaded_pads, pad_forces, side_force
 from protractile.analysis.states import States
 from protractile.analysis.stresses import Fibres
@@ -30,7 +31,6 @@ from protractile.geometry.telescoping import station_positions, travel
 
 if TYPE_CHECKING:
     import xarray as xr
-    from scipy.interpolate import CubicSpline
 
 
 class Measured(NamedTuple):
@@ -210,20 +210,24 @@ def _rotations(states: States) -> Iterator[Measured]:
     Play, the compression of contacts and walls that bend cause it. It is positive for a larger
     slope. The deflection of the tip by it follows.
     """
-    boom, axes = states.boom, states.model.axes(states.positions)
+    boom = states.boom
     for joint in (joint for joint in boom.joints if not joint.bonded and len(joint.stations) > 1):
         inner, outer = (boom.segments[number].name for number in (joint.inner, joint.outer))
         both = np.array(
-            [_rotation(boom, joint, axes, float(at), k) for k, at in enumerate(states.time)]
+            [
+                _rotation(states.model, joint, time, position)
+                for time, position in zip(states.time.tolist(), states.positions, strict=True)
+            ]
         )
         for name, values in zip(("rotation", "rotation_tip"), both.T, strict=True):
             yield _single(name, inner, values, states.time, place=f"in {outer}")
 
 
 def _rotation(
-    boom: Boom, joint: Joint, axes: Sequence[CubicSpline], time: float, step: int
+    model: AnalysisModel, joint: Joint, time: float, position: Array
 ) -> tuple[float, float]:
     """Return the rotation of a joint in rad, and the deflection of the tip by it in m."""
+    boom = model.boom
     before = travel(boom, joint.outer, time)
     extension = travel(boom, joint.inner, time) - before
     places = [(x, x) for x in joint.stations]
@@ -235,8 +239,8 @@ def _rotation(
     on_outer, displacements = [], []
     for (x_outer, x_inner), offset in zip(places, offsets, strict=True):
         on_outer.append(x_outer + offset)
-        relative = axes[joint.inner](x_inner + offset) - axes[joint.outer](x_outer + offset)
-        displacements.append(float(relative[step]))
+        inner = model.deflection(joint.inner, x_inner + offset, position)
+        displacements.append(inner - model.deflection(joint.outer, on_outer[-1], position))
     tip = boom.tip + travel(boom, len(boom.segments) - 1, time) - before
     angle = (displacements[-1] - displacements[0]) / (on_outer[-1] - on_outer[0])
     return angle, displacements[0] + angle * (tip - on_outer[0])

@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.line import Line, LineQuantity
@@ -52,13 +51,20 @@ class AnalysisModel:
             extended[cylinder.segment] = replace(line, rows={**line.rows, "normal": normal})
         return cls(boom, system.gather_loads(), extended, smooth)
 
-    def axes(self, states: Array) -> list[CubicSpline]:
-        """Return the deflections (num_states,) along z of each segment, as functions of x in m.
+    def deflection(self, number: int, x: float, state: Array) -> float:
+        """Return the deflection in m of a segment along z at x in m, by a cubic near x.
 
-        ``states`` (num_states, num_modes) are modal coordinates.
+        ``state`` (num_modes,) are modal coordinates.
         """
-        along = (dict(line.deflections)["z"] for line in self.lines)
-        return [CubicSpline(x, rows @ states[:, : rows.shape[1]].T) for x, rows in along]
+        places, rows = dict(self.lines[number].deflections)["z"]
+        count = min(4, places.size)
+        first = np.clip(np.searchsorted(places, x) - 2, 0, places.size - count)
+        near = places[first : first + count]
+        # Lagrange's polynomials: 1 at one of the places, 0 at the others.
+        factors = (x - near) / (near[:, None] - near + np.eye(count))
+        np.fill_diagonal(factors, 1.0)
+        row = factors.prod(axis=1) @ rows[first : first + count]
+        return float(row @ state[: row.size])
 
     def section_forces(self, number: int, states: Array, time: Array) -> dict[LineQuantity, Array]:
         """Return deflections and section forces of a segment as :func:`section_forces`."""

@@ -39,18 +39,6 @@ class WallBuckling:
     x: list[float]  #: position of this displacement in m
 
 
-@dataclass(frozen=True, slots=True)
-class BuckledShell:
-    """Buckling of the segments of a shell."""
-
-    segments: list[WallBuckling]  #: buckling factors of each segment
-    #: first mode of each segment with a factor: mesh points ``buckling_points`` in m, displacements
-    #: ``buckling_shape`` (buckling_point, component) with a maximum of about 1 in each segment,
-    #: ``buckling_triangles`` (buckling_triangle, corner) with segment index ``buckling_segment``,
-    #: and ``buckling_factor`` (buckled). None if no segment has a factor.
-    shapes: xr.Dataset | None
-
-
 def buckle_shell(
     boom: Boom,
     meshes: Sequence[PlatedMesh],
@@ -58,8 +46,8 @@ def buckle_shell(
     options: ShellOptions,
     count: int,
     comm: MPI.Comm,
-) -> BuckledShell | None:
-    """Return the buckling of a shell's walls in a static state, on rank 0. Collective.
+) -> list[WallBuckling]:
+    """Return the buckling of the walls of each segment of a shell in a static state. Collective.
 
     Args:
         boom: boom with the contacts of the shell.
@@ -67,7 +55,7 @@ def buckle_shell(
         state: the static state, on rank 0; None without an equilibrium.
         options: options of the shell.
         count: number of modes of each segment.
-        comm: the ranks that share the work.
+        comm: the ranks that share the work; all but rank 0 get no results.
 
     Raises:
         NumericsError: there is no static state, or the modes of a segment cannot be computed.
@@ -79,11 +67,9 @@ def buckle_shell(
         raise NumericsError("the boom has no static state in which its walls could buckle")
     of_segments: Sequence[PlatedMesh | None] = meshes or [None] * len(boom.segments)
     results = buckle_segments(boom, of_segments, state, options, count, comm)
-    if comm.rank != 0:
-        return None
     names = [segment.name for segment in boom.segments]
-    segments = [with_locations(name, result) for name, result in zip(names, results, strict=True)]
-    return BuckledShell(segments, _first_shapes(results))
+    found = zip(names, results, strict=True) if comm.rank == 0 else ()
+    return [with_locations(name, result) for name, result in found]
 
 
 def farthest_state(
@@ -132,35 +118,4 @@ def with_locations(name: str, buckling: SegmentBuckling) -> WallBuckling:
         places.append(float(mesh.points[point, 0]))
     return WallBuckling(
         name, buckling.factors.tolist(), buckling.mesh_errors.tolist(), walls, places
-    )
-
-
-def _first_shapes(results: Sequence[SegmentBuckling]) -> xr.Dataset | None:
-    """Return the first mode of each segment with a factor, as in :class:`BuckledShell`."""
-    buckled = [
-        (number, result.mesh, result.shapes[0], result.factors[0])
-        for number, result in enumerate(results)
-        if result.factors.size and result.mesh is not None and result.shapes is not None
-    ]
-    if not buckled:
-        return None
-    import xarray as xr
-
-    numbers, meshes, shapes, factors = zip(*buckled, strict=True)
-    begins = np.cumsum([0, *(len(mesh.points) for mesh in meshes)])[:-1]
-    triangles = [mesh.triangles + begin for mesh, begin in zip(meshes, begins, strict=True)]
-    owner = np.repeat(numbers, [len(of_segment) for of_segment in triangles])
-    at_points, of_triangles = ("buckling_point", "component"), "buckling_triangle"
-    return xr.Dataset(
-        {
-            "buckling_points": (at_points, np.concatenate([mesh.points for mesh in meshes])),
-            "buckling_shape": (at_points, np.concatenate(shapes).astype(np.float32)),
-            "buckling_triangles": (
-                (of_triangles, "corner"),
-                np.concatenate(triangles).astype(np.int32),
-            ),
-            "buckling_segment": (of_triangles, owner.astype(np.int32)),
-            "buckling_factor": ("buckled", list(factors)),
-        },
-        coords={"buckled": np.array(numbers, dtype=np.int32)},
     )

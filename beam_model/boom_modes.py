@@ -10,6 +10,7 @@ have a tolerance.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from itertools import product
 from typing import NamedTuple
 
@@ -99,6 +100,7 @@ class BoomModes:
         """Add coordinates with ω² (num_added,) that move no segment."""
         self.omega2 = np.append(self.omega2, omega2)
         self.load, self.damping = (np.pad(a, (0, omega2.size)) for a in (self.load, self.damping))
+        self.beams = [self._beam(number) for number in range(len(self.models))]
 
     def displacement(
         self, segment: int, x: float, direction: Direction, offset: tuple[float, float] = (0.0, 0.0)
@@ -110,9 +112,7 @@ class BoomModes:
         row = self.beams[segment].at(direction, x)
         # A small rotation θ about x moves (y, z) by (−θ z, θ y).
         arm = offset[0] if direction == "z" else -offset[1]
-        if arm != 0.0:
-            row += arm * self.beams[segment].torque(x)
-        return row
+        return row if arm == 0.0 else row + arm * self.beams[segment].torque(x)
 
     def _beam(self, segment: int) -> BeamSegment:
         def read(motion: Motion, rule: Rule) -> Array:
@@ -183,7 +183,7 @@ def critical_factor(
         largest = sum(added, initial)
         if not (initial.any() or largest.any() or any(passing.values())):
             continue
-        if (group.modes().omega2 == 0.0).any():
+        if group.rigid_modes:
             return None
         for extensions, first in product(sample_extensions(boom), (initial, largest)):
             moving = (
@@ -204,8 +204,8 @@ def critical_factor(
             closed = {place[:3] for place in walls.places} if walls is not None else set()
             rigid = [tie for station, tie in ties.items() if station not in closed]
             free = _kernel(rigid, len(geometric))
-            factor = buckling_factor(free.T @ stiffness @ free, free.T @ geometric @ free)
-            smallest = min(smallest, factor)
+            both = (free.T @ matrix @ free for matrix in (stiffness, geometric))
+            smallest = min(smallest, buckling_factor(*both))
     return smallest
 
 
@@ -235,6 +235,11 @@ def _coupled_groups(
         _CoupledGroup(boom, models, [part for part in parts if group_of[part] == name])
         for name in dict.fromkeys(group_of.values())
     ]
+
+
+def is_mechanism(boom: Boom, models: Sequence[SegmentModel]) -> bool:
+    """Return True if a boom can move without strain of its segments and cylinders."""
+    return any(group.rigid_modes for group in _coupled_groups(boom, models))
 
 
 class _CoupledGroup:
@@ -313,9 +318,8 @@ class _CoupledGroup:
 
     def tie(self, joint: Joint, motion: Motion, on_outer: float, on_inner: float) -> Array:
         """Return the row (num_dofs,) of the motion of the inner segment in the outer one."""
-        return self.beams[joint.inner].at(motion, on_inner) - self.beams[joint.outer].at(
-            motion, on_outer
-        )
+        inner, outer = self.beams[joint.inner], self.beams[joint.outer]
+        return inner.at(motion, on_inner) - outer.at(motion, on_outer)
 
     def contact_stiffness(
         self, walls: StationCompliance, positions: Mapping[int, Sequence[tuple[float, float]]]
@@ -337,23 +341,34 @@ class _CoupledGroup:
             stiffness += line.stiffness * np.outer(line.push, line.push)
         return np.asarray(stiffness)
 
-    def modes(self) -> Modes:
-        """Return the modes with the constraints of bonded joints and the springs of cylinders."""
-        separate = [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in self.components]
-        ties = [*self.ties({}).values()]
-        if not ties and not self.springs and len(separate) == 1:
-            return separate[0]
+    @cached_property
+    def _separate(self) -> list[Modes]:
+        """The modes of each component by itself."""
+        return [natural_modes(c.stiffness, c.mass, c.rigid_modes) for c in self.components]
+
+    @property
+    def rigid_modes(self) -> int:
+        """The number of rigid modes with the constraints of :meth:`modes`."""
         rigid = block_diag(
-            *(m.shapes[:, : c.rigid_modes] for m, c in zip(separate, self.components, strict=True))
+            *(
+                m.shapes[:, : c.rigid_modes]
+                for m, c in zip(self._separate, self.components, strict=True)
+            )
         )
         # Rigid motions that satisfy all constraints and do not strain cylinders are rigid modes.
-        rows = [*ties, *(line.push for line in self.springs)]
+        rows = [*self.ties({}).values(), *(line.push for line in self.springs)]
         restraints = np.array(rows).reshape(-1, len(rigid)) @ rigid
         values = np.linalg.svd(restraints, compute_uv=False) if restraints.size else np.zeros(0)
-        rigid_modes = rigid.shape[1] - int((values > ROUND_OFF * values.max(initial=0.0)).sum())
+        return len(rigid.T) - int((values > ROUND_OFF * values.max(initial=0.0)).sum())
+
+    def modes(self) -> Modes:
+        """Return the modes with the constraints of bonded joints and the springs of cylinders."""
+        ties = [*self.ties({}).values()]
+        if not ties and not self.springs and len(self.components) == 1:
+            return self._separate[0]
         stiffness, mass = self.stiffness(), block_diag(*(c.mass for c in self.components))
         free = _kernel(ties, len(mass))
-        modes = natural_modes(free.T @ stiffness @ free, free.T @ mass @ free, rigid_modes)
+        modes = natural_modes(free.T @ stiffness @ free, free.T @ mass @ free, self.rigid_modes)
         return Modes(modes.omega2, free @ modes.shapes)
 
 

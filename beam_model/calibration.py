@@ -18,7 +18,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import null_space
-from scipy.optimize import least_squares
 
 from protractile.beam_model.component import Component, SegmentModel, natural_modes
 from protractile.beam_model.finite_element import finite_element_segment
@@ -210,6 +209,9 @@ def _fit(segment: Segment, probed: ProbeResponses, motion: ProbedMotion, count: 
     shell = balanced.T @ probed.compliance[motion] @ balanced
     sizes = np.sqrt(np.outer(np.diag(shell), np.diag(shell)))
     pairs = np.triu_indices(len(shell))
+
+    # Imported late: it loads in 0.2 s, and few beams are calibrated.
+    from scipy.optimize import least_squares
 
     def errors(logarithms: Array) -> Array:
         component = _component(segment, probed, motion, np.exp(logarithms))

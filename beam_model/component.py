@@ -114,10 +114,19 @@ class BeamSegment:
     #: function (motion, row of a component) that returns the row (num_coordinates,); the second
     #: argument is a function that returns the row of a :class:`Component`
     read: Callable[[Motion, Rule], Array]
+    #: rows that were read: states of one boom ask for the same places again
+    _rows: dict[tuple[Motion, float, int], Array] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     def at(self, motion: Motion, x: float, order: int = 0) -> Array:
-        """Return the row (num_coordinates,) at x in m of :attr:`Component.at`."""
-        return self.read(motion, lambda component: component.at(x, order))
+        """Return the row (num_coordinates,) at x in m of :attr:`Component.at`; it is read-only."""
+        place = motion, x, order
+        if place not in self._rows:
+            row = self.read(motion, lambda component: component.at(x, order))
+            row.flags.writeable = False
+            self._rows[place] = row
+        return self._rows[place]
 
     def unit_load_vector(self, x: float, direction: Direction) -> Array:
         return self.at(direction, x)

@@ -7,13 +7,19 @@ from collections.abc import Sequence
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import CubicHermiteSpline
+from numpy.polynomial.polynomial import polyder, polyint, polyval
 from scipy.sparse import csc_matrix
 
-from protractile.geometry.arrays import Array
+from protractile.geometry.arrays import Array, Indices
 
 # Gauss points and weights, exact for products of two cubics.
 _PLACES, _WEIGHTS = np.polynomial.legendre.leggauss(4)
+# Coefficients of 1, t, t², t³ of the four functions of an element of unit length, in rows: value
+# and slope at its start, value and slope at its end.
+_FUNCTIONS = np.array([[1.0, 0, -3, 2], [0, 1, -2, 1], [0, 0, 3, -2], [0, 0, -1, 1]])
+# Coefficients of their derivatives, in columns, by order; −1 is the integral from the start.
+_POWERS = {order: polyder(_FUNCTIONS, order, axis=1).T for order in range(3)}
+_POWERS[-1] = polyint(_FUNCTIONS, axis=1).T
 
 
 def sum_of_products(lefts: Sequence[Array], rights: Sequence[Array], free: Array) -> csc_matrix:
@@ -41,10 +47,13 @@ class HermiteAxis:
 
     def __init__(self, nodes: Array, closed: bool) -> None:
         self.nodes = nodes
-        num_dofs = 2 * (self.nodes.size - closed)
-        identity = np.eye(num_dofs)[np.arange(2 * self.nodes.size) % num_dofs]
-        self._shapes = CubicHermiteSpline(self.nodes, identity[::2], identity[1::2])
-        self._sums = self._shapes.antiderivative()
+        self._lengths = np.diff(nodes)
+        self._num_dofs = 2 * (nodes.size - closed)
+        elements = np.arange(nodes.size - 1)
+        #: values and slopes at both ends of each element (num_elements, 4)
+        self._dofs = (2 * elements[:, None] + np.arange(4)) % self._num_dofs
+        whole = self._rows(elements, self._values(elements, np.ones(elements.size), -1))
+        self._sums = np.concatenate([np.zeros((1, self._num_dofs)), np.cumsum(whole, axis=0)])
 
     def integrals(self, weights: Array) -> list[Array]:
         """Return ∫ φφ, ∫ φ′φ′, ∫ φ″φ″ and ∫ φφ″ of the functions φ, each (num_dofs, num_dofs).
@@ -52,23 +61,54 @@ class HermiteAxis:
         Args:
             weights: factors (num_elements,) of the elements.
         """
-        lengths = np.diff(self.nodes)[:, None]
-        scale = (0.5 * lengths * weights[:, None] * _WEIGHTS).ravel()[:, None]
         value, slope, curvature = self._at_gauss_points
+        scale = 0.5 * (self._lengths * weights)[:, None] * _WEIGHTS
+        at = self._dofs[:, :, None], self._dofs[:, None, :]
         pairs = (value, value), (slope, slope), (curvature, curvature), (value, curvature)
-        return [np.asarray((scale * left).T @ right) for left, right in pairs]
+        integrals = np.zeros((len(pairs), self._num_dofs, self._num_dofs))
+        for total, (left, right) in zip(integrals, pairs, strict=True):
+            np.add.at(total, at, (scale * left).transpose(1, 0, 2) @ right.transpose(1, 2, 0))
+        return list(integrals)
 
     @cached_property
     def _at_gauss_points(self) -> list[Array]:
-        """The functions and their first two derivatives, each (num_points, num_dofs)."""
-        lengths = np.diff(self.nodes)[:, None]
-        x = (self.nodes[:-1, None] + 0.5 * lengths * (1.0 + _PLACES)).ravel()
-        return [self._shapes(x, order) for order in range(3)]
+        """The functions and their first two derivatives, each (4, num_elements, num_points)."""
+        elements = np.repeat(np.arange(self._lengths.size), _PLACES.size)
+        part = np.tile(0.5 * (1.0 + _PLACES), self._lengths.size)
+        shape = 4, self._lengths.size, _PLACES.size
+        return [self._values(elements, part, order).reshape(shape) for order in range(3)]
 
     def mean(self, start: float, end: float) -> Array:
         """Return the row (num_dofs,) of the mean value between two positions in m."""
-        return np.asarray((self._sums(end) - self._sums(start)) / (end - start))
+        elements, parts = self._place(np.array([start, end]))
+        within = self._rows(elements, self._values(elements, parts, -1))
+        low, high = self._sums[elements] + within
+        return np.asarray((high - low) / (end - start))
 
     def at(self, place: float) -> Array:
         """Return the row (num_dofs,) of the value at a position in m."""
-        return np.asarray(self._shapes(place))
+        elements, parts = self._place(np.array([place]))
+        return np.asarray(self._rows(elements, self._values(elements, parts, 0))[0])
+
+    def _place(self, x: Array) -> tuple[Indices, Array]:
+        """Return element and relative position in it of positions (num_places,) in m."""
+        after = np.searchsorted(self.nodes, x, "right") - 1
+        elements = np.clip(after, 0, self._lengths.size - 1)
+        return elements, (x - self.nodes[elements]) / self._lengths[elements]
+
+    def _values(self, elements: Indices, parts: Array, order: int) -> Array:
+        """Return a derivative (4, num_places) of the functions of elements at relative positions.
+
+        The ``order`` −1 is the integral from the start of the element.
+        """
+        lengths = self._lengths[elements]
+        values = polyval(parts, _POWERS[order]) / lengths**order
+        # Slopes are unknowns per metre.
+        values[1::2] *= lengths
+        return np.asarray(values)
+
+    def _rows(self, elements: Indices, values: Array) -> Array:
+        """Return the rows (num_places, num_dofs) of values (4, num_places) in elements."""
+        rows = np.zeros((elements.size, self._num_dofs))
+        rows[np.arange(elements.size)[:, None], self._dofs[elements]] = values.T
+        return rows

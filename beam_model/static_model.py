@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.linalg import null_space
 
-from protractile.beam_model.boom_modes import BoomModes, critical_factor
+from protractile.beam_model.boom_modes import BoomModes, critical_factor, is_mechanism
 from protractile.beam_model.component import Motion, Rule, products
 from protractile.beam_model.lines import force_places, line_without_compression, with_compression
 from protractile.beam_model.segment_model import contact_rows, system_of_rows
@@ -94,6 +94,9 @@ class StaticModel:
         lines = ground_lines(shape, self._modes.beams)
         self._cylinders = [line for line in lines if line.force]
         self._slopes = [*self._all_slopes()]
+        # Motions (num_modes, num_free) that stations without closed contacts allow, by the others;
+        # None if all are closed.
+        self._motions: dict[frozenset[tuple[int, Motion, int]], Array | None] = {}
 
     def _all_slopes(self) -> Iterator[_Slopes]:
         for number, (segment, beam) in enumerate(
@@ -151,9 +154,11 @@ class StaticModel:
                 ]
             ).reshape(-1, len(stiffness))
             matrices = stiffness + rows.T @ np.linalg.solve(walls.compliance, rows), softening
-            ties = [*self._open_ties({place[:3] for place in walls.places})]
-            if ties:
-                free = null_space(np.array(ties))
+            pressed = frozenset[tuple[int, Motion, int]](place[:3] for place in walls.places)
+            if pressed not in self._motions:
+                ties = [*self._open_ties(pressed)]
+                self._motions[pressed] = null_space(np.array(ties)) if ties else None
+            if (free := self._motions[pressed]) is not None:
                 matrices = free.T @ matrices[0] @ free, free.T @ softening @ free
             factors.append(buckling_factor(*matrices))
         return min(factors)
@@ -195,9 +200,9 @@ class StaticModel:
     @cached_property
     def _is_mechanism(self) -> bool:
         """Whether the boom moves without strain although its joints are bonded."""
-        return bool((BoomModes(self._shape.bonded, self._segments).omega2 == 0.0).any())
+        return is_mechanism(self._shape.bonded, self._segments)
 
-    def _open_ties(self, closed: set[tuple[int, Motion, int]]) -> Iterator[Array]:
+    def _open_ties(self, closed: frozenset[tuple[int, Motion, int]]) -> Iterator[Array]:
         """Yield the displacements (num_modes,) between segments at stations not in ``closed``."""
         motions: tuple[Motion, ...] = ("z", "y", "twist") if self._shape.spatial else ("z",)
         for number, joint in enumerate(self._shape.joints):

@@ -183,7 +183,10 @@ class AdaptiveStep:
         independent = max(_INDEPENDENT, 10.0 * self.tolerance)
         while True:
             differences.append(error.between(fine, coarse))
-            estimate = error.of_coarse(*differences[-2:])
+            # Motions with sticking have first order. The error of smooth motions, which have second
+            # order, is overestimated by half. Since steps end at random phases of sticking and
+            # impacts, one difference may be small by chance.
+            estimate = max(2.0 * differences[-1], 0.5 * differences[-2])
             if estimate <= self.tolerance:
                 fine = coarse
                 break
@@ -192,8 +195,8 @@ class AdaptiveStep:
             chaotic = differences[-1] > independent or stalls
             if 2 * schedule.steps(motion) > most or (chaotic and np.isinf(fine.resolving_step)):
                 break
-            done = 1.0 - 0.5 ** (len(differences) - 1)
-            rest = partial(_report_rest, report, done)
+            left = 0.5 ** (len(differences) - 1)
+            rest = partial(lambda left, part: report(1.0 - left + 0.5 * left * part), left)
             coarse, fine = fine, schedule.finer().run(motion, rest)
         report(1.0)
         return fine.trajectory(schedule.substeps, schedule.window, estimate)
@@ -288,29 +291,12 @@ class _Error:
         self.set_ranges(fine)
         return self._largest(fine.output.states - coarse.output.states)
 
-    def of_coarse(self, before: float, difference: float) -> float:
-        """Return the estimated error of a motion.
-
-        Args:
-            before: difference of the motion from that with half as many steps.
-            difference: difference of the motion from that with twice as many steps.
-        """
-        # Motions with sticking have first order. The error of smooth motions, which have second
-        # order, is overestimated by half. Since steps end at random phases of sticking and impacts,
-        # one difference may be small by chance.
-        return max(2.0 * difference, 0.5 * before)
-
     def _largest(self, states: Array) -> float:
         return float((np.abs(self._read(states)) / self._ranges).max(initial=0.0))
 
     def _read(self, states: Array) -> Array:
         # BLAS is not used, since its last bits depend on addresses in memory.
         return np.asarray(np.einsum("ti,ri->tr", states, self._rows))
-
-
-def _report_rest(report: Progress, done: float, part: float) -> None:
-    """Report half of the rest of the progress while a part of a motion is done."""
-    report(done + 0.5 * (1.0 - done) * part)
 
 
 def _copy(state: State) -> State:

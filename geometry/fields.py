@@ -7,10 +7,14 @@ files. The attribute docstring of a field is its description in the JSON Schema 
 
 from __future__ import annotations
 
+import ast
+import inspect
 import math
+import sys
 from collections.abc import Iterable, Iterator
 from dataclasses import field as dataclass_field
 from dataclasses import is_dataclass
+from functools import cache
 from itertools import pairwise
 from numbers import Real
 from typing import (
@@ -65,16 +69,9 @@ class In:
 
 
 def fields_of(table: type) -> dict[str, FieldInfo]:
-    """Return the fields of a part of the boom or of a table of a case, with their descriptions.
-
-    Pydantic finds the descriptions of inherited fields only in the base class.
-    """
-    bases = [getattr(base, "__pydantic_fields__", {}) for base in table.__mro__]
-    described = {
-        name: next((base[name] for base in bases if name in base and base[name].description), None)
-        for name in bases[0]
-    }
-    return {name: field or bases[0][name] for name, field in described.items()}
+    """Return the fields of a part of the boom or of a table of a case, by name."""
+    fields: dict[str, FieldInfo] = getattr(table, "__pydantic_fields__", {})
+    return fields
 
 
 def names_of(table: type) -> dict[str, str]:
@@ -95,20 +92,45 @@ def _units(parts: Iterable[Any]) -> Iterator[In]:
             yield from _units(get_args(part))
 
 
-def describe(field: FieldInfo) -> str:
-    """Return the description of a field on one line."""
-    return " ".join(str(field.description).split())
+def describe(table: type, name: str) -> str:
+    """Return the description of a field on one line.
+
+    It is the string below the field in its class or a base, if the field has none of its own.
+    """
+    text = fields_of(table)[name].description
+    for base in table.__mro__:
+        if text is None and name in vars(base).get("__annotations__", {}):
+            text = _strings_below_fields(base.__module__).get((base.__name__, name))
+    return " ".join((text or "").split())
+
+
+@cache
+def _strings_below_fields(module: str) -> dict[tuple[str, str], str]:
+    """Return the string below each field of a module's classes, by class and field.
+
+    Pydantic would read the source of every class when it is made, which takes half a second.
+    """
+    tree = ast.parse(inspect.getsource(sys.modules[module]))
+    return {
+        (table.name, field.target.id): below.value.value
+        for table in ast.walk(tree)
+        if isinstance(table, ast.ClassDef)
+        for field, below in pairwise(table.body)
+        if isinstance(field, ast.AnnAssign) and isinstance(field.target, ast.Name)
+        if isinstance(below, ast.Expr) and isinstance(below.value, ast.Constant)
+        if isinstance(below.value.value, str)
+    }
 
 
 def _shorten(schema: JsonSchemaValue, table: type) -> None:
     """Shorten the descriptions in a JSON Schema to one line each."""
     schema["description"] = " ".join(str(table.__doc__).split("\n\n")[0].split())
     for key, rule in schema.get("properties", {}).items():
-        rule["description"] = describe(fields_of(table)[names_of(table)[key]])
+        rule["description"] = describe(table, names_of(table)[key])
 
 
 # Pydantic configuration of parts: unknown fields are errors.
-PART = ConfigDict(extra="forbid", use_attribute_docstrings=True, json_schema_extra=_shorten)
+PART = ConfigDict(extra="forbid", json_schema_extra=_shorten)
 
 Positive = Annotated[float, Field(strict=True, gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(strict=True, ge=0.0, allow_inf_nan=False)]
@@ -229,7 +251,7 @@ def error_in_python(table: Any, error: ValidationError) -> BoomError:
     if kind == "missing":
         name = str(steps[0])
         how = "" if name in by_position else f"; give {name}=… by name"
-        return BoomError(where, f"missing{how}; it is {describe(known[name])}")
+        return BoomError(where, f"missing{how}; it is {describe(table, name)}")
     if kind in MESSAGES:
         return BoomError(where, MESSAGES[kind].format(**limits))
     valid = {**VALID_INPUT, **_VALID_IN_PYTHON}.get(kind)

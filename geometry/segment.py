@@ -263,6 +263,12 @@ class Segment:
         """The mass in kg, including all attached masses."""
         return self.mass_per_length * self.length + sum(point.mass for point in self.all_masses)
 
+    @property
+    def mass_moment(self) -> float:
+        """The first moment of all masses about x = 0 in kg·m."""
+        attached = sum(point.mass * point.x for point in self.all_masses)
+        return self.mass_per_length * self.length * self.mass_centre + attached
+
     def mean_width(self, collar: Collar) -> float:
         """Return the width in m of a collar around the section at its midpoint."""
         return collar.width(self.section_at(collar.midpoint))

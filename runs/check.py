@@ -132,7 +132,10 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     case, boom, preview = checked.case, checked.boom, Preview(checked)
     static, context = statics(case, boom), Context(case, boom)
     beam = None if static is None else context.beam
-    context.rows = Rows() if beam is None else _beam_rows(beam)
+    context.rows = Rows()
+    if beam is not None:
+        plates = extremes(measure_plates(beam), BEAM, REST)
+        context.rows = Rows([*static_rows(beam, BEAM), *plates])
     factors = {
         _beam_name(model): model.coarsen(boom).critical_factor(checked.model_boom(model))
         for model in (case.models if boom.compressed else ())
@@ -173,11 +176,6 @@ def check_case(checked: CheckedCase, progress: Progress = ignore_progress) -> Ch
     lines = sorted(map(case.system.convert, lines), key=lambda line: not line.startswith(_FIRST))
     deciding, inputs = ([table for table in tables if table.rows] for tables in (deciding, inputs))
     return Check(case.title, deciding, inputs, lines)
-
-
-def _beam_rows(beam: States) -> Rows:
-    """Return the static results of the beam, with the buckling factors of its plates."""
-    return Rows([*static_rows(beam, BEAM), *extremes(measure_plates(beam), BEAM, REST)])
 
 
 def _beam_name(model: Model) -> str:

@@ -94,7 +94,6 @@ def run(
         from protractile.runs.pipeline.model_run import RunContext
         from protractile.runs.pipeline.results import prepare
         from protractile.runs.pipeline.run import run_case
-        from protractile.runs.report import output
         from protractile.runs.report.additions import judge
         from protractile.runs.report.terminal_tables import (
             print_failures,
@@ -120,12 +119,15 @@ def run(
                     [model.name for model in effective.models], Path(case).stem
                 ) as report_progress,
             ):
-                renderers = (
-                    () if no_pictures else ("protractile.runs.report.snapshots", "pyvista.plotting")
-                )
-                context = RunContext(comm, report_progress, cache, cache, helper, renderers)
+                pictures = "protractile.runs.report.snapshots", "pyvista.plotting"
+                writers = ("protractile.runs.report.output",)
+                tools = cache, cache, helper, () if no_pictures else pictures, writers
+                context = RunContext(comm, report_progress, *tools)
                 finished = run_case(effective, case, context, print_first_results)
                 assert finished is not None
+                # The libraries of figures take half a second, for which no number waits.
+                from protractile.runs.report import output
+
                 with output.write_in_two_steps(finished, part, not no_pictures, helper) as write:
                     finished.evaluate()
                     add_cautions(finished.results)
@@ -201,9 +203,8 @@ def snapshot(
         try:
             times = sorted(set(time)) if time else None
             motion = Path(folder) / TRAJECTORIES
-            more = snapshots.ON_REQUEST
             with snapshots.start_rendering(
-                results, shells, motion, part, times, more=more
+                results, shells, motion, part, times, every_view=True
             ) as gather:
                 names_of_pictures = gather()
         except RenderingUnavailable as reason:
@@ -264,8 +265,7 @@ def sweep(
         folder = Path(out or f"runs/out/{Path(case).stem}-sweep")
         if comm is None or comm.rank == 0:
             sweep_runs.prepare(folder, case)
-        several = comm is not None and comm.size > 1
-        with members.rank_executor(comm) if several else workers.workers(None) as pool:
+        with members.rank_executor(comm, workers.workers) as pool:
             if pool is None:
                 return 0
             with terminal.display() as report_progress:

@@ -30,7 +30,7 @@ from protractile.runs.pipeline.results import FIELDS, Results, read_fields
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import show_notices
 from protractile.runs.report import theme
-from protractile.runs.report.boom_drawing import draw_boom_of
+from protractile.runs.report.boom_drawing import save_drawing
 from protractile.runs.report.opengl import require_opengl
 from protractile.runs.report.scene import (
     SAME_PLACE,
@@ -78,7 +78,8 @@ def pictures(runs: Path) -> Iterator[tuple[str, Image.Image]]:
         yield name, Image.open(path).convert("RGB")
     with TemporaryDirectory() as folder:
         drawing = Path(folder) / "lift.png"
-        draw_boom_of(case_file.load(str(CASES / "lift.toml")), drawing)
+        case = str(CASES / "lift.toml")
+        save_drawing(case_file.load(case), case, str(drawing))
         yield "lift", Image.open(drawing).convert("RGB")
     yield "crane-speeds", draw_speeds(runs)
     results = Results.load(runs / "paper")
@@ -112,7 +113,7 @@ def draw_speeds(runs: Path) -> Image.Image:
             with path.open(newline="", encoding="utf-8") as file:
                 rows = [(float(row[key]), float(row[quantity])) for row in csv.DictReader(file)]
             panel.plot(*zip(*rows, strict=True), "o-", color=theme.INNER)
-            panel.axhline(limit, **theme.LIMIT)
+            panel.axhline(limit, color=theme.INK, linewidth=1.2, linestyle=":")
             panel.set(xlabel=along, ylabel=up)
         drawn = BytesIO()
         sheet.savefig(drawn, dpi=100)

@@ -21,8 +21,9 @@ from protractile.shell_model.contact.wall_rows import CornerLines
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.stress.fields import gather_stress_modes
 from protractile.shell_model.stress.history import stress_near_places
-from protractile.shell_model.stress.stresses import ShellStress, wall_forces
+from protractile.shell_model.stress.stresses import ShellStress
 from studies.motions import friction_case, model_of
+from studies.reference_models.shell_readings import wall_forces
 from studies.reference_models.single_segment import at_rest, shell_alone
 from studies.refined import Refined, refined_table
 from studies.study import Criterion, Piece, Progress, Verification, define_study

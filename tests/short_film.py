@@ -6,12 +6,10 @@ from unittest.mock import patch
 
 from protractile.runs.report import snapshots
 from protractile.runs.report.sheet import Snapshot
+from protractile.runs.report.snapshots import render_motion
 
 
 def render_short(*given: Any) -> list[Snapshot]:
     """Stand in for :func:`.runs.report.snapshots.render_motion`."""
     with patch.object(snapshots, "FRAMES", 3):
-        return snapshots.render_motion(*given)
-
-
-RENDERED = (render_short,)
+        return render_motion(*given)

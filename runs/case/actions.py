@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 from pydantic import ValidationError
-from scipy.special import cosdg, sindg
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
@@ -49,7 +48,7 @@ def loads(case: Case, segments: Sequence[Segment], joints: Sequence[Joint]) -> I
         yield _load(f"load[{number}]", table)
     last, end, extra = len(segments) - 1, segments[-1].end, _extra_weight(case)
     if extra:
-        up = -1.0 if gravity is None else -float(cosdg(gravity.angle))
+        up = -1.0 if gravity is None else -gravity.cosine
         yield Load(last, "z", extra * up, end, Step())
     if case.head is not None:
         yield from head_moments(case, case.head, last, end)
@@ -155,7 +154,7 @@ def tip_thrusts(case: Case, segments: Sequence[Segment]) -> Iterator[Thrust]:
     last, end, gravity, hoist = len(segments) - 1, segments[-1].end, case.gravity, case.hoist
     if gravity is not None:
         hanging = gravity.acceleration * hoist.mass if hoist and hoist.hanging else 0.0
-        yield Thrust(last, end, (_extra_weight(case) + hanging) * float(sindg(gravity.angle)))
+        yield Thrust(last, end, (_extra_weight(case) + hanging) * gravity.sine)
     if case.wind is not None:
         along = wind_direction(radians(case.wind.direction), _luffing(case))[0]
         peak = build_history("wind", case.wind).peak
@@ -191,7 +190,7 @@ def lead_of(case: Case, segments: Sequence[Segment], weight: float) -> Iterator[
     if foot is None:
         raise BoomError("rope.winch", f"{segments[0].name!r} has no support to measure it from")
     if rope.falls is None and hoist is None:
-        raise BoomError("rope.falls", f"missing; it is {describe(RopeTable.model_fields['falls'])}")
+        raise BoomError("rope.falls", f"missing; it is {describe(RopeTable, 'falls')}")
     if rope.falls is not None and hoist is not None and hoist.falls != 1:
         raise BoomError("rope.falls", "hoist.falls is given; leave one of them out")
     falls = rope.falls or (1 if hoist is None else hoist.falls)

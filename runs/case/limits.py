@@ -17,7 +17,8 @@ from protractile.geometry.fields import PART, In, declared_units, fields_of, nam
 class CaseTable(BaseModel):
     """An immutable table of the case file. Unknown keys are errors."""
 
-    model_config = ConfigDict(**PART, frozen=True)
+    # The case builds the schema of the tables within it once, for all of them.
+    model_config = ConfigDict(**PART, frozen=True, defer_build=True)
 
     def declared_units(self, key: str) -> tuple[str, ...]:
         """Return the units that a field declares by :class:`.geometry.fields.In`."""

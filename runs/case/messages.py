@@ -10,7 +10,6 @@ from difflib import get_close_matches
 from typing import Any, get_args
 
 from pydantic import ValidationError
-from pydantic.fields import FieldInfo
 
 from protractile.geometry.fields import (
     MESSAGES,
@@ -92,7 +91,7 @@ def _explain(
     if fault == "missing" and isinstance(location[-1], int):
         return _key(location[:-1]), f"must be {_pair(location)}, got {format_value(value)}"
     if fault == "missing":
-        return key, f"missing; it is {describe(_field(location))}"
+        return key, f"missing; it is {describe(*_field(location))}"
     if fault == "union_tag_not_found":
         return f"{key}.kind", f"missing; give {choices([*KINDS])}"
     if fault in UNKNOWN:
@@ -159,9 +158,10 @@ def _models(annotation: Any) -> Iterator[type]:
         yield from _models(part)
 
 
-def _field(location: Sequence[int | str]) -> FieldInfo:
+def _field(location: Sequence[int | str]) -> tuple[type, str]:
+    """Return the class and the name of the field at a path."""
     table = _table(location)
-    return fields_of(table)[names_of(table)[str(location[-1])]]
+    return table, names_of(table)[str(location[-1])]
 
 
 def _unknown_key(location: Sequence[int | str]) -> str:
@@ -176,7 +176,7 @@ def _unknown_key(location: Sequence[int | str]) -> str:
     if "." in synonym:
         return f"unknown key; use {synonym}"
     if synonym in keys:
-        return f"unknown key; use {synonym}, {describe(fields_of(table)[names_of(table)[synonym]])}"
+        return f"unknown key; use {synonym}, {describe(table, names_of(table)[synonym])}"
     near = [known for known in keys if sorted(known.split("_")) == sorted(key.split("_"))]
     near = near or get_close_matches(shorten(key), keys, n=1)
     if near:

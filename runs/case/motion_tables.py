@@ -132,7 +132,7 @@ class TravelTable(CaseTable):
     @classmethod
     def meaning(cls, key: str) -> str:
         """Return the description of a key."""
-        return describe(cls.model_fields[key])
+        return describe(cls, key)
 
 
 class DriveTable(TravelTable):

@@ -7,8 +7,6 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from math import pi
 
-from scipy.special import sindg
-
 from protractile.dynamics.contact import Gap
 from protractile.dynamics.excitation import History, is_constant
 from protractile.dynamics.frame_motion import FrameAcceleration, FrameMotion, Spin
@@ -216,7 +214,7 @@ def hoist_changes(
         return
     weight = (-1.0 if table.dropped else 1.0) * table.mass * case.gravity.acceleration
     leads = tuple(lead_of(case, segments, weight))
-    last, end, along = len(segments) - 1, segments[-1].end, float(sindg(case.gravity.angle))
+    last, end, along = len(segments) - 1, segments[-1].end, case.gravity.sine
     forces = (weight * along, *(lead.force for lead in leads))
     thrusts = [Thrust(last, end, force) for force in forces]
     loaded_segments = with_compression(segments, joints, thrusts)

@@ -278,7 +278,7 @@ def _pairs_of_file(path: str, key: str, table: Any, system: System) -> dict[str,
             raise BadInput(path, key_of_file, str(error)) from None
     if isinstance(table, HistoryTable):
         if not read.has_unit and table.amount not in table.model_fields_set:
-            what = describe(type(table).model_fields[table.amount])
+            what = describe(type(table), table.amount)
             raise BadInput(path, f"{key}.{table.amount}", f"missing; it is {what}")
         # Values that are set are in the units of the case file; defaults would be in SI units.
         changes[table.amount] = getattr(table, table.amount)

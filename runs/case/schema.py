@@ -7,13 +7,13 @@ The string below a key is its description in the JSON Schema and in messages.
 from __future__ import annotations
 
 from functools import reduce
+from math import radians, sin
 from operator import or_
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, create_model, model_validator
 from pydantic.dataclasses import dataclass
 from pydantic.json_schema import GenerateJsonSchema
-from scipy.special import cosdg, sindg
 
 from protractile.geometry.chassis import Chassis
 from protractile.geometry.cylinder import Cylinder
@@ -115,14 +115,24 @@ class GravityTable(CaseTable):
     """the luffing angle of the boom in degrees, positive where the tip is up"""
 
     @property
+    def sine(self) -> float:
+        """The sine of the luffing angle θ."""
+        return sin(radians(self.angle))
+
+    @property
+    def cosine(self) -> float:
+        """The cosine of the luffing angle θ, exactly 0 at 90 degrees."""
+        return sin(radians(90.0 - abs(self.angle)))
+
+    @property
     def across(self) -> float:
         """The component g cos θ in m/s², towards −z."""
-        return self.acceleration * float(cosdg(self.angle))
+        return self.acceleration * self.cosine
 
     @property
     def along(self) -> float:
         """The component g sin θ in m/s², towards the base."""
-        return self.acceleration * float(sindg(self.angle))
+        return self.acceleration * self.sine
 
 
 class VelocityTable(CaseTable):

@@ -61,7 +61,7 @@ def material_of(case: Case, index: int) -> Material:
         raise BoomError(
             "material",
             f"missing, and {case.segments[index].name!r} has none of its own; it is "
-            f"{describe(Case.model_fields['material'])}",
+            f"{describe(Case, 'material')}",
         )
     return table
 
@@ -124,7 +124,7 @@ def _check_plates(case: Case, index: int, section: Section) -> None:
 
 
 def _missing_key_error(index: int, key: str) -> BoomError:
-    what = f"missing; it is {describe(SegmentTable.model_fields[key])}"
+    what = f"missing; it is {describe(SegmentTable, key)}"
     return BoomError(f"segment[{index + 1}].{key}", what)
 
 

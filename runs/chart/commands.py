@@ -57,8 +57,7 @@ def chart(
     with ranks.end_all_ranks_on_error(comm):
         if comm is None or comm.rank == 0:
             output.prepare(folder, case)
-        several = comm is not None and comm.size > 1
-        with members.rank_executor(comm) if several else workers.workers(None) as pool:
+        with members.rank_executor(comm, workers.workers) as pool:
             if pool is None:
                 return 0
             with terminal.display() as report_progress:

@@ -19,7 +19,6 @@ from protractile.analysis.evaluation import evaluate_motion, evaluate_rest
 from protractile.analysis.rows import REST, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.integrator import FixedStep
-from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.boom import Boom
 from protractile.geometry.typography import TO_MILLI, number
 from protractile.runs.case.build import build_boom
@@ -129,23 +128,20 @@ def beam_results(
             for check in results.check_limits()
             for value in check.values.values()
         ]
+        tips = [
+            Curve(name.replace("_", " "), TO_MILLI * trajectory.data[name].values, theme.PALETTE[k])
+            for k, name in enumerate(("tip", "tip_lateral"))
+            if name in trajectory.data
+        ]
+        tip_chart = Chart(trajectory.time, tips, ["tip deflection (mm)"])
         yield {
             "stage": stage,
             "rows": [*(row for row in whole.rows if row not in table.rows), *limits],
             "notes": whole.notes,
             "utilisation": utilisation_verdict(results),
             "cautions": cautions(Context.of_run(results)),
-            "tip": _tip_chart(trajectory),
+            "tip": _plotly_figure(tip_chart),
         }
-
-
-def _tip_chart(trajectory: Trajectory) -> Any:
-    curves = [
-        Curve(name.replace("_", " "), TO_MILLI * trajectory.data[name].values, theme.PALETTE[k])
-        for k, name in enumerate(("tip", "tip_lateral"))
-        if name in trajectory.data
-    ]
-    return _plotly_figure(Chart(trajectory.time, curves, ["tip deflection (mm)"]))
 
 
 def _check_cost(cost: Cost, case: Case, file: str) -> None:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from pydantic.fields import FieldInfo
 
 from protractile.geometry.boom import Boom
 from protractile.geometry.fields import describe, fields_of, is_number
@@ -147,10 +146,11 @@ class Draft:
         if keys[0] not in self._numbers:
             raise BadInput(self.file, key, "is not a number of the case; choose one of the list")
         place, value = self._numbers[keys[0]]
+        table, name = innermost(place, self.case)
         unit, system = unit_of(place, self.case), self.case.system
         ranges = [self._range(*self._numbers[control]) for control in keys]
         low, high = max(bounds[0] for bounds in ranges), min(bounds[1] for bounds in ranges)
-        help_text = describe(_field(self.case, place))
+        help_text = describe(type(table), name)
         in_unit = [system.of(number, unit or "1") for number in (value, low, high)]
         return Control(
             key,
@@ -164,7 +164,8 @@ class Draft:
 
     def _range(self, place: Place, value: float) -> tuple[float, float]:
         """Return the range of a number in SI units, within the limits of schema and checks."""
-        rules = _field(self.case, place).metadata
+        table, name = innermost(place, self.case)
+        rules = fields_of(type(table))[name].metadata
         low = max((float(rule.ge) for rule in rules if hasattr(rule, "ge")), default=-math.inf)
         high = min((float(rule.le) for rule in rules if hasattr(rule, "le")), default=math.inf)
         if not (math.isfinite(low) and math.isfinite(high)):
@@ -234,8 +235,3 @@ class Draft:
         proofs = dict.fromkeys(("load_cases", "combinations", "spectra"), ())
         beam_case = case.model_copy(update={"models": (beam,), "time": time, **proofs})
         return reading.check(beam_case, self.file)
-
-
-def _field(case: Case, place: Place) -> FieldInfo:
-    table, name = innermost(place, case)
-    return fields_of(type(table))[name]

@@ -92,8 +92,8 @@ def evidence(case: Case) -> Mapping[str, Sequence[str]]:
     heads = ["figure-head", *heads]
     tip, close_up = "figure-tip", "figure-tip-close-up"
     slow = [] if regular else [tip]
-    slow += ["figure-slow-peaks", "table-horizons", "table-slow-peaks"]
-    numerics = ["figure-energy-residual", "table-steps"] if regular else []
+    slow += ["table-horizons", "table-slow-peaks"]
+    numerics = ["table-models", "table-steps"] if regular else []
     return {
         "S1": [close_up],
         "S2": slow,
@@ -101,8 +101,8 @@ def evidence(case: Case) -> Mapping[str, Sequence[str]]:
         "S4": [close_up, "table-pointwise"],
         "S5": [close_up],
         "S6": [close_up, *heads],
-        "S7": [*([tip, *heads] if regular else []), "figure-friction", "table-whole"],
-        "S8": ["figure-friction", *numerics],
+        "S7": [*([tip, *heads] if regular else []), "table-whole"],
+        "S8": numerics,
         "S9": ["table-laws"],
         "S10": ["table-steps"],
         "S11": [tip, close_up] if len(case.segments) > 2 else [],

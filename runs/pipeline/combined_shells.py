@@ -200,8 +200,8 @@ def _with_buckling(
             state = ShellState.from_fields(built.shell.fields, shell.system, position, extensions)
     count, meshes = case.buckling.modes, built.shell.meshes
     buckled = buckle_shell(shared[0], meshes, state, model.options(), count, context.comm)
-    if buckled is not None:
-        states[governing] = replace(states[governing], buckling=buckled.segments)
+    if buckled:
+        states[governing] = replace(states[governing], buckling=buckled)
     return states
 
 

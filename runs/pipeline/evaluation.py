@@ -59,6 +59,7 @@ class Evaluation(NamedTuple):
     curves: Sequence[Curve]  #: diagrams, envelopes and mode shapes
     modes: Sequence[Mode]  #: the first modes about the equilibrium; empty without an equilibrium
     design: ModelDesignResults  #: other design results
+    loaded: AnalysisModel | None = None  #: the model with its lines; None if it failed
 
 
 def life_of(case: Case) -> Life:
@@ -78,33 +79,34 @@ def evaluate_model(boom: Boom, case: Case, ran: ModelRun) -> Evaluation:
         rows += extremes(measure_walls(loaded.boom, shell.stresses), model.name, MOTION)
         curves += histories(shell.stresses, model.name)
     design = ModelDesignResults(
-        buckling=shell.buckling.segments if shell and shell.buckling else [],
+        buckling=ran.buckling,
         residual_vibration=residual_vibration(loaded.system, trajectory, case, model),
         hoisting=hoisting(case, boom, trajectory),
         drives=crane_drives(case, boom, trajectory.data),
     )
-    return Evaluation(rows, curves, first, design)
+    return Evaluation(rows, curves, first, design, loaded)
 
 
 def evaluate_both(boom: Boom, case: Case, ran: ModelRun, found: Evaluation) -> Evaluation:
     """Return the results of a model after its run, with play as ``found``, and without play."""
-    if ran.model.bonded or not boom.joints:
+    if ran.model.bonded or not boom.joints or found.loaded is None:
         return found
     rows, curves = [*found.rows], [*found.curves]
     # Rigid segments without play, for example, have no degree of freedom.
     with suppress(*NUMERICAL_ERRORS):
-        for more_rows, more_curves in _without_play(boom, case, ran):
+        for more_rows, more_curves in _without_play(boom, case, ran.model, found.loaded):
             rows += more_rows
             curves += more_curves
     return found._replace(rows=rows, curves=curves)
 
 
-def _without_play(boom: Boom, case: Case, ran: ModelRun) -> Iterator[tuple[list[Row], list[Curve]]]:
+def _without_play(
+    boom: Boom, case: Case, model: Model, loaded: AnalysisModel
+) -> Iterator[tuple[list[Row], list[Curve]]]:
     """Yield rows and curves of a model without play: of static states, then of a motion.
 
-    A motion that cannot be computed is left out.
+    A motion that cannot be computed is left out. ``loaded`` is the model with play.
     """
-    model, loaded = ran.model, ran.model.analysis_model(boom, ran.built)
     times = instants(loaded.system, case.time.duration)
     rests = States.of(loaded, equilibria(loaded.system, times))
     bonded = _bonded_model(boom, case, model, rests)

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from concurrent.futures import Executor
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
@@ -40,13 +40,16 @@ PEAK_TOLERANCE = 0.01
 _FIRST_POWER, _MAX_STEP_SHARE = -4, 0.25
 
 
-def rank_executor(comm: MPI.Intracomm | None) -> AbstractContextManager[Executor | None]:
+def rank_executor(
+    comm: MPI.Intracomm | None, alone: Callable[[], AbstractContextManager[Any]] = nullcontext
+) -> AbstractContextManager[Executor | None]:
     """Return an executor for the first rank, which all other ranks work for. Collective.
 
-    The first rank gets None if it is the only one. Other ranks get None after their work.
+    A single rank gets the executor of ``alone``, by default None. Other ranks get None after their
+    work.
     """
     if comm is None or comm.size == 1:
-        return nullcontext()
+        return alone()
     from mpi4py.futures import MPICommExecutor
 
     executor: AbstractContextManager[Executor | None] = MPICommExecutor(comm, root=0)

@@ -17,7 +17,6 @@ import numpy.typing as npt
 
 from protractile.analysis.equilibria import equilibria
 from protractile.analysis.modes import MODES
-from protractile.analysis.wall_buckling import BuckledShell
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.line import Line, LineQuantity
 from protractile.dynamics.trajectory import Trajectory
@@ -57,8 +56,6 @@ class ShellOutput:
     #: largest of these stresses, and the forces in the walls at the time of this stress
     largest: StressSummary
     meshes: dict[str, PlatedMesh]  #: mesh of each segment, by name
-    #: buckling of the walls, with shapes in ``fields``; None without the table ``buckling``
-    buckling: BuckledShell | None = None
 
     @property
     def modes(self) -> xr.Dataset | None:
@@ -77,7 +74,6 @@ class ShellOutput:
         name: str,
         reduced: ReducedShell,
         trajectory: Trajectory,
-        buckling: BuckledShell | None = None,
     ) -> ShellOutput:
         """Return the output of a shell after its motion, on rank 0."""
         assert reduced.fields is not None
@@ -88,12 +84,10 @@ class ShellOutput:
             time=("time", trajectory.time, {"units": "s"}),
             **_modes(reduced),
         ).assign_attrs(model=name)
-        if buckling is not None and buckling.shapes is not None:
-            fields = fields.assign(buckling.shapes)
         shell = ShellStress.from_fields(fields)
         stresses = stress_near_places(shell, force_places(boom), names).assign_attrs(model=name)
         meshes = dict(zip(names, reduced.meshes, strict=True))
-        return cls(fields, stresses, summarise(shell, stresses), meshes, buckling)
+        return cls(fields, stresses, summarise(shell, stresses), meshes)
 
     def write_files(self, folder: Path, prefix: str) -> None:
         """Write stresses, field series and meshes to a folder that already has the fields.
@@ -107,7 +101,10 @@ class ShellOutput:
         meshes, series = folder / "mesh" / prefix.removesuffix("-"), folder / SERIES
         for place in (meshes, series):
             place.mkdir(parents=True, exist_ok=True)
-        write_field_series(self.fields, series, series_times(self.fields))
+        times = self.fields["time"].values
+        frames = max(2, min(SERIES_FRAMES, TRIANGLES // self.fields.sizes["triangle"]))
+        even = np.linspace(times[0], times[-1], frames).tolist()
+        write_field_series(self.fields, series, even)
         if (modes := self.modes) is not None:
             of_modes = modes.assign_attrs(model=f"{modes.attrs['model']}-modes")
             write_field_series(of_modes, series, modes["time"].values.tolist())
@@ -173,13 +170,6 @@ def _modes(reduced: ReducedShell) -> dict[str, Any]:
         "contact_mode": ("contact_mode", omega[:MODES] / (2.0 * np.pi), {"units": "Hz"}),
         "contact_mode_shape": (("contact_mode", "mode"), modes / largest[:, None]),
     }
-
-
-def series_times(fields: xr.Dataset) -> list[float]:
-    """Return the evenly spaced times of a series in s, from the start to the end of the run."""
-    times = fields["time"].values
-    frames = max(2, min(SERIES_FRAMES, TRIANGLES // fields.sizes["triangle"]))
-    return [float(t) for t in np.linspace(times[0], times[-1], frames)]
 
 
 def write_field_series(fields: xr.Dataset, folder: Path, times: Sequence[float]) -> list[Path]:

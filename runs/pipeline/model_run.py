@@ -16,7 +16,7 @@ import numpy as np
 import xarray as xr
 
 from protractile.analysis.low_pass import SlowPeaks
-from protractile.analysis.wall_buckling import buckle_shell, farthest_state
+from protractile.analysis.wall_buckling import WallBuckling, buckle_shell, farthest_state
 from protractile.beam_model.calibration import Calibration, Stiffness
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.failure import NUMERICAL_ERRORS, NumericsError
@@ -73,6 +73,8 @@ class RunContext:
     helper: Executor | None = None
     #: modules for pictures, which the helper imports after it has reduced a shell
     renderers: Sequence[str] = ()
+    #: modules that the thread of the beams imports after them, while a shell is built
+    writers: Sequence[str] = ()
 
     @property
     def first_rank(self) -> bool:
@@ -106,6 +108,7 @@ class ModelRun:
     built: BuiltModel
     motion: CompletedMotion
     shell: ShellOutput | None
+    buckling: list[WallBuckling]  #: buckling of the walls of each segment; empty if not requested
     stages: Stages
 
 
@@ -150,7 +153,7 @@ def run_model(
                 # A broken helper is reported when it is to draw.
                 with suppress(BrokenExecutor):
                     helper.submit(import_module, name)
-    buckling = None
+    buckling: list[WallBuckling] = []
     if case.buckling is not None and isinstance(model, Shell):
         assert comm is not None
         with stages.stage("buckling"):
@@ -192,10 +195,10 @@ def run_model(
         summary.local_compliance = list(reduced.local_compliance)
         summary.mesh_error = reduced.mesh_error
         with stages.stage("stress"):
-            shell = ShellOutput.of(boom, model.name, reduced, motion.trajectory, buckling)
+            shell = ShellOutput.of(boom, model.name, reduced, motion.trajectory)
         summary.stress = shell.largest
     summary.seconds, summary.wall_time = stages.seconds, perf_counter() - begin
-    return ModelRun(model, built, motion, shell, stages)
+    return ModelRun(model, built, motion, shell, buckling, stages)
 
 
 def _integrate(

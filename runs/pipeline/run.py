@@ -8,6 +8,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
+from importlib import import_module
 from threading import Lock
 
 import numpy as np
@@ -146,7 +147,7 @@ def run_case(
                 number = 1 + case.models.index(model)
                 raise NumericsError(f"{file}: model[{number}]: {error}") from error
 
-    outcomes = _attempt_all(case.models, attempt, context.alone)
+    outcomes = _attempt_all(case.models, attempt, context)
     if not context.first_rank:
         return None
     ran = {name: outcome for name, outcome in outcomes.items() if isinstance(outcome, ModelRun)}
@@ -216,17 +217,19 @@ def _results(
 def _attempt_all(
     models: Sequence[Model],
     attempt: Callable[[Model], ModelRun | Exception | None],
-    alone: bool,
+    context: RunContext,
 ) -> dict[str, ModelRun | Exception | None]:
     """Return the result or the failure of each model, in the order of the models.
 
     On a single rank a thread runs the beams while shells are built, since the compiled time loop
     releases the interpreter lock.
     """
-    if not alone or not any(model.needs_shell for model in models):
+    if not context.alone or not any(model.needs_shell for model in models):
         return {model.name: attempt(model) for model in models}
     with ThreadPoolExecutor(1) as thread:
         beams = {m.name: thread.submit(attempt, m) for m in models if not m.needs_shell}
+        for name in context.writers:
+            thread.submit(import_module, name)
         try:
             shell_runs = {model.name: attempt(model) for model in models if model.needs_shell}
         except BaseException:

@@ -36,7 +36,8 @@ FiniteNumber = Annotated[
 class SummaryTable(BaseModel):
     """Table of the summary, without unknown keys."""
 
-    model_config = ConfigDict(extra="forbid", validate_assignment=True)
+    # Only a run has a summary; others need the quantities of its classes alone.
+    model_config = ConfigDict(extra="forbid", validate_assignment=True, defer_build=True)
 
 
 class FirstPeak(NamedTuple):

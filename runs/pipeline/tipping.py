@@ -8,10 +8,9 @@ from math import cos, radians, sin
 
 from protractile.analysis.rows import BEAM, COMBINATION, Row
 from protractile.analysis.states import States
-from protractile.geometry.axial import lumped_masses
 from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import CraneForce
-from protractile.geometry.load import Load, Moment, PartialLoad
+from protractile.geometry.load import Moment, PartialLoad
 from protractile.runs.case.actions import loads, tip_thrusts
 from protractile.runs.case.combinations import CombinedCase, tip_masses
 from protractile.runs.case.schema import Case
@@ -94,12 +93,11 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
     chassis = case.chassis
     start = (chassis.foot_ahead, chassis.foot_above) if chassis else (0.0, 0.0)
     masses = tip_masses(case, combined.table)
-    points = [point for segment in boom.segments for point in lumped_masses(segment)]
     hung = sum(mass for _, mass in masses)
-    mass = sum(point.mass for point in points) - hung
-    moment = sum(point.mass * (point.x - foot) for point in points) - hung * (boom.tip - foot)
-    weight = factors["dead"] * gravity
-    yield CraneForce(weight * mass, start[0] + moment / mass * along)
+    moment = sum(segment.mass_moment for segment in boom.segments) - hung * boom.tip
+    centre = moment / (boom.mass - hung) - foot
+    weight = factors["dead"] * gravity * (boom.mass - hung)
+    yield CraneForce(weight, start[0] + centre * along)
     radius, above = hook_place(case, boom, angle, tip)
     for group, hanging in masses:
         yield CraneForce(factors[group] * gravity * hanging, radius)
@@ -116,13 +114,7 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
             yield CraneForce(0.0, moment=-load.magnitude)
             continue
         force = load.resultant(segment.length)
-        x = _centre(load, segment.ends) - foot
+        span = load.span if isinstance(load, PartialLoad) else segment.ends
+        x = (sum(span) / 2.0 if load.x is None else load.x) - foot
         place = start[0] + x * along, start[1] + x * up
         yield CraneForce(-force * along, place[0], -force * up, place[1])
-
-
-def _centre(load: Load, ends: tuple[float, float]) -> float:
-    """Return the x in m of the resultant of a load."""
-    if load.x is not None:
-        return load.x
-    return sum(load.span if isinstance(load, PartialLoad) else ends) / 2.0

@@ -66,7 +66,7 @@ def _worker_environment() -> Iterator[None]:
 
 
 @contextmanager
-def workers(count: int | None, prepare: Callable[[], object] = int) -> Iterator[Executor]:
+def workers(count: int | None = None, prepare: Callable[[], object] = int) -> Iterator[Executor]:
     """Yield an executor of several processes, by default one per core, which end with this process.
 
     Each process calls ``prepare`` first.

@@ -99,27 +99,18 @@ def boom(run: FigureContext) -> list[Figure]:
     return [Figure("boom", "The boom", CAPTION, "case", drawing=drawing, main=True)]
 
 
-def draw_boom_of(case: Case, path: Path) -> None:
-    """Draw the boom of a case twice, to scale and with exaggerated heights, and its sections.
-
-    The path is that of a PNG file.
-    """
-    with rc_context(theme.RC):
-        boom_sheet(case, build_boom(case)).savefig(path, format="png")
-
-
 def save_drawing(case: Case, file: str, picture: str) -> None:
-    """Draw the boom of a case into a file, atomically.
+    """Draw the boom of a case to scale and with exaggerated heights, and its sections, into a file.
 
-    The name ``file`` of the case is for messages.
+    The file is written atomically. The name ``file`` of the case is for messages.
 
     Raises:
         BadInput: the path does not end with ``.png``.
     """
     if Path(picture).suffix.lower() != ".png":
         raise BadInput(file, f"--picture {picture}", "must end in .png")
-    with atomic_path(Path(picture)) as part:
-        draw_boom_of(case, part)
+    with atomic_path(Path(picture)) as part, rc_context(theme.RC):
+        boom_sheet(case, build_boom(case)).savefig(part, format="png")
 
 
 def boom_sheet(case: Case, boom: Boom) -> Sheet:
@@ -207,7 +198,8 @@ def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
             annotation_clip=False,
         )
     margin = MARGIN * boom.length
-    reach = boom.segments[0].start - margin, boom.tip + _farthest(boom) + margin
+    travel = max(0.0, farthest_travel(boom, len(boom.segments) - 1))
+    reach = boom.segments[0].start - margin, boom.tip + travel + margin
     tallest = factor * max(abs(z) for s in boom.segments for x in s.ends for z in edges(boom, s, x))
     axes.set(xlim=reach, ylim=(-2.9 * tallest, 2.6 * tallest), yticks=[])
     axes.grid(False)
@@ -276,11 +268,6 @@ def _draw_cylinder(panel: Panel, cylinder: Cylinder) -> None:
     panel.line([0.5 * (lug + ground), ground], color=theme.INK, linewidth=4.0)
     thick = Line2D([], [], color=theme.INK, linewidth=4.0)
     panel.meanings[f"cylinder, {abbreviate(cylinder.axial_stiffness, 'N/m')}"] = thick
-
-
-def _farthest(boom: Boom) -> float:
-    """Return the largest travel of the tip from its initial position in m."""
-    return max(0.0, farthest_travel(boom, len(boom.segments) - 1))
 
 
 def _height_factor(boom: Boom) -> float:

@@ -1,25 +1,24 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Pictures of a whole deformed boom, and of the first buckling mode of each segment."""
+"""Pictures of a whole deformed boom."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
-from matplotlib import rc_context
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from PIL import Image
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import join_words, number
+from protractile.geometry.typography import join_words
 from protractile.runs.report import theme
 from protractile.runs.report.marks import marks_of
 from protractile.runs.report.scene import (
     SECTION_DRAWN,
     Instant,
-    Numbers,
     Scene,
 )
 from protractile.runs.report.sheet import (
@@ -28,7 +27,6 @@ from protractile.runs.report.sheet import (
     UNLIT,
     Camera,
     Sheet,
-    Snapshot,
     sharp_edges,
     stage,
     surface,
@@ -38,11 +36,6 @@ PIXELS = (SHEET[0], 470)
 
 # Percentile of the stresses at the end of the colour scale.
 PERCENTILE = 99.0
-
-# Pictures of buckling modes: size in pixels; length of the picture, and largest displacement in it,
-# over the height of the section.
-MODE_PIXELS = (SHEET[0], 560)
-MODE_LENGTH, MODE_DRAWN = 4.0, 0.12
 
 
 @dataclass(frozen=True, slots=True)
@@ -118,13 +111,10 @@ def draw_boom(
     time, tip = scene.motion["time"].values, 1.0e3 * scene.motion["tip"].values
     sheet = Sheet(camera.pixels, 325, part)
     sheet.mark_x(camera, *view.span)
-    bar = sheet.colour_bar((1110, 150, 420, 40), view.largest, theme.STRESS)
+    scale = ScalarMappable(Normalize(0.0, view.largest), theme.STRESS)
+    bar = sheet.figure.colorbar(scale, cax=sheet.axes(1110, 150, 420, 40), orientation="horizontal")
     bar.set_label("von Mises stress (MPa)")
-    crane = scene.crane
-    curve = sheet.axes(150, 85, 820 if crane is None else 500, 150)
-    if crane is not None:
-        inset = sheet.axes(720, 20, 330, 190)
-        crane.prepare(inset)
+    curve = sheet.axes(150, 85, 820, 150)
     curve.plot(time, tip, color=theme.FAINT, linewidth=2)
     curve.set(xlim=(time[0], until), xlabel="time (s)", ylabel="tip (mm)")
     with stage(camera.pixels, part) as plotter:
@@ -158,77 +148,4 @@ def draw_boom(
                 f"{', as at t = 0' if scene.boom.telescopes else ''}"
                 f"{f'; symbols: {symbols}' if symbols else ''}{pace}",
             )
-            if crane is not None:
-                sheet.show_once(*crane.draw(inset, instant.time))
             yield sheet.image()
-
-
-def render_buckling(
-    views: Sequence[Scene], folder: Path, times: Sequence[float] | None = None
-) -> list[Snapshot]:
-    """Draw the first buckling mode of each segment: ``buckling-NUMBER.png``, from 1 on.
-
-    If there are requested times, no modes are drawn, since they have no time.
-    """
-    scene = views[0]
-    if scene.buckling is None or times is not None:
-        return []
-    data, snapshots = scene.buckling, []
-    with rc_context(theme.PAGE_RC):
-        for segment, factor in zip(
-            data["buckled"].values.tolist(), data["buckling_factor"].values.tolist(), strict=True
-        ):
-            point_numbers = data["buckling_triangles"].values[
-                data["buckling_segment"].values == segment
-            ]
-            used, triangles = np.unique(point_numbers, return_inverse=True)
-            path, name = folder / f"buckling-{segment + 1}.png", scene.boom.segments[segment].name
-            _draw_mode(
-                f"{name}: buckling factor {number(factor)}",
-                data["buckling_points"].values[used],
-                triangles.reshape(-1, 3).astype(np.int32),
-                data["buckling_shape"].values[used].astype(float),
-                path,
-            )
-            caption = (
-                f"The first buckling mode of the walls of {name!r} in {scene.model!r}, where they "
-                "move most, in the static state with the largest tip deflection. The amplitude is "
-                "arbitrary."
-            )
-            snapshots.append(Snapshot(path, f"Buckling of {name}", caption))
-    return snapshots
-
-
-def _draw_mode(heading: str, points: Array, triangles: Numbers, shape: Array, path: Path) -> None:
-    """Draw a mode (num_points, 3) so that the wall which displaces most faces the viewer."""
-    size = np.linalg.norm(shape, axis=1)
-    most = int(size.argmax())
-    height = float(np.ptp(points[:, 2]))
-    # Mirroring brings this wall to the front and to the top.
-    flip = np.where(points[most, 1:] * [1.0, -1.0] > 0.25 * height, -1.0, 1.0)
-    sides = np.array([1.0, *flip])
-    deformed_points = sides * (points + MODE_DRAWN * height * shape / size[most])
-    half = 0.5 * MODE_LENGTH * height
-    low, high = points[:, 0].min(), points[:, 0].max()
-    middle = float(np.clip(points[most, 0], min(low + half, high), max(high - half, low)))
-    near = np.abs(points[triangles, 0] - middle).max(axis=1) < half
-    camera = Camera(
-        np.array([middle, 0.0, 0.0]), 1.1 * MODE_LENGTH * height, MODE_PIXELS, elevation=30.0
-    )
-    sheet = Sheet(camera.pixels, 230)
-    sheet.mark_x(camera, max(low, middle - half), min(high, middle + half))
-    bar = sheet.colour_bar((1110, 100, 420, 40), 1.0, theme.DEFLECTION)
-    bar.set_label("displacement over the largest")
-    with stage(camera.pixels) as plotter:
-        wall = surface(deformed_points, triangles[near])
-        wall["size"] = size / size[most]
-        plotter.add_mesh(
-            wall, scalars="size", cmap=theme.DEFLECTION, clim=(0.0, 1.0), show_edges=True, **MATTE
-        )
-        edges = sharp_edges(surface(sides * points, triangles[near]))
-        plotter.add_mesh(edges, color=theme.INK, line_width=2.4, **UNLIT)
-        sheet.show(camera.render(plotter))
-    orientation = " and ".join(np.array(["from behind", "upside down"])[flip < 0.0])
-    text = f"; seen {orientation}" if orientation else ""
-    sheet.write(heading, f"first mode, magnified{text}")
-    sheet.image().save(path)

@@ -79,10 +79,7 @@ def mass_table(boom: Boom, system: System) -> Table:
     segments = boom.segments
     plain_masses = [segment.mass_per_length * segment.length for segment in segments]
     masses = [segment.mass for segment in segments]
-    moments = [
-        mass * segment.mass_centre + sum(point.mass * point.x for point in segment.all_masses)
-        for mass, segment in zip(plain_masses, segments, strict=True)
-    ]
+    moments = [segment.mass_moment for segment in segments]
     whole, moment = sum(masses), sum(moments)
     centres = [moment / mass for moment, mass in zip(moments, masses, strict=True)]
     attached = [mass - part for mass, part in zip(masses, plain_masses, strict=True)]

@@ -48,9 +48,6 @@ class Curve:
     width: float = 1.8  #: width of the line in pixels
     marker: str = ""  #: marker of matplotlib: ``o``, ``v`` or ``s``
     filled: bool = False  #: True for a filled polygon
-    stacked: bool = False  #: True for an area above the stacked curves before it
-    #: half the lengths (num_times,) of error bars along the abscissa and the ordinate
-    spread: tuple[Array, Array] | None = None
 
 
 class Vertical(NamedTuple):
@@ -222,16 +219,12 @@ class Chart:
             }
         if curve.filled:
             line |= {"fill": "toself", "fillcolor": f"{curve.color}40", "hoveron": "fills"}
-        if curve.stacked:
-            line |= {"stackgroup": "areas", "fillcolor": curve.color}
-        for name, sizes in zip(("error_x", "error_y"), curve.spread or (), strict=False):
-            line[name] = {"type": "data", "array": sizes}
         yield line
 
     def kept(self, curve: Curve, intervals: int) -> npt.NDArray[np.intp]:
         """Return the ascending indices (num_kept,) of the samples of a shortened curve."""
-        if curve.stacked or curve.band is not None:
-            # Areas have common abscissas.
+        if curve.band is not None:
+            # Both limits of a band have common abscissas.
             return np.linspace(0, curve.values.size - 1, 2 * intervals).astype(np.intp)
         return extremes(curve.values, intervals)
 

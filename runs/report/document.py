@@ -34,7 +34,7 @@ from protractile.runs.report.summary_table import (
 from protractile.runs.report.tables import Table
 
 # Parts of the report in which figures are numbered, in order.
-PARTS = "case", "motion", "rest", "snapshots", "horizons", "numerics"
+PARTS = "case", "motion", "rest", "snapshots"
 
 # Text for stages of the computation with a name of the program.
 _STAGES = {"rows": "contacts and friction"}

@@ -21,7 +21,7 @@ from protractile.runs.report.labels import tip_directions
 from protractile.runs.report.static_charts import draw_chart
 
 # Parts of the report to which figures belong.
-Part = Literal["case", "motion", "rest", "horizons", "numerics"]
+Part = Literal["case", "motion", "rest"]
 
 # Duration of a close-up over the time of the first peak.
 CLOSE_UP = 1.3
@@ -148,12 +148,6 @@ class FigureContext:
         peaks = [time for time in times if time is not None]
         end = float(self.time[-1])
         return min(float(f"{CLOSE_UP * max(peaks):.2g}"), end) if peaks else end
-
-
-def highest(values: Sequence[float] | Array) -> float:
-    """Return the largest finite value; NaN without finite values."""
-    finite = np.asarray(values)[np.isfinite(values)]
-    return float(finite.max()) if finite.size else float("nan")
 
 
 def initial_position_note(case: Case) -> str:

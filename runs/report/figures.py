@@ -22,19 +22,13 @@ FIGURES: Sequence[Callable[[FigureContext], list[Figure]]] = (
     motion_figures.tip,
     motion_figures.close_up,
     motion_figures.heads,
-    motion_figures.slow_peaks,
-    motion_figures.horizons,
     force_figures.first_contacts,
-    force_figures.contact_peaks,
-    force_figures.friction,
     force_figures.drives,
     force_figures.hoisting,
     force_figures.stress_history,
     rest_figures.at_rest,
     rest_figures.envelopes,
     rest_figures.mode_shapes,
-    motion_figures.energies,
-    motion_figures.residuals,
 )
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Figures of forces and stresses over time: contact, friction, drives, walls of shells."""
+"""Figures of forces and stresses over time: contact, drives, walls of shells."""
 
 from __future__ import annotations
 
@@ -13,15 +13,10 @@ from protractile.runs.report.charts import Chart, Curve
 from protractile.runs.report.figure_context import (
     Figure,
     FigureContext,
-    highest,
     initial_position_note,
 )
 from protractile.runs.report.labels import farthest
 
-# Number of intervals into which a run is divided; the maximum of each is drawn.
-FORCE_BINS = 100
-# Smaller contact forces in N count as zero in a figure.
-LEAST_FORCE = 1000.0
 # Averaging time of contact forces in s. Successive impacts are milliseconds apart.
 FORCE_WINDOW = 0.010
 
@@ -46,63 +41,6 @@ def first_contacts(run: FigureContext) -> list[Figure]:
     )
     chart = run.over_time(panels, curves, window=(0.0, end))
     return [Figure("contact-first", title, caption, chart=chart)]
-
-
-def contact_peaks(run: FigureContext) -> list[Figure]:
-    """Show the maximum contact force at each station in each interval of the run."""
-    if not run.with_play or not run.data.sizes["station"]:
-        return []
-    bins = np.array_split(np.arange(run.time.size), min(FORCE_BINS, run.time.size))
-    middle = np.array([run.time[part].mean() for part in bins])
-    panels = [f"{station}: force (kN)" for station in run.stations()]
-    curves = []
-    for name in run.with_play:
-        for i, force in enumerate(np.abs(run.result(name, "contact_force_peak")).T):
-            largest = np.array([highest(force[part]) for part in bins])
-            largest[~(largest > LEAST_FORCE)] = np.nan
-            curves.append(run.curve(name, largest * TO_KILO, i, at=middle, marker="o"))
-    peaks = [run.summary[name].peak_contact_force for name in run.with_play]
-    largest_peaks = [peak for peak in peaks if peak is not None]
-    title = "Peak contact forces" + (
-        f": up to {max(largest_peaks) * TO_KILO:.0f} kN" if largest_peaks else ""
-    )
-    caption = (
-        f"Largest contact force at each station in each interval of "
-        f"{run.time[-1] / len(bins):.2g} s, upwards or downwards, on a logarithmic scale. Forces "
-        f"below {LEAST_FORCE * TO_KILO:g} kN are not plotted. Use the mean contact force to size "
-        "pads and walls." + initial_position_note(run.case)
-    )
-    chart = run.over_time(panels, curves, logarithmic=range(len(panels)), common=len(panels))
-    return [Figure("contact-peaks", title, caption, chart=chart)]
-
-
-def friction(run: FigureContext) -> list[Figure]:
-    """Show the friction force at each station with friction, for the last model with play."""
-    if "friction_force" not in run.data or not run.with_play:
-        return []
-    name = run.with_play[-1]
-    force = np.nan_to_num(run.result(name, "friction_force")) * TO_KILO
-    places = [(i, label) for i, label in enumerate(run.stations()) if force[:, i].any()]
-    if not places:
-        return []
-    curves = [
-        run.curve(name, running_mean(run, force[:, i]), panel)
-        for panel, (i, _) in enumerate(places)
-    ]
-    signs = "Positive where it pushes the inner segment up."
-    if any(label.endswith("lateral") for label in run.stations()):
-        signs = (
-            "At lateral stations the force is vertical, positive where it pushes the inner segment "
-            "up; at other stations it is lateral, positive towards larger y."
-        )
-    caption = (
-        f"Force of dry friction in {name} at each station, mean over "
-        f"{TO_MILLI * FORCE_WINDOW:g} ms. {signs} Where "
-        f"the segments stick, it is less than the coefficient times the normal force."
-    )
-    title = f"{name}: friction forces up to {highest(np.abs(force).ravel()):.2g} kN"
-    chart = run.over_time([f"{station}: force (kN)" for _, station in places], curves)
-    return [Figure("friction", title, caption, chart=chart)]
 
 
 def running_mean(run: FigureContext, force: Array) -> Array:

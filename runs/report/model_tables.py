@@ -1,22 +1,17 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables of the models of a run: results, steps, contact laws, calibrations, wall forces."""
+"""Tables of the models of a run: results, steps, contact laws, calibrations."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import groupby
-from typing import TYPE_CHECKING
 
 from protractile.analysis.quantities import declared_quantities
 from protractile.dynamics.predictability import SHARES
-from protractile.geometry.boom import Boom
-from protractile.geometry.typography import TO_KILO, TO_MEGA, TO_PERCENT, number, percent
+from protractile.geometry.typography import TO_KILO, TO_PERCENT, number, percent
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import CalibrationCard, ModelSummary
 from protractile.runs.report.tables import Cell, Column, Table
-
-if TYPE_CHECKING:
-    from protractile.shell_model.stress.history import LargestPatch, StressSummary
 
 
 def model_tables(results: Results) -> list[Table]:
@@ -24,11 +19,9 @@ def model_tables(results: Results) -> list[Table]:
     tables = (
         model_table(results),
         step_table(results),
-        lateral_peak_table(results),
         buckling_table(results),
         law_table(results),
         *calibration_tables(results),
-        wall_table(results),
     )
     return [table for table in tables if table is not None and table.rows]
 
@@ -186,27 +179,6 @@ def law_table(results: Results) -> Table:
     return Table("Contact laws", columns, notes, "laws")
 
 
-def lateral_peak_table(results: Results) -> Table | None:
-    """Return the table of first tip peaks along z and along y; None for a planar boom."""
-    models, reference = results.summary.models, results.reference
-    if reference is None or "tip_lateral" not in models[reference].first_peak:
-        return None
-    columns = [Column("model", list(models))]
-    for place, way in (("tip", "vertical (z)"), ("tip_lateral", "lateral (y)")):
-        peaks = [model.first_peak[place] for model in models.values()]
-        other = models[reference].first_peak[place].height
-        differences = [
-            p.height / other - 1.0 if p.height is not None and other else None for p in peaks
-        ]
-        columns += [
-            Column(way, [time for time, _ in peaks], ".3f", "s"),
-            Column(way, [height for _, height in peaks], ".1f", "mm"),
-            Column(f"{way}, difference from {reference}", differences, ".2g", "%"),
-        ]
-    notes = [f"–: no peak within {results.case.time.duration:g} s."]
-    return Table("First vertical and lateral peaks of the tip", columns, notes, "space")
-
-
 def buckling_table(results: Results) -> Table | None:
     """Return the table of buckling factors of axial forces; None without axial forces."""
     models = results.summary.models
@@ -231,64 +203,6 @@ def buckling_table(results: Results) -> Table | None:
             "shell that telescopes is at most that of a beam."
         )
     return Table("Axial forces", columns, notes, "axial")
-
-
-def wall_table(results: Results) -> Table:
-    """Return the table of wall forces of shells at the time of maximum stress."""
-    shells = {n: model.stress for n, model in results.summary.models.items() if model.stress}
-    rows = [
-        (name, section.segment, f"{section.x:g}", wall, forces.axial, forces.shear, forces.moment)
-        for name, stress in shells.items()
-        for section in stress.walls
-        for wall, forces in section.forces.items()
-    ]
-    columns = (
-        "model",
-        "segment",
-        ("at x", "", "m"),
-        "wall",
-        ("axial force", ".2f", "kN"),
-        ("shear force", ".2f", "kN"),
-        ("moment", ".2f", "kN m"),
-    )
-    largest = [f"{name}: {_largest(results.boom, stress)}" for name, stress in shells.items()]
-    signs = (
-        "Resultants of each wall in the first row of elements from x towards the tip; at the tip "
-        "end of a segment, in the last row.",
-        "Axial force: positive in tension.",
-        "Shear force: force on the part nearer the base; positive upwards in walls steeper than "
-        "45°, positive towards larger y in others.",
-        "Moment: about the y-axis through the centroid of the whole section; positive with tension "
-        "at the top.",
-    )
-    title = "Section forces of walls at the instant of the largest stress"
-    return Table.of_rows("walls", title, columns, rows, (*largest, *signs))
-
-
-def _largest(boom: Boom, stress: StressSummary) -> str:
-    """Return a text on the largest stresses: mean over a patch, and in a single triangle."""
-    triangle = (
-        f"single element, no design value: "
-        f"{number(TO_MEGA * stress.von_mises, 3)} MPa{_yield_utilisation(boom, stress)} at "
-        f"x = {stress.x:.2f} m in {stress.segment!r}, {stress.face} face of the wall "
-        f"{stress.wall!r}, at {stress.time:.3f} s, the instant of this table."
-    )
-    if (patch := stress.patch) is None:
-        return f"largest von Mises stress of a {triangle}"
-    return (
-        "largest local plate stress: "
-        f"{number(TO_MEGA * patch.von_mises, 3)} MPa{_yield_utilisation(boom, patch)} near "
-        f"x = {patch.x:.2f} m in {patch.segment!r}, at {patch.time:.3f} s; largest "
-        f"von Mises stress of a {triangle}"
-    )
-
-
-def _yield_utilisation(boom: Boom, stress: StressSummary | LargestPatch) -> str:
-    """Return the utilisation of the yield strength as text; empty without a strength."""
-    (segment,) = (segment for segment in boom.segments if segment.name == stress.segment)
-    if (strength := segment.yield_strength) is None:
-        return ""
-    return f" ({percent(stress.von_mises / strength)} of the yield strength)"
 
 
 def calibration_tables(results: Results) -> list[Table]:

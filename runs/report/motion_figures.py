@@ -1,30 +1,20 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Figures of motion over time: tip and heads with ensembles, predictability, energies."""
+"""Figures of motion over time: tip and heads, with ensembles."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from protractile.dynamics.energy import DRIVEN_ENERGIES, energy_residual
 from protractile.dynamics.predictability import SHARES
 from protractile.geometry.arrays import Array
-from protractile.geometry.typography import TO_MILLI, fixed, scientific
+from protractile.geometry.typography import TO_MILLI, fixed
 from protractile.runs.report import theme
 from protractile.runs.report.charts import Chart, Curve, Vertical
-from protractile.runs.report.figure_context import Figure, FigureContext, highest
+from protractile.runs.report.figure_context import Figure, FigureContext
 from protractile.runs.report.labels import farthest
 
 # Lower and upper percentile of the band of an ensemble.
 BAND = (5.0, 95.0)
-# Line style of each share of the range.
-DASHES = ("-", ":", "--")
-# Relative energy that counts as zero.
-ROUND_OFF = 1.0e-16
-# Strength of the colour of each stored energy, and of dissipated energies.
-STORED = {"strain_energy": 0.65, "kinetic_energy": 0.3, "contact_energy": 1.0}
-DISSIPATED = (0.75, 0.45, 0.2)
-
-
 # Direction of each tip displacement in titles and captions.
 DIRECTIONS = {"tip": ", vertical (z)", "tip_lateral": ", lateral (y)"}
 
@@ -164,128 +154,3 @@ def _accuracy_note(run: FigureContext, place: str) -> str:
         f"{band} Vertical lines: times at which its members differ by {first} (dotted) and {last} "
         f"(dashed) of the tip's range{beyond}."
     )
-
-
-def slow_peaks(run: FigureContext) -> list[Figure]:
-    """Show the slow-motion peaks of ensembles, with their spreads over the members."""
-    peaks_of_models = {
-        name: peaks
-        for name in run.with_play
-        if (ensemble := run.summary[name].ensemble)
-        and (peaks := ensemble.slow_peaks)
-        and peaks.time.size
-    }
-    if not peaks_of_models:
-        return []
-    curves = [
-        run.curve(
-            name,
-            TO_MILLI * np.array(peaks.height),
-            at=np.array(peaks.time),
-            marker="o",
-            spread=(np.array(peaks.time_spread), TO_MILLI * np.array(peaks.height_spread)),
-        )
-        for name, peaks in peaks_of_models.items()
-    ]
-    counts = [len(peaks.time) for peaks in peaks_of_models.values()]
-    number = f"{min(counts)} to {max(counts)}" if min(counts) < max(counts) else f"{counts[0]}"
-    caption = (
-        "Peaks of the slow motion of the tip: means of the members of the ensemble, with half "
-        "their range in time and height. Points end with the last peak that all members have."
-    )
-    title = f"Slow peaks: {number} are common to all members"
-    chart = Chart(run.time, curves, ["height (mm)"])
-    return [Figure("slow-peaks", title, caption, "horizons", chart)]
-
-
-def horizons(run: FigureContext) -> list[Figure]:
-    """Show each model's predictability horizon over the relative perturbation of its data."""
-    measured = {
-        name: horizons_of_model
-        for name in run.with_play
-        if (horizons_of_model := run.summary[name].horizons)
-    }
-    if not measured:
-        return []
-    curves = []
-    for name, horizons_of_model in measured.items():
-        color = run.line_styles[name].color
-        relatives = np.array(horizons_of_model.relatives)
-        times = np.array(horizons_of_model.times, dtype=float)
-        for i, (share, dashes) in enumerate(zip(horizons_of_model.shares, DASHES, strict=False)):
-            label = f"{name}, {100.0 * share:g} %"
-            curves.append(Curve(label, times[:, i], color, dashes, at=relatives, marker="o"))
-            of_step = horizons_of_model.of_step[i]
-            if of_step is not None:
-                finer = f"{label}, finer step"
-                step = np.array([of_step])
-                curves.append(Curve(finer, step, color, "", at=relatives[:1], marker="s"))
-    caption = (
-        "Time at which members of an ensemble differ by a fraction of the tip's range, over the "
-        "relative change of their data. The flatter a line, the smaller the benefit of better "
-        "data. Squares: a run with a finer step; below the line a finer step would help."
-    )
-    title = "Horizons: how long a motion can be predicted"
-    chart = Chart(
-        relatives, curves, ["horizon (s)"], along="relative change of the data", decades=True
-    )
-    return [Figure("horizons", title, caption, "horizons", chart)]
-
-
-def energies(run: FigureContext) -> list[Figure]:
-    """Show the energies of the last model with play."""
-    name = (run.with_play or run.models)[-1]
-    columns = dict(zip(DRIVEN_ENERGIES, _energies(run, name).T, strict=False))
-    drive_work = columns.pop("drive_work", None)
-    work = columns.pop("work") + (0.0 if drive_work is None else drive_work)
-    of = "work of loads" if drive_work is None else "work of loads and drives"
-    held = {energy: columns.pop(energy) for energy in STORED}
-    lost = {energy: values for energy, values in columns.items() if values.any()}
-    parts = held | lost
-    color = run.line_styles[name].color
-    tints = [theme.tint(color, strength) for strength in STORED.values()]
-    tints += [theme.tint(theme.LOSS, strength) for strength in DISSIPATED[: len(lost)]]
-    areas = [
-        Curve(_energy_name(energy), values, tint, stacked=True, width=0.0)
-        for (energy, values), tint in zip(parts.items(), tints, strict=True)
-    ]
-    start = float(sum(values[0] for values in parts.values()))
-    total = Curve(f"initial energy + {of}" if start else of, start + work, theme.INK)
-    losses = " and ".join(_energy_name(energy) for energy in lost)
-    lossy = f"; brown: {losses}" if lost else ""
-    more = " and the initial energy" if start else ""
-    caption = (
-        f"Stacked: strain, kinetic and contact energy of {name}{lossy}. Their sum "
-        f"equals the {of}{more}, except for the residual in the next figure."
-    )
-    title = f"{name}: work of the loads, stored and dissipated energy"
-    chart = run.over_time(["energy (J)"], [*areas, total])
-    return [Figure("energies", title, caption, "numerics", chart)]
-
-
-def residuals(run: FigureContext) -> list[Figure]:
-    """Show the running maximum of the energy residual of each model."""
-    worst, curves = [], []
-    for name in run.models:
-        so_far = np.fmax.accumulate(np.abs(energy_residual(_energies(run, name))))
-        worst.append(float(so_far[-1]))
-        curves.append(run.curve(name, np.maximum(so_far, ROUND_OFF)))
-    caption = (
-        "Energy residual: (kinetic + strain + contact energy + losses − initial energy − work), "
-        "divided by the largest work or, if larger, the initial energy. Plotted: its largest "
-        "magnitude so far."
-    )
-    title = f"Energy residual: up to {scientific(highest(worst), 2)} of the largest work"
-    chart = Chart(run.time, curves, ["residual / largest work (–)"], logarithmic=[0])
-    return [Figure("energy-residual", title, caption, "numerics", chart)]
-
-
-def _energies(run: FigureContext, name: str) -> Array:
-    """Return energies (num_times, num_energies) in J by :func:`.energy.energy_residual`."""
-    names = [energy for energy in DRIVEN_ENERGIES if energy in run.data]
-    return np.array([run.result(name, energy) for energy in names]).T
-
-
-def _energy_name(energy: str) -> str:
-    """Return the displayed name of an energy: *strain* for ``strain_energy``."""
-    return energy.removesuffix("_energy").replace("_", " ")

@@ -153,11 +153,13 @@ def rest_tables(results: Results) -> list[Table]:
     """Return the tables of static joint rotations, contact forces and support reactions."""
     farthest = results.rows.where(state=FARTHEST, play=True)
     as_extended = extension_note(results.case, [row.time for row in farthest])
-    return [
-        _tilt_table(farthest, as_extended),
-        _contact_table(farthest.where(quantity="contact_force"), as_extended),
-        _reaction_table(results),
-    ]
+    contacts = farthest.where(quantity="contact_force")
+    forces = {(place(row), row.model): row.value for row in contacts}
+    columns = _side_by_side("station", forces, _models(contacts), ".4g", "kN")
+    note = "Forces on the outer segment, positive upwards, lateral ones towards larger y."
+    title = "Static state with the largest tip deflection: contact forces"
+    pressed = Table(title, columns, (note + as_extended,), "pressed")
+    return [_tilt_table(farthest, as_extended), pressed, _reaction_table(results)]
 
 
 def _tilt_table(farthest: Rows, as_extended: str) -> Table:
@@ -171,14 +173,6 @@ def _tilt_table(farthest: Rows, as_extended: str) -> Table:
     note = "The rotation is due to play and contact compliance, in a shell also to wall compliance."
     title = "Static state with the largest tip deflection: rotation of joints by play and walls"
     return Table(title, columns, (note + as_extended,), "tilts")
-
-
-def _contact_table(contacts: Rows, as_extended: str) -> Table:
-    forces = {(place(row), row.model): row.value for row in contacts}
-    columns = _side_by_side("station", forces, _models(contacts), ".4g", "kN")
-    note = "Forces on the outer segment, positive upwards, lateral ones towards larger y."
-    title = "Static state with the largest tip deflection: contact forces"
-    return Table(title, columns, (note + as_extended,), "pressed")
 
 
 def _reaction_table(results: Results) -> Table:

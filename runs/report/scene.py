@@ -33,7 +33,6 @@ from protractile.runs.case.kinds.model import select_kind
 from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.schema import Case
 from protractile.runs.pipeline.model_output import BeamOutput, SegmentMotion
-from protractile.runs.report.crane_position import CranePosition
 from protractile.runs.report.symbols import Symbol, boom_symbols, edges
 from protractile.shell_model.stress.stresses import ShellStress
 
@@ -97,12 +96,9 @@ class Scene:
     motion: xr.Dataset
     stress: ShellStress | None = None  #: stresses of the triangles of a shell
     from_above: bool = False  #: True if y replaces z, see :meth:`views`
-    #: first buckling modes of a shell, see :class:`.analysis.wall_buckling.BuckledShell`; None
-    #: without any
-    buckling: xr.Dataset | None = None
     model: str = ""  #: name of the model
+    drives: bool = False  #: True for a crane that hoists, slews or luffs
     surface_contact: bool = False  #: True if the contact of the model is over surfaces
-    crane: CranePosition | None = None  #: positions of the crane and its load; None for other booms
 
     @classmethod
     def views(cls, fields: xr.Dataset, motion: xr.Dataset, case: Case) -> list[Scene]:
@@ -124,9 +120,8 @@ class Scene:
             state=fields["state"].load(),
             motion=motion,
             stress=ShellStress.from_fields(fields),
-            buckling=fields if "buckled" in fields else None,
-            crane=CranePosition.of(case, boom, motion),
             model=model,
+            drives=any((case.hoist, case.slew, case.luff)),
             surface_contact=lines.get(model) == "surface",
         )
         if not boom.spatial:

@@ -18,9 +18,6 @@ import numpy.typing as npt
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.cm import ScalarMappable
-from matplotlib.colorbar import Colorbar
-from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from PIL import Image
@@ -171,13 +168,6 @@ class Sheet:
         """Return axes at a position on the sheet in pixels."""
         return self.figure.add_axes(
             (left / SHEET[0], bottom / SHEET[1], width / SHEET[0], height / SHEET[1])
-        )
-
-    def colour_bar(self, place: tuple[int, int, int, int], end: float, colours: str) -> Colorbar:
-        """Draw the bar of a colour map from 0 to ``end`` at a position in pixels."""
-        colours_of_numbers = ScalarMappable(Normalize(0.0, end), colours)
-        return self.figure.colorbar(
-            colours_of_numbers, cax=self.axes(*place), orientation="horizontal"
         )
 
     def mark_x(self, camera: Camera, first: float, last: float) -> None:

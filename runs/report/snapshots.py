@@ -9,6 +9,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, nullcontext
 from pathlib import Path
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -23,7 +24,7 @@ from protractile.runs.pipeline.summary import Snapshots
 from protractile.runs.process import workers
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import opengl, theme
-from protractile.runs.report.boom_pictures import BoomView, draw_boom, render_buckling
+from protractile.runs.report.boom_pictures import BoomView, draw_boom
 from protractile.runs.report.overlap_pictures import draw_overlap
 from protractile.runs.report.scene import Instant, Scene
 from protractile.runs.report.sheet import Snapshot
@@ -55,14 +56,14 @@ ON_SURFACES = (
 Times = Sequence[float] | None
 
 
-Render = Callable[[Sequence[Scene], Path, Times], list[Snapshot]]
-
-
-def render_motion(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Snapshot]:
+def render_motion(
+    views: Sequence[Scene], folder: Path, times: Times = None, every_view: bool = False
+) -> list[Snapshot]:
     """Draw a shell at times in s, by default at the first peak of the tip, and its film.
 
-    The view is the one in which the tip moves most. The files are ``boom-WHEN.png``; of the overlap
-    with the largest contact force ``overlap-WHEN.png``; without given times also ``motion.gif``.
+    The view is the one in which the tip moves most, with ``every_view`` also the other one. The
+    files are ``boom-WHEN.png``, from above ``boom-above-WHEN.png``; of the overlap with the largest
+    contact force ``overlap-WHEN.png``; without given times also ``motion.gif``.
 
     Raises:
         ValueError: a time lies outside the run.
@@ -71,12 +72,17 @@ def render_motion(views: Sequence[Scene], folder: Path, times: Times = None) -> 
     for t in times or ():
         if not begin <= t <= end:
             raise ValueError(f"time must be between {begin:g} and {end:g} s, got {t:g}")
-    scene = _main_view(views)
+    # Stable: the view from the side is the first one of views with equal motions.
+    main, *others = sorted(views, key=lambda view: -float(np.ptp(view.motion["tip"].values)))
     snapshots: list[Snapshot] = []
     with rc_context(theme.PAGE_RC):
-        instants, film = _instants(scene.motion, times), _film(scene)
-        view = BoomView.of(scene, [*instants.values(), *film])
+        instants, film = _instants(main.motion, times), _film(main)
+        view = BoomView.of(main, [*instants.values(), *film])
         snapshots += _draw_stills(view, instants, folder)
+        for scene in others if every_view else ():
+            instants = _instants(scene.motion, times)
+            other = BoomView.of(scene, [*instants.values(), *_film(scene)])
+            snapshots += _draw_stills(other, instants, folder)
         for name, instant in _instants(views[0].motion, times).items():
             if (overlap := draw_overlap(views, instant)) is not None:
                 when, state = _describe(views[0], instant)
@@ -87,27 +93,6 @@ def render_motion(views: Sequence[Scene], folder: Path, times: Times = None) -> 
         if times is None:
             snapshots.append(_draw_film(view, film, folder / ANIMATION))
     return snapshots
-
-
-def render_other_views(views: Sequence[Scene], folder: Path, times: Times = None) -> list[Snapshot]:
-    """Draw a shell in the other views, at the times of :func:`render_motion`."""
-    snapshots: list[Snapshot] = []
-    with rc_context(theme.PAGE_RC):
-        for scene in views:
-            if scene is not _main_view(views):
-                instants = _instants(scene.motion, times)
-                view = BoomView.of(scene, [*instants.values(), *_film(scene)])
-                snapshots += _draw_stills(view, instants, folder)
-    return snapshots
-
-
-# The functions that draw the pictures of a run, and further pictures on request.
-RENDERED: Sequence[Render] = (render_motion,)
-ON_REQUEST: Sequence[Render] = (render_other_views, render_buckling)
-
-
-def _main_view(views: Sequence[Scene]) -> Scene:
-    return max(views, key=lambda view: float(np.ptp(view.motion["tip"].values)))
 
 
 def _draw_stills(
@@ -162,22 +147,21 @@ def _describe(scene: Scene, instant: Instant) -> tuple[str, str]:
 
 
 def render_files(
-    renders: Sequence[Render],
-    fields: Path,
-    trajectories: Path,
+    render: Callable[..., list[Snapshot]],
+    files: tuple[Path, Path],
     case: Case,
     folder: Path,
-    times: Times,
+    *settings: Any,
 ) -> list[Snapshot]:
-    """Draw the pictures of a shell from the files of its fields and of all trajectories."""
-    shell, motion = (xr.load_dataset(path, engine="scipy") for path in (fields, trajectories))
+    """Call a function that draws a shell from the files of its fields and of all trajectories."""
+    shell, motion = (xr.load_dataset(path, engine="scipy") for path in files)
     views = Scene.views(shell, motion.sel(model=shell.attrs["model"]), case)
-    return [snapshot for render in renders for snapshot in render(views, folder, times)]
+    return render(views, folder, *settings)
 
 
 def _film(scene: Scene) -> list[Instant]:
     begin, end = scene.motion["time"].values[[0, -1]].tolist()
-    last = end if scene.crane else min(end, begin + ANIMATED)
+    last = end if scene.drives else min(end, begin + ANIMATED)
     return [Instant(t) for t in np.linspace(begin, last, FRAMES).tolist()]
 
 
@@ -221,14 +205,14 @@ def start_rendering(
     folder: Path,
     times: Times = None,
     helper: Executor | None = None,
-    more: Sequence[Render] = (),
+    every_view: bool = False,
 ) -> Iterator[Callable[[], list[str]]]:
     """Start rendering in another process, and yield a function that collects the pictures.
 
     The function waits for the pictures, adds them to the summary, and returns their names. It
     raises RenderingUnavailable if rendering is impossible. Pictures of other times stay in the
-    folder of the run; times are in s, by default the characteristic ones. The helper is the process
-    that renders, by default a new one; ``more`` draws further pictures.
+    folder of the run; times and views are those of :func:`render_motion`. The helper is the process
+    that renders, by default a new one.
     """
     if not shells:
         yield list
@@ -240,9 +224,8 @@ def start_rendering(
         for number, path in enumerate(sorted(shells)):
             place = Path(temporary) / str(number)
             place.mkdir()
-            future = pool.submit(
-                render_files, (*RENDERED, *more), path, trajectories, results.case, place, times
-            )
+            drawn = results.case, place, times, every_view
+            future = pool.submit(render_files, render_motion, (path, trajectories), *drawn)
             futures.append((path.name.removesuffix(FIELDS), future))
 
         def gather() -> list[str]:

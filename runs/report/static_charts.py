@@ -77,9 +77,8 @@ def draw_chart(chart: Chart, title: str) -> Sheet:
 
 def draw_curves(panels: Sequence[Axes], chart: Chart) -> None:
     """Draw the curves of a chart in its panels."""
-    stacked = np.zeros(chart.time.size)
     for curve in chart.curves:
-        _draw_curve(panels[curve.panel], chart, curve, stacked)
+        _draw_curve(panels[curve.panel], chart, curve)
 
 
 def _label(value: float, _: int | None) -> str:
@@ -87,18 +86,13 @@ def _label(value: float, _: int | None) -> str:
     return f"{value:g}" if f"{value:e}"[0] in "125" else ""
 
 
-def _draw_curve(axes: Axes, chart: Chart, curve: Curve, stacked: Any) -> None:
-    """Draw a curve, its band and its error bars; a stacked curve above the area below it."""
+def _draw_curve(axes: Axes, chart: Chart, curve: Curve) -> None:
+    """Draw a curve with its band."""
     x = chart.time if curve.at is None else curve.at
     kept = chart.kept(curve, INTERVALS) if x.size > 2 * INTERVALS else np.arange(x.size)
     look: dict[str, Any] = {"color": curve.color, "label": curve.name or None}
     if curve.filled:
         axes.fill(x, curve.values, facecolor=theme.tint(curve.color, 0.25), edgecolor=curve.color)
-        return
-    if curve.stacked:
-        below = stacked.copy()
-        stacked += np.nan_to_num(curve.values)
-        axes.fill_between(x[kept], below[kept], stacked[kept], linewidth=0, **look)
         return
     if curve.band is not None:
         low, high = curve.band
@@ -110,11 +104,7 @@ def _draw_curve(axes: Axes, chart: Chart, curve: Curve, stacked: Any) -> None:
         "markersize": 3.0 if curve.linestyle else 7.0,
         "zorder": 2.0 if curve.shown else 1.9,
     }
-    if curve.spread is not None:
-        along, up = curve.spread
-        axes.errorbar(x, curve.values, xerr=along, yerr=up, **look)
-    else:
-        axes.plot(x[kept], curve.values[kept], **look)
+    axes.plot(x[kept], curve.values[kept], **look)
 
 
 def _scale(keys: Keys) -> tuple[Normalize, Colormap]:

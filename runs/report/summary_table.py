@@ -359,8 +359,7 @@ def _notes(results: Results, rows: Mapping[str, Sequence[str]]) -> Iterator[str]
         ]
         yield (
             f"Stresses of single elements are larger ({join_words(most)}), but they grow with mesh "
-            "refinement and are no design values. A note below the table of section forces of "
-            "walls gives their places."
+            "refinement and are no design values."
         )
 
 

@@ -18,8 +18,6 @@ INK = "#222222"
 RULE = "#d9d9d9"
 PLAY_FREE = "#6b6b6b"
 FAINT = "#a8a8a8"
-# Colours of energy losses.
-LOSS = "#8c6d1f"
 
 # Colours of Okabe and Ito (2008) without those that are too pale for lines, with a darker purple
 # and two further colours.
@@ -35,9 +33,6 @@ DEFLECTION, STRESS = "viridis_r", "cividis_r"
 # Smooth scale of maps (viridis), and colours between the levels of a scale with levels.
 SCALE = ("#440154", "#3b528b", "#21918c", "#5ec962", "#fde725")
 SHADES = ("#fff3c4", "#f6b26b", "#b8577a", "#3b1f5c")
-
-# Line of a limit.
-LIMIT: dict[str, Any] = {"color": INK, "linewidth": 1.2, "linestyle": ":"}
 
 RC: dict[Any, Any] = {
     "figure.dpi": DPI,

@@ -151,7 +151,7 @@ def _lines(
             for level in (levels if permitted is None else [permitted])
         ]
     logarithmic = [i for i, one in enumerate(quantities) if one.logarithmic or levels]
-    decades = _spans_decades(x)
+    decades = bool(x[0] > 0.0 and x[-1] >= DECADES * x[0])
     chart = Chart(x, curves, panels, None, _heading(data[key]), logarithmic, decades)
     return Figure(name, title, "", chart=chart, main=True)
 
@@ -227,10 +227,6 @@ def _texts(cells: Array, marks: npt.NDArray[np.str_]) -> npt.NDArray[np.str_]:
             for row, row_of_marks in zip(cells.tolist(), marks.tolist(), strict=True)
         ]
     )  # fmt: skip
-
-
-def _spans_decades(values: Array) -> bool:
-    return bool(values[0] > 0.0 and values[-1] >= DECADES * values[0])
 
 
 def _quantity(key: Hashable) -> str:

@@ -10,17 +10,15 @@ side is refused.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-import matplotlib
 import numpy as np
 import pandas as pd
 from rich.console import Console
 
-from protractile.analysis.quantities import Quantity
 from protractile.geometry.arrays import Array
 from protractile.geometry.typography import TO_PERCENT, join_words
 from protractile.runs.case import reading as case_file
@@ -29,9 +27,6 @@ from protractile.runs.folder.files import atomic_path, folder_lock, modified_fol
 from protractile.runs.pipeline.quantities import QUANTITIES
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.process.terminal import printable
-from protractile.runs.report import theme
-from protractile.runs.report.charts import Chart, Curve
-from protractile.runs.report.static_charts import draw_chart
 from protractile.runs.report.tables import Column, Table
 from protractile.runs.sweep.points import (
     Plan,
@@ -46,13 +41,13 @@ from protractile.runs.sweep.run import Outcome
 from protractile.runs.sweep.variation import MOST_POINTS, Place, Variation, numbers, with_size
 
 OPTION = "--samples"
-SAMPLES, CSV, CHART = "samples.csv", "sampling.csv", "sampling.png"
+SAMPLES, CSV = "samples.csv", "sampling.csv"
 CHANGES_CSV = "sensitivity.csv"
 # Seed of the scrambling, by which all runs have the same points.
 SEED = 0
 # Quantiles in the table.
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
-# Results in the terminal and in the chart, also of sensitivities.
+# Results in the terminal, also of sensitivities.
 SHOWN = ("tip_at_rest", "tip", "stress", "contact_force", "first_frequency")
 # Ratio of standard deviation to mean below which a result has no scatter.
 NONE = 1.0e-9
@@ -187,7 +182,7 @@ def scatter(results: pd.DataFrame) -> pd.DataFrame:
 def conclude_samples(
     samples: pd.DataFrame, plan: Plan, outcomes: Sequence[Outcome], folder: Path, console: Console
 ) -> None:
-    """Write ``samples.csv``, ``sampling.csv`` and the chart, and print the main statistics."""
+    """Write ``samples.csv`` and ``sampling.csv``, and print the main statistics."""
     results = results_of(plan, outcomes)
     several = {
         "sample": {name: pd.concat([samples, frame], axis=1) for name, frame in results.items()},
@@ -198,49 +193,21 @@ def conclude_samples(
         modified_folder(folder) as part,
         atomic_path(part / SAMPLES) as points,
         atomic_path(part / CSV) as table,
-        atomic_path(part / CHART) as chart,
     ):
         for (of_row, frames), path in zip(several.items(), (points, table), strict=True):
             whole_table = pd.concat(frames, names=["model", of_row])
             whole_table.to_csv(path, float_format="%.9g", lineterminator="\r\n")
-        _draw(results, chart)
     print(printable(str(folder / CSV)))
-    for model, frame in results.items():
+    for model, statistics in several["result"].items():
         rows = [
-            (f"{metric.title} ({metric.shown_unit})", *(metric.factor * row).tolist())
-            for metric, row in _main_statistics(frame)
+            (f"{one.title} ({one.shown_unit})", *(one.factor * statistics.loc[one.name]).tolist())
+            for one in QUANTITIES
+            if one.name in SHOWN and one.name in statistics.index
         ]
         forms = {"": ""} | dict.fromkeys(("mean", "sd"), ".4g")
         forms |= {f"{100.0 * part:g} %": ".4g" for part in QUANTILES}
         title = f"Scatter of results over {len(plan.points)} samples: {model}"
         Table.of_rows("sampling", title, forms, rows).show(console)
-
-
-def _main_statistics(results: pd.DataFrame) -> Iterator[tuple[Quantity, pd.Series[float]]]:
-    """Yield the main results that vary, with their statistics."""
-    table = scatter(results)
-    for quantity in QUANTITIES:
-        if quantity.name in SHOWN and quantity.name in table.index:
-            yield quantity, table.loc[quantity.name]
-
-
-def _draw(results: dict[str, pd.DataFrame], path: Path) -> None:
-    """Draw the quantiles of each main result over the share of samples below them."""
-    shown = {one: None for frame in results.values() for one, _ in _main_statistics(frame)}
-    line_styles = theme.line_styles(list(results), [])
-    curves = []
-    for panel, one in enumerate(shown):
-        for model, frame in results.items():
-            if one.name in frame:
-                values = np.sort(one.factor * frame[one.name].dropna())
-                shares = (np.arange(values.size) + 0.5) / values.size
-                curves.append(
-                    Curve(model, values, line_styles[model].color, panel=panel, at=shares)
-                )
-    panels = [f"{one.title} ({one.shown_unit})" for one in shown]
-    chart = Chart(np.array([0.0, 1.0]), curves, panels or [""], along="share of samples below")
-    with matplotlib.rc_context(theme.RC):
-        draw_chart(chart, "").savefig(path)
 
 
 class Change(NamedTuple):

@@ -20,8 +20,6 @@ from protractile.shell_model.stress.stresses import (
     Modes,
     ShellStress,
     Stress,
-    WallForces,
-    wall_forces,
 )
 
 if TYPE_CHECKING:
@@ -39,17 +37,8 @@ class LargestPatch:
 
 
 @dataclass(frozen=True, slots=True)
-class WallForcesAt:
-    """Forces of a segment's walls at the cross-section x in m, by the name of the wall."""
-
-    segment: str
-    x: float
-    forces: dict[str, WallForces]
-
-
-@dataclass(frozen=True, slots=True)
 class StressSummary:
-    """Largest stress of a run, and the wall forces at the time of this stress.
+    """Largest stress of a run.
 
     Args:
         von_mises: largest stress of a triangle in Pa.
@@ -58,7 +47,6 @@ class StressSummary:
         x, y, z: centroid of the triangle in m.
         band: half-width in m of the bands around places.
         patch: largest patch stress; None if no segment comes near a place.
-        walls: wall forces of each segment at each place.
     """
 
     von_mises: float
@@ -71,7 +59,6 @@ class StressSummary:
     z: float
     band: float
     patch: LargestPatch | None
-    walls: list[WallForcesAt]
 
 
 # Half-length in m of the band at a place. A patch is a half of a wall within the band.
@@ -145,7 +132,7 @@ def stress_near_places(
 
 
 def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
-    """Return the largest stresses of a triangle and of a patch in a run, with wall forces."""
+    """Return the largest stresses of a triangle and of a patch in a run."""
     names = [str(name) for name in history["segment"].values]
     places = [float(x) for x in history["place"].values]
     worst = _largest(shell, history)
@@ -164,12 +151,6 @@ def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
             names[segment],
             places[place],
         )
-    walls = [
-        WallForcesAt(name, place, wall_forces(shell, time, k, place))
-        for k, name in enumerate(names)
-        for place in places
-        if shell.holds(k, place)
-    ]
     return StressSummary(
         von_mises=worst.von_mises,
         time=time,
@@ -181,7 +162,6 @@ def summarise(shell: ShellStress, history: xr.Dataset) -> StressSummary:
         z=z,
         band=BAND,
         patch=patch,
-        walls=walls,
     )
 
 

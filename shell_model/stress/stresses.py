@@ -49,19 +49,6 @@ _AT_ONCE = 1_000_000
 _TOGETHER = 10
 
 
-@dataclass(frozen=True, slots=True)
-class WallForces:
-    """Forces of one wall at a cross-section."""
-
-    axial: float  #: force along x in N, positive in tension
-    #: in-plane force in N on the part nearer the base, along y if the slope of the wall is below
-    #: 45°, else along z
-    shear: float
-    #: moment in N·m of the axial stresses of the wall about the y-axis of the section, positive for
-    #: tension at the top
-    moment: float
-
-
 class Stress(NamedTuple):
     """Stresses at the centroids of triangles, in Pa."""
 
@@ -188,11 +175,6 @@ class ShellStress:
         """Return the larger von Mises stress (num_times, num_triangles) of both faces in Pa."""
         return np.concatenate([s.largest() for _, s in self.over_time(triangles, steps)])
 
-    def holds(self, segment: int, x: float) -> bool:
-        """Return whether a segment contains x in m."""
-        spans = self.spans[self.segment == segment]
-        return bool(spans[:, 0].min() - SAME_LINE <= x <= spans[:, 1].max() + SAME_LINE)
-
     def near(self, segment: int, x: float, reach: float) -> Indices:
         """Return the indices of a segment's triangles with centroids within ``reach`` in m of x."""
         close = np.abs(self.centroids[:, 0] - x) <= reach
@@ -244,33 +226,6 @@ def triangle_areas(points: Array, triangles: Indices) -> Array:
     """Return the areas (num_triangles,) in m²."""
     a, b, c = np.moveaxis(points[triangles], 1, 0)
     return np.asarray(0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1))
-
-
-def wall_forces(shell: ShellStress, t: float, segment: int, x: float) -> dict[str, WallForces]:
-    """Return the forces of each wall at t in s, as means over the triangles around x in m."""
-    row, step = shell.row(segment, x), int(np.abs(shell.time - t).argmin())
-    ((_, fields),) = shell.over_time(row, slice(step, step + 1))
-    length = shell.spans[row, 1].max() - shell.spans[row, 0].min()
-    forces = {}
-    for number, name in enumerate(shell.plates[segment]):
-        mine = shell.wall[row] == number
-        part = row[mine]
-        width = shell.areas[part] / length
-        membrane, bending = fields.membrane[0, mine], fields.bending[0, mine]
-        strength = shell.thickness[part] * width
-        z, sigma = shell.centroids[part, 2], membrane[:, 0]
-        _, across, up = shell.outward[part].mean(axis=0).round(12)
-        bending_moment = up * (shell.thickness[part] * strength / 6.0) @ bending[:, 0]
-        reach, whole = np.array([abs(across) * width.sum()]), np.zeros(part.size, dtype=np.int64)
-        moment = (strength * z + linear_stress_weights(whole, reach, strength, z)) @ sigma
-        # The coordinate s runs along -z on the right and along -y on the bottom.
-        sense = np.sign(up if abs(up) > abs(across) else -across)
-        forces[name] = WallForces(
-            axial=float(strength @ sigma),
-            shear=float(sense * strength @ membrane[:, 2]),
-            moment=float(moment + bending_moment),
-        )
-    return forces
 
 
 def linear_stress_weights(part: Indices, reach: Array, strength: Array, place: Array) -> Array:

@@ -91,8 +91,10 @@ def test_a_kept_model_has_the_states_of_a_new_one(name: str) -> None:
         assert kept.observers[output].row @ position == pytest.approx(expected, rel=1e-7, abs=size)
     for line, reference in zip(lines, lines_of_modes(boom, modes), strict=True):
         forces, expected_forces = line.read(position), reference.read(other)
+        # Lateral forces without a lateral load are the round-off of those in the plane.
+        round_off = 1e-13 * np.abs(expected_forces["moment"]).max()
         for quantity, values in expected_forces.items():
-            near = 1e-7 * np.abs(values).max() + 1e-9
+            near = 1e-7 * np.abs(values).max() + round_off
             np.testing.assert_allclose(forces[quantity], values, rtol=1e-7, atol=near)
 
 

@@ -17,6 +17,7 @@ from protractile.dynamics.trajectory import Trajectory
 from protractile.runs.folder.cache import VARIABLE
 from protractile.runs.paper.rules import judge
 from protractile.runs.pipeline import run
+from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.models import MotionPlan
 from protractile.runs.pipeline.results import Results
 from tests.runs.case_texts import COARSE
@@ -147,12 +148,12 @@ def test_beams_move_beside_shells_and_fail_for_themselves() -> None:
             at_work.set()
         return model.name, current_thread() is main_thread()
 
-    left = run._attempt_all((beam, lost, shell), move, alone=True)
+    left = run._attempt_all((beam, lost, shell), move, RunContext())
     assert list(left) == ["beam", "lost", "shell"]
     assert left["beam"] == ("beam", False)
     assert left["shell"] == ("shell", True)
     assert str(left["lost"]) == "lost"
-    assert run._attempt_all((beam, lost), move, alone=True)["beam"] == ("beam", True)
+    assert run._attempt_all((beam, lost), move, RunContext())["beam"] == ("beam", True)
 
 
 def test_interrupted_shell_waits_for_at_most_one_beam() -> None:
@@ -170,5 +171,5 @@ def test_interrupted_shell_waits_for_at_most_one_beam() -> None:
         sleep(0.2)
 
     with pytest.raises(KeyboardInterrupt):
-        run._attempt_all(models, move, alone=True)
+        run._attempt_all(models, move, RunContext())
     assert moved == ["beam"]

@@ -257,17 +257,17 @@ def test_modules_and_functions_are_short(trees: dict[str, ast.Module]) -> None:
 
 
 TIP, CLOSE_UP, HEAD = "figure-tip", "figure-tip-close-up", "figure-head"
-SLOW = "figure-slow-peaks", "table-horizons", "table-slow-peaks"
+SLOW = "table-horizons", "table-slow-peaks"
 
 
 @pytest.mark.parametrize(
     ("case", "expected"),
     [
-        ("paper", {"S2": [TIP, *SLOW], "S6": [CLOSE_UP, HEAD], "S8": ["figure-friction"]}),
+        ("paper", {"S2": [TIP, *SLOW], "S6": [CLOSE_UP, HEAD], "S8": []}),
         ("paper-friction",
          {
-             "S2": [*SLOW], "S7": [TIP, HEAD, "figure-friction", "table-whole"],
-             "S8": ["figure-friction", "figure-energy-residual", "table-steps"], "S11": [],
+             "S2": [*SLOW], "S7": [TIP, HEAD, "table-whole"],
+             "S8": ["table-models", "table-steps"], "S11": [],
          }),
         ("three-segments", {"S6": [CLOSE_UP, HEAD, "figure-head-2"], "S11": [TIP, CLOSE_UP]}),
     ],

@@ -145,18 +145,6 @@ def ensembles_of(run: Run) -> dict[str, EnsembleSummary]:
     return {name: model.ensemble for name, model in models if model.ensemble}
 
 
-def test_slow_peaks_are_drawn_with_their_spreads(run: Run) -> None:
-    """Reference: the numbers of the summary, in mm."""
-    known = {f.name: f for f in figures_of(run.results) if f.part == "horizons"}
-    assert list(known) == ["slow-peaks", "horizons"]
-    for name, curve in zip(SERIES, known["slow-peaks"].chart.curves, strict=True):
-        peaks = ensembles_of(run)[name].slow_peaks
-        np.testing.assert_allclose(curve.at, peaks.time)
-        np.testing.assert_allclose(curve.values, 1000.0 * np.array(peaks.height))
-        np.testing.assert_allclose(curve.spread[0], peaks.time_spread)
-        np.testing.assert_allclose(curve.spread[1], 1000.0 * np.array(peaks.height_spread))
-
-
 def test_models_are_compared_in_the_summary(run: Run) -> None:
     """Reference: the series' slow peaks in the same summary."""
     found = run.results.summary.comparisons

@@ -237,7 +237,7 @@ def _parts(annotation: Any) -> Iterator[Any]:
 def test_every_number_declares_its_unit() -> None:
     """Reference: the descriptions, which name the unit of each number for people."""
     tables = {Case, *(table for _, table in tables_of(Case))}
-    fields = {f"{one.__name__}.{key}": f for one in tables for key, f in fields_of(one).items()}
+    fields = {(one, key): field for one in tables for key, field in fields_of(one).items()}
     assert len(fields) > 100
     for name, field in fields.items():
         if float not in _parts(field.annotation):
@@ -246,7 +246,7 @@ def test_every_number_declares_its_unit() -> None:
         assert units, f"{name} declares no unit: give it Annotated[..., In(...)]"
         for unit in units:
             Unit.of(re.sub(r"\^\(?n.*", "", unit))
-            text = describe(field)
+            text = describe(*name)
             assert names_unit(text, unit) or "the same" in text or "such pairs" in text, name
 
 

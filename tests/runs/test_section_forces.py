@@ -30,7 +30,6 @@ from protractile.runs.pipeline.results import Results
 from protractile.runs.report import theme
 from protractile.runs.report.figure_context import FigureContext
 from protractile.runs.report.force_figures import stress_history
-from protractile.runs.report.model_tables import wall_table
 from studies.telescoping_column import END, LAW, LENGTH, STIFFNESS, column
 from tests.runs.case_texts import REST, STEEL, box, elements, joint, read_case, shipped, table
 from tests.runs.summaries import answers_of, model_summary, printed_check, summary_of
@@ -161,13 +160,6 @@ STRESS: dict[str, Any] = {
     "z": 0.0,
     "band": 0.25,
     "patch": {"von_mises": 3.1e7, "time": 0.4, "segment": "inner", "x": 9.0},
-    "walls": [
-        {
-            "segment": "outer",
-            "x": 2.0,
-            "forces": {"top": {"axial": -12500.0, "shear": 3.0, "moment": 3060.0}},
-        }
-    ],
 }
 
 
@@ -195,22 +187,7 @@ def test_stress_figure_states_maximum_and_limits(tmp_path: Path) -> None:
         (figure,) = stress_history(FigureContext(results(STRESS)))
     assert figure.title == ("shell: local plate stress up to 31 MPa, in one element up to 91.6 MPa")
     assert "converges with mesh refinement" in figure.caption
-    assert not wall_table(results(None)).rows
     assert stress_history(FigureContext(results(None))) == []
-
-
-def test_stress_table_has_the_force_of_each_wall() -> None:
-    table = wall_table(results(STRESS))
-    assert table.rows == [("shell", "outer", "2", "top", "−12.50", "0.00", "3.06")]
-    assert "91.6 MPa at x = 9.03 m in 'inner', outer face of the wall 'right'" in table.notes[0]
-    # 91.6 MPa of 355 MPa.
-    plain = results(STRESS)
-    material = plain.case.material
-    steel = replace(material, yield_strength=355e6)
-    known = replace(plain, case=plain.case.model_copy(update={"material": steel}))
-    said = [table.notes[0] for found in (plain, known) if (table := wall_table(found))]
-    assert "91.6 MPa at x" in said[0]
-    assert "91.6 MPa (25.8 % of the yield strength) at x" in said[1]
 
 
 JACK = {"depth": 0.5, "ground": [1.2, -2.4], "stiffness": 6e7, "dashpot": 2e4}

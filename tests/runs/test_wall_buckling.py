@@ -1,13 +1,8 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Buckling of walls from the case to the report."""
 
-from dataclasses import replace
-from pathlib import Path
-
 import numpy as np
 import pytest
-import xarray as xr
-from PIL import Image
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
@@ -22,14 +17,11 @@ from protractile.runs.case.reading import select
 from protractile.runs.case.schema import BucklingTable
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.summary import Summary
-from protractile.runs.report import sheet
-from protractile.runs.report.boom_pictures import render_buckling
 from protractile.runs.report.result_tables import buckling_table
 from protractile.runs.report.summary_table import summary_table
 from protractile.shell_model.buckling import SegmentBuckling
 from studies.wall_buckling import TUBE
 from tests.runs.case_texts import shipped
-from tests.runs.moving_segments import moving_scene
 from tests.shell_model.booms import box_segment
 
 
@@ -102,34 +94,3 @@ def test_a_case_without_the_table_has_none() -> None:
     results = run_case(shipped("coarse"), models=["timoshenko"])
     assert not buckling_table(results).rows
     assert not results.rows.where(quantity="plate_buckling")
-
-
-@pytest.mark.usefixtures("opengl")
-def test_each_mode_has_its_picture(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: by hand. A mode of the bottom is displayed upside down, and has no instant."""
-    monkeypatch.setattr(sheet, "OVERSAMPLING", 1)
-    scene = moving_scene()
-    points = scene.points[scene.owner == 0]
-    triangles = scene.triangles[scene.segment == 0]
-    bottom = np.isclose(points[:, 2], points[:, 2].min())
-    shape = np.zeros_like(points)
-    shape[bottom, 2] = np.exp(-((points[bottom, 0] - 5.0) ** 2))
-    data = xr.Dataset(
-        {
-            "buckling_points": (("buckling_point", "component"), points),
-            "buckling_shape": (("buckling_point", "component"), shape),
-            "buckling_triangles": (("buckling_triangle", "corner"), triangles),
-            "buckling_segment": ("buckling_triangle", np.zeros(len(triangles), dtype=np.int32)),
-            "buckling_factor": ("buckled", [2.5]),
-        },
-        coords={"buckled": [0]},
-    )
-    views = [replace(scene, buckling=data)]
-    assert render_buckling([scene], tmp_path) == render_buckling(views, tmp_path, [0.1]) == []
-    (snapshot,) = render_buckling(views, tmp_path)
-    assert snapshot.path.name == "buckling-1.png"
-    pixels = np.asarray(Image.open(snapshot.path).convert("RGB"), dtype=int)
-    picture = pixels[120 : 900 - 235]
-    # Of viridis, the dark end is at the dent, on the upper face.
-    dark = np.argwhere(picture.sum(axis=2) < 200)
-    assert len(dark) > 100

@@ -25,9 +25,8 @@ from protractile.shell_model.stress.stresses import (
     Modes,
     ShellStress,
     Stress,
-    WallForces,
-    wall_forces,
 )
+from studies.reference_models.shell_readings import WallForces, wall_forces
 from studies.second_order import BOX as COLUMN_BOX
 from studies.second_order import CLAMP, CRITICAL, LENGTH, column
 from studies.taper import arm

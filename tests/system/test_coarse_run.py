@@ -17,9 +17,10 @@ from protractile.runs.pipeline.results import Results
 from protractile.runs.report.opengl import RenderingUnavailable, require_opengl
 from protractile.runs.report.scene import Scene
 from protractile.runs.report.sheet import Snapshot
-from protractile.shell_model.stress.stresses import ShellStress, wall_forces
+from protractile.shell_model.stress.stresses import ShellStress
+from studies.reference_models.shell_readings import wall_forces
 from tests import at_once
-from tests.short_film import RENDERED
+from tests.short_film import render_short
 from tests.system.run_folder import (
     COARSE,
     SERIES,
@@ -40,7 +41,7 @@ BEAMS = [*SERIES, "beam-fe", "timoshenko", "beam-fe-bonded"]
 @pytest.fixture
 def _short_film(monkeypatch: pytest.MonkeyPatch) -> None:
     """Shorten the film, which other tests check."""
-    monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", RENDERED)
+    monkeypatch.setattr("protractile.runs.report.snapshots.render_motion", render_short)
     monkeypatch.setattr("protractile.runs.process.workers.workers", at_once.workers)
 
 
@@ -50,7 +51,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
     folder = tmp_path_factory.mktemp("whole") / "out"
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("protractile.runs.report.snapshots.RENDERED", RENDERED)
+        patch.setattr("protractile.runs.report.snapshots.render_motion", render_short)
         assert protractile("run", COARSE, "--out", folder) == 0
     return folder
 
@@ -200,7 +201,7 @@ def test_a_run_without_opengl_says_so_and_goes_on(
     def refuse(*arguments: object) -> list[Path]:
         raise RenderingUnavailable("no OpenGL")
 
-    monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", (refuse,))
+    monkeypatch.setattr("protractile.runs.report.snapshots.render_motion", refuse)
     assert protractile("run", short, "--models", "shell", "--out", again) == 0
     assert "\nno snapshots: no OpenGL\n" in capsys.readouterr().out
     summary = summary_of(again)
@@ -222,7 +223,7 @@ def test_pictures_can_be_left_to_later(
     def refuse(*arguments: object) -> list[Path]:
         raise AssertionError("nobody asked for pictures")
 
-    monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", (refuse,))
+    monkeypatch.setattr("protractile.runs.report.snapshots.render_motion", refuse)
     out = short.parent / "out"
     assert protractile("run", short, "--models", "shell", "--no-pictures", "--out", out) == 0
     later = "not requested; protractile snapshot draws them"
@@ -237,12 +238,12 @@ def test_two_shells_of_a_case_keep_their_files_apart(
 ) -> None:
     pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
-    def draw(views: Sequence[Scene], folder: Path, times: None) -> list[Snapshot]:
+    def draw(views: Sequence[Scene], folder: Path, *settings: object) -> list[Snapshot]:
         path = folder / "boom-end.png"
         Image.new("RGB", (8, 8)).save(path)
         return [Snapshot(path, "The end", "The boom at its end.")]
 
-    monkeypatch.setattr("protractile.runs.report.snapshots.RENDERED", (draw,))
+    monkeypatch.setattr("protractile.runs.report.snapshots.render_motion", draw)
     text = short.read_text(encoding="utf-8").replace("mesh_size = 0.25", "mesh_size = 0.5")
     shell = text[text.index('[[model]]\nname = "shell"') :].replace('name = "shell"', 'name = "a"')
     text += f"\n{shell}\n" + shell.replace('"a"', '"a-b"').replace("near webs", "across")

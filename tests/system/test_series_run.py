@@ -106,7 +106,7 @@ def test_pictures_of_figures_are_kept_up_to_date(again: Path) -> None:
     few = report.read_text("utf-8").count("data:image/svg+xml")
     assert protractile("report", "--figures", again) == 0
     names = {path.stem for path in (again / "figures").iterdir()}
-    assert {"boom", "tip", "head", "energies"} < names
+    assert {"boom", "tip", "head", "modes"} < names
     assert report.read_text("utf-8").count("data:image/svg+xml") == len(names) > few > 1
     (again / "figures" / "tip.png").unlink()
     assert protractile("report", again) == 0

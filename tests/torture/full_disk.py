@@ -181,7 +181,7 @@ def _run(command: Sequence[str]) -> tuple[object, int]:
         try:
             # Drawings and processes take all the time, and this disk is one process's.
             with (
-                patch("protractile.runs.report.snapshots.RENDERED", (refuse,)),
+                patch("protractile.runs.report.snapshots.render_motion", refuse),
                 patch("protractile.runs.process.workers.workers", at_once.workers),
                 patch.object(Sheet, "savefig", dot),
             ):
