@@ -23,7 +23,7 @@ from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.axial import foot_thrust
 from protractile.geometry.boom import Boom, Segment
 from protractile.geometry.contact_places import contact_centres, pads
-from protractile.geometry.ground import forces
+from protractile.geometry.ground import difference_name, force_name
 from protractile.geometry.joint import PADS_OF_SIDE, Joint, Pad
 from protractile.geometry.section import EACH_SIDE, Direction
 from protractile.geometry.station import Station
@@ -88,13 +88,17 @@ def measure_boom(states: States) -> Iterator[Measured]:
     for name in ("tip", "tip_lateral"):
         if name in states.model.system.observers:
             yield _single(name, "tip", states.observed(name), time, boom.tip)
-    for name in forces(boom):
-        number = int(name.partition("-")[2] or 1)
-        cylinder, pair = boom.cylinders[number - 1], "difference" in name
-        quantity = "cylinder_force_difference" if pair else "cylinder_force"
+    for number, cylinder in enumerate(boom.cylinders, start=1):
         part = "cylinder" if len(boom.cylinders) == 1 else f"cylinder {number}"
-        capacity = None if pair else cylinder.resistance
-        yield _single(quantity, part, states.observed(name), time, cylinder.x, limit=capacity)
+        force, at = states.observed(force_name(number)), (time, cylinder.x)
+        if cylinder.spread == 0.0:
+            yield _single("cylinder_force", part, force, *at, limit=cylinder.resistance)
+            continue
+        apart = states.observed(difference_name(number))
+        yield _single("cylinder_force", part, force, *at)
+        yield _single("cylinder_force_difference", part, apart, *at)
+        larger, limit = 0.5 * (np.abs(force) + np.abs(apart)), cylinder.resistance
+        yield _single("larger_cylinder_force", part, larger, *at, limit=limit and 0.5 * limit)
     if (data := states.recorded) is not None:
         if "rope_force_peak" in data:
             yield _single("rope_force", "rope", data["rope_force_peak"].values, time)

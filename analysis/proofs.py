@@ -174,11 +174,13 @@ def _of_forces(states: States, rows: Rows, resistance: Resistance) -> Iterator[R
         if row.limit is not None and row.value:
             limit = row.limit / resistance.pad
             yield _proof("pad", row.part, row.place, row.value, limit, row.x)
+    # Of two cylinders side by side, one carries more.
+    pairs = {row.part: row for row in rows.where(quantity="larger_cylinder_force")}
     forces = rows.where(quantity="cylinder_force")
-    for row, cylinder in zip(forces, states.boom.cylinders, strict=True):
-        if cylinder.resistance is not None:
-            limit = cylinder.resistance / resistance.cylinder
-            yield _proof("cylinder", row.part, "", row.value, limit)
+    for force, cylinder in zip(forces, states.boom.cylinders, strict=True):
+        row = pairs.get(force.part, force)
+        if row.limit is not None:
+            yield _proof("cylinder", row.part, "", row.value, row.limit / resistance.cylinder)
         if cylinder.pin is not None:
             limit = cylinder.pin.resistance / resistance.pin
             yield _proof("pin", row.part, "lug", row.value, limit, cylinder.x)

@@ -78,6 +78,10 @@ MEASURED: Mapping[str, Quantity] = {
             limit="the capacity", short="cylinder",
         ),
         _unswept("cylinder_force_difference", "N", "force difference of cylinders", shown="kN"),
+        _unswept(
+            "larger_cylinder_force", "N", "larger force of two cylinders", shown="kN",
+            limit="the capacity", short="cylinder",
+        ),
         _unswept("rope_force", "N", "rope force", shown="kN"),
         _unswept("bending_moment", "N m", "bending moment", shown="kN m"),
         _unswept("lateral_bending_moment", "N m", "lateral bending moment", shown="kN m"),

@@ -112,7 +112,7 @@ class Cylinder:
     oil_modulus: Annotated[Positive, In("Pa")] = 1.4e9
     """the bulk modulus in Pa of the oil with its hoses; 1.4e9 unless given, for oil without air"""
     pin: Pin | None = None
-    """the table of the pin of its lug, for proofs"""
+    """the table of the pin of its lug, for proofs; of two cylinders that of each"""
 
     @property
     def length(self) -> float:

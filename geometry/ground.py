@@ -28,6 +28,11 @@ def force_name(number: int) -> str:
     return "cylinder_force" if number == 1 else f"cylinder_force-{number}"
 
 
+def difference_name(number: int) -> str:
+    """Return the name of the difference of the spring forces of two cylinders side by side."""
+    return force_name(number).replace("force", "force_difference")
+
+
 def forces(boom: Assembly) -> dict[str, str]:
     """Return the descriptions of the cylinders' spring forces, by their names in results."""
     observations = {}
@@ -36,7 +41,7 @@ def forces(boom: Assembly) -> dict[str, str]:
         where = f"at x = {cylinder.x:g} m of {boom.segments[cylinder.segment].name!r}"
         observations[name] = f"spring force of the cylinder {where}, positive in compression"
         if cylinder.spread > 0.0:
-            observations[name.replace("force", "force_difference")] = (
+            observations[difference_name(number)] = (
                 f"spring force of the cylinder at positive y {where}, less the force of the other"
             )
     return observations

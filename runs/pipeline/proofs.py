@@ -169,6 +169,8 @@ def _missing_data_notes(case: Case, states: Sequence[CombinationState]) -> Itera
         yield "Tipping is not proved: no combination lists `tipping`."
     if not case.spectra:
         yield "Fatigue strength is not proved: the case has no `[[spectrum]]`."
+    elif not [*details(boom, case.life.detail_category)]:
+        yield "Fatigue strength is not proved: no part of the case has a `detail_category`."
     if "deflection" not in requested_proofs:
         which = "no combination" if case.combinations else "the case has no combination that"
         yield f"Static tip deflection is not proved: {which} lists `deflection`."

@@ -353,9 +353,9 @@ def test_bad_proofs(tmp_path: Path, change: tuple[str, str], message: str) -> No
     assert refusal(tmp_path, ARM.replace(*change)) == message
 
 
-def test_a_cylinder_after_a_pair_is_judged_by_its_own_force(tmp_path: Path) -> None:
-    """Reference: other code path, the static result by the name of the cylinder. A pair in a boom
-    in space has the difference of its forces, too.
+def test_cylinders_are_judged_by_the_forces_that_they_carry(tmp_path: Path) -> None:
+    """Reference: other code path, static results by the names of the cylinders. Of a pair in a boom
+    in space one carries half of the sum and half of the difference, and half of the capacity.
     """
     jack = {"segment": "base", "depth": 0.2, "stiffness": 5e8}
     text = f"""
@@ -367,7 +367,7 @@ start = {{ state = "equilibrium" }}
 {box("base", 6.0, (0.3, 0.2, 0.006, 0.005), HINGED)}
 {box("fly", (4.5, 9.0), (0.25, 0.15, 0.005, 0.004))}
 {joint("fly", "base", 0.002, (4.6, 5.9), "lateral_play = 0.002")}
-{table("[[cylinder]]", x=2.0, ground=[0.7, -1.6], spread=0.5, **jack)}
+{table("[[cylinder]]", x=2.0, ground=[0.7, -1.6], spread=0.5, capacity=3e5, **jack)}
 {table("[[cylinder]]", x=4.0, ground=[2.5, -1.6], capacity=1e5, **jack)}
 {table("[[load]]", segment="fly", x=9.0, magnitude=500.0, direction="y")}
 {table("[[load]]", segment="fly", x=9.0, magnitude=-1000.0)}
@@ -377,4 +377,8 @@ start = {{ state = "equilibrium" }}
     (force,) = state.rows.where(quantity="cylinder_force", part="cylinder 2")
     (apart,) = state.rows.where(quantity="cylinder_force_difference")
     assert found["cylinder", "cylinder 2"].value == pytest.approx(force.value)
-    assert abs(apart.value) < 0.8 * force.value
+    (both,) = state.rows.where(quantity="cylinder_force", part="cylinder 1")
+    larger = found["cylinder", "cylinder 1"]
+    assert larger.value == pytest.approx(0.5 * (abs(both.value) + abs(apart.value)))
+    assert larger.limit == pytest.approx(0.5 * 3e5)
+    assert abs(apart.value) > 0.1 * abs(both.value)
