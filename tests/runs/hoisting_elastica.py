@@ -92,7 +92,7 @@ class HoistingBar:
 
         state = np.concatenate([start, np.zeros(_TERMS), [-sag, 0.0]])
         found = solve_ivp(
-            rate, times[[0, -1]], state, "LSODA", times, rtol=1e-8, atol=1e-10, max_step=0.02
+            rate, times[[0, -1]], state, "LSODA", times, rtol=1e-6, atol=1e-8, max_step=0.02
         )
         normal = np.array([-np.sin(self.angle), np.cos(self.angle)])
         return np.array([normal @ kinematics(q)[1][:, -1] for q in found.y[:_TERMS].T])
