@@ -1,18 +1,142 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The card of a calibrated beam."""
+"""Shared shells of booms with different loads, and the card of a calibrated beam."""
+
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
+import xarray as xr
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from mpi4py import MPI
 
 from protractile.beam_model.calibration import Calibration, Stiffness
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
+from protractile.beam_model.statics import Elements
 from protractile.dynamics.contact import PowerContact
+from protractile.dynamics.equilibrium import equilibrium
+from protractile.dynamics.excitation import Step
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.trajectory import Trajectory
+from protractile.geometry.arrays import Array
+from protractile.geometry.boom import Boom, Cylinder, Load, PointMass, SlidePad, Stop
 from protractile.geometry.section import EACH_SIDE
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
+from protractile.runs.pipeline.model_output import ShellOutput
 from protractile.runs.pipeline.model_run import calibration_card
+from protractile.runs.pipeline.models import build
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.shell_model.standard import standard_boom, with_plays_and_loads
 from studies.motions import friction_case
+from tests.runs.case_texts import HINGED, STEEL, box, read_case, shipped, table
+from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space
 from tests.touching import touching
+
+CASE = """
+title = "A boom of one segment"
+time = { duration = 0.1 }
+model = [{ name = "shell", kind = "shell", mesh_size = 0.4, contact_tolerance = "any" }]
+"""
+RESTING = f"""
+{table("[gravity]", angle=0.0)}
+{STEEL}
+{box("base", (0.0, 6.0), (0.4, 0.3, 0.008, 0.006), HINGED)}
+{table("[[stop]]", segment="base", x=5.0, play=0.01, stiffness=0.0, stiffness_below=1e7)}
+"""
+# At 50 degrees, its pin 0.35 m below the axis.
+RAISED = f"""
+{table("[gravity]", angle=50.0)}
+{STEEL.replace("7850.0", "1600.0")}
+{box("base", (0.0, 10.0), (0.6, 0.4, 0.025, 0.025), "supports = [{ x = 0.0, depth = 0.35 }]")}
+{table("[payload]", mass=400.0)}
+{table("[[load]]", segment="base", x=8.0, magnitude=-3000.0)}
+{table("[[cylinder]]", segment="base", x=2.6, depth=0.3, ground=[0.9, -1.3], stiffness=1e9)}
+"""
+
+
+def at_rest(folder: Path, text: str) -> tuple[Boom, GapSystem, Array]:
+    case = read_case(folder, CASE + text)
+    boom = build_boom(case)
+    system = build(case, boom, case.models[0], BuildContext(MPI.COMM_SELF)).system.gather_loads()
+    return boom, system, equilibrium(system, system.load)
+
+
+def test_boom_held_by_its_weight_becomes_a_shell(tmp_path: Path) -> None:
+    """Reference: analytic. The stop at 5 m carries M g · 3/5 of a beam of 6 m."""
+    boom, system, position = at_rest(tmp_path, RESTING)
+    (gap,) = system.rows @ position
+    weight = 9.80665 * boom.segments[0].mass_per_length * 6.0
+    assert system.laws[0].force(np.array(gap)) == pytest.approx(-weight * 3.0 / 5.0, rel=1e-6)
+
+
+def test_axial_forces_turn_a_shared_shell_about_its_lowered_pin(tmp_path: Path) -> None:
+    """Reference: analytic, moments about the pin of 80 kg/m, 400 kg and 3 kN: 55.89 kN."""
+    boom, system, position = at_rest(tmp_path, RAISED)
+    assert boom.segments[0].mass_per_length == pytest.approx(80.0)
+    force = system.observers["cylinder_force"].row @ position
+    assert force == pytest.approx(55.89e3, rel=1e-3)
+
+
+def output(boom: Boom) -> ShellOutput:
+    shell = reduce_boom(touching(boom, LAW, LATERAL_LAW), ShellOptions(0.5), MPI.COMM_SELF)
+    time = np.array([0.0, 1.0])
+    data = xr.Dataset(coords={"time": time})
+    still = Trajectory(data, np.zeros((time.size, shell.system.omega2.size)))
+    return ShellOutput.of(boom, "shell", shell, still)
+
+
+@pytest.mark.slow
+def test_stresses_are_stored_beside_every_contact_and_support() -> None:
+    """Reference: the boom. Supports, masses, a lug, stations, a stop inside the overlap, loads."""
+    stop = Stop(1, 9.5, 0.04, PowerContact(1.0e9, 1.0).upper())
+    cylinder = Cylinder(0, x=4.0, depth=0.25, ground=(1.0, -4.25), stiffness=1.0e7)
+    boom = boom_in_space()
+    outer = replace(boom.segments[0], masses=(PointMass(4.0, 50.0),))
+    pushes = tuple(Load(1, "z", size, 19.0, Step()) for size in (-2.0, 5.0, 7.0))
+    segments = (outer, boom.segments[1])
+    left = output(
+        replace(boom, segments=segments, stops=(stop,), cylinders=(cylinder,), loads=pushes)
+    )
+    assert left.stresses["place"].values.tolist() == [0.0, 2.0, 4.0, 9.0, 9.5, 10.0, 19.0]
+    assert left.largest.von_mises == 0.0
+    moved = np.tensordot(left.modes["state"].values, left.modes["modes"].values, axes=1)
+    np.testing.assert_allclose(np.linalg.norm(moved, axis=2).max(axis=1), 1.0, rtol=1e-5)
+    assert set(left.meshes) == {"outer", "inner"}
+
+
+@dataclass(frozen=True)
+class Shared:
+    """The parts of a reduced shell that plays and loads change, here of beams."""
+
+    system: GapSystem
+    own_loads: Array
+
+
+def test_a_shared_shell_gets_the_plays_of_its_joints() -> None:
+    """Reference: the boom itself. Of two joints, the first has pads with shims, which stay."""
+    boom = touching(build_boom(shipped("three-segments")), PowerContact(1.0e9, 1.0))
+    pads = tuple(
+        SlidePad(0.1, 0.03, side=side, thickness=0.02, shim=0.001) for side in ("above", "below")
+    )
+    first, second = boom.joints
+    boom = replace(boom, joints=(replace(first, pad=None, pads=pads), second), loads=())
+
+    def system(boom: Boom) -> GapSystem:
+        return gap_system(boom, Elements(boom).segments, EACH_SIDE)
+
+    shared = system(standard_boom(boom))
+    loads = np.zeros((len(boom.segments), shared.num_modes))
+    shell = cast(ReducedShell, Shared(shared, loads))
+    found, expected = with_plays_and_loads(shell, boom).system.laws, system(boom).laws
+    onsets = [[law.terms[0].onset for law in laws] for laws in (found, expected)]
+    assert onsets[0] == pytest.approx(onsets[1])
+    assert onsets[1] == pytest.approx(4 * [0.5 * first.play - 0.001] + 4 * [0.5 * second.play])
 
 
 def test_card_has_stiffness_and_springs() -> None:

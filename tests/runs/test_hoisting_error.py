@@ -1,21 +1,124 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Estimated error of the motion under a hanging load, against a bar with large rotations."""
+"""Estimated errors of motions: of a hoist by large rotations, of a shell by its reduction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.polynomial.legendre import Legendre, leggauss
+from scipy.integrate import solve_ivp
+from scipy.optimize import root
+
+pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+
+from mpi4py import MPI
 
 from protractile.analysis.beams import beam_of
 from protractile.cases import change, run_case
+from protractile.dynamics.arrays import Array
+from protractile.dynamics.excitation import History
+from protractile.dynamics.reduction import restrict
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.load_tables import AxialTable
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.hoisting_error import straight_path_error
+from protractile.runs.pipeline.model_run import RunContext
+from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.statics import boom_with_play
-from tests.runs.case_texts import shipped
-from tests.runs.hoisting_elastica import HoistingBar
+from tests.runs.case_texts import STEEL, box, joint, read_case, shipped, table
+from tests.runs.summaries import finished
+
+GRAVITY = 9.80665
+# Number of polynomials of the rotation, and of Gauss points along the bar.
+_TERMS, _POINTS = 4, 10
+
+
+@dataclass(frozen=True, slots=True)
+class HoistingBar:
+    """A bar whose axis has the angle α + Σ q_i s^i at s L, and a load on a rope along gravity.
+
+    Every point moves as the integral of its rotations says, so that no rotation is small. The load
+    moves along gravity only.
+
+    Args:
+        length, stiffness, mass_per_length: L in m, EI in N·m² and kg/m.
+        angle: α in rad.
+        load, payload: masses on the rope and at the tip in kg.
+        rope: stiffness of the rope in N/m.
+        hoist: hoisted length in m over time.
+        hanging: whether the load hangs at rest at t = 0, or lies on the ground below a straight
+            rope without force.
+    """
+
+    length: float
+    stiffness: float
+    mass_per_length: float
+    angle: float
+    load: float
+    rope: float
+    hoist: History
+    hanging: bool = False
+    payload: float = 0.0
+
+    def tips(self, times: Array) -> Array:
+        """Return the deflection (num_times,) of the tip in m across the bar, positive upwards."""
+        points, weights = leggauss(_POINTS)
+        s, weights = 0.5 * (points + 1.0), 0.5 * self.length * weights
+        powers = np.arange(1, _TERMS + 1)
+        shapes, slopes = s[:, None] ** powers, powers * s[:, None] ** (powers - 1) / self.length
+        # Integrals up to each Gauss point and to the tip of the polynomials through these points.
+        ends = np.append(points, 1.0)
+        basis = [Legendre.basis(k) for k in range(_POINTS)]
+        integrals = np.array([p.integ(lbnd=-1.0)(ends) for p in basis]).T
+        upto = 0.5 * self.length * integrals @ np.linalg.inv(np.array([p(points) for p in basis]).T)
+        bending = self.stiffness * (slopes.T * weights) @ slopes
+        masses = np.append(self.mass_per_length * weights, self.payload)
+
+        def kinematics(q: Array) -> tuple[Array, Array, Array]:
+            """Return directions (2, points), places (2, ends) and their derivatives."""
+            rotation = self.angle + shapes @ q
+            along = np.array([np.cos(rotation), np.sin(rotation)])
+            across = np.array([-along[1], along[0]])
+            return along, along @ upto.T, np.einsum("es,ds,si->dei", upto, across, shapes)
+
+        def forces(q: Array, pull: float) -> Array:
+            _, _, moves = kinematics(q)
+            return np.asarray(-bending @ q - GRAVITY * masses @ moves[1] - pull * moves[1, -1])
+
+        weight = self.load * GRAVITY
+        start = root(forces, np.zeros(_TERMS), args=(weight if self.hanging else 0.0,), tol=1e-12).x
+        lowest = kinematics(start)[1][1, -1]
+        sag = weight / self.rope if self.hanging else 0.0
+
+        def rate(time: float, state: Array) -> Array:
+            q, dq = state[:_TERMS], state[_TERMS : 2 * _TERMS]
+            height, speed = state[-2:]
+            along, places, moves = kinematics(q)
+            wound = float(self.hoist(np.array(time)))
+            pull = self.rope * max(places[1, -1] - lowest - height + wound, 0.0)
+            lift = pull / self.load - GRAVITY
+            if not self.hanging and height <= 0.0:
+                lift = max(lift, 0.0)
+            turning = -(along * (shapes @ dq) ** 2) @ upto.T
+            inertia = np.einsum("dei,e,dej->ij", moves, masses, moves)
+            gyration = np.einsum("dei,e,de->i", moves, masses, turning)
+            ddq = np.linalg.solve(inertia, forces(q, pull) - gyration)
+            return np.concatenate([dq, ddq, [speed, lift]])
+
+        state = np.concatenate([start, np.zeros(_TERMS), [-sag, 0.0]])
+        found = solve_ivp(
+            rate, times[[0, -1]], state, "LSODA", times, rtol=1e-6, atol=1e-8, max_step=0.02
+        )
+        normal = np.array([-np.sin(self.angle), np.cos(self.angle)])
+        return np.array([normal @ kinematics(q)[1][:, -1] for q in found.y[:_TERMS].T])
+
 
 MODULUS = 2.1e11
 # Longer elements than the usual ones bring no more than 1 % of the error.
@@ -130,3 +233,100 @@ def test_estimated_error_of_shipped_cranes(name: str, expected: float) -> None:
         case = case.model_copy(update={"rope": None, "axial": (dead,)})
     beam = static_states(case, boom_with_play(case, build_boom(case)), beam_of)
     assert straight_path_error(case, beam) == pytest.approx(expected, rel=1e-3)
+
+
+SUPPORTS = "supports = [0.0, 1.4]\nload = 880.0"
+RUBBING = "friction = 0.2\nnormal_forces = [4500.0, 5000.0]"
+TEXT = f"""
+title = "Rubbing"
+{table("[time]", duration=2.0, step=2.0e-5)}
+{STEEL}
+{box("outer", (0.0, 8.0), (0.42, 0.40, 0.008, 0.005), SUPPORTS)}
+{box("inner", (6.6, 14.5), (0.39, 0.35, 0.006, 0.0045), "load = 620.0")}
+{joint("inner", "outer", 0.01, (6.6, 8.0), RUBBING)}
+"""
+
+
+def shells(folder: Path, *tolerances: float, more: str = "") -> Case:
+    """Return a case with a shell for each tolerance, named ``shell-TOLERANCE``."""
+    models = [
+        table(
+            "[[model]]",
+            name=f"shell-{one:g}",
+            kind="shell",
+            mesh_size=0.4,
+            contact_tolerance="any",
+            tolerance=one,
+        )
+        for one in tolerances
+    ]
+    return read_case(folder, "\n".join([TEXT, *models, more]))
+
+
+@pytest.mark.slow
+def test_damped_motion_is_as_exact_as_the_tolerance_says(tmp_path: Path) -> None:
+    """Reference: the same shell with a tolerance of 1e-8, in motion with 1 % of modal damping.
+
+    The default tolerance is good to 0.3 % of the range, and the estimate is above the error.
+    """
+    case = shells(tmp_path, 5e-4, 1e-6, 1e-8, more=table("[damping]", modal=0.01))
+    run = finished(case, RunContext(MPI.COMM_WORLD))
+    tips = run.results.trajectories["tip"]
+    exact = tips.sel(model="shell-1e-08").values
+    errors = {
+        one: float(np.abs(tips.sel(model=one).values - exact).max() / np.ptp(exact))
+        for one in ("shell-0.0005", "shell-1e-06")
+    }
+    assert errors["shell-0.0005"] < 0.003
+    assert errors["shell-1e-06"] < 0.7 * errors["shell-0.0005"]
+    for name, error in errors.items():
+        estimate = run.results.summary.models[name].reduction_error
+        assert estimate is not None
+        assert error < estimate < 0.005
+    assert run.results.summary.models["shell-0.0005"].energy_residual < 1e-11
+    assert not [one for one in run.results.summary.cautions if "the reduction of" in one]
+
+
+@pytest.mark.slow
+def test_undamped_plates_make_the_motion_uncertain(tmp_path: Path) -> None:
+    """Reference: the same shell with a tolerance of 1e-8, and exact words.
+
+    Without damping, friction depends on vibrations of plates above 50 Hz. The error of 4 % of the
+    tip's range is estimated within a factor of 2.5, and told.
+    """
+    run = finished(shells(tmp_path, 5e-4, 1e-8), RunContext(MPI.COMM_WORLD))
+    tips = run.results.trajectories["tip"]
+    coarse, exact = (tips.sel(model=f"shell-{one}").values for one in ("0.0005", "1e-08"))
+    error = float(np.abs(coarse - exact).max() / np.ptp(exact))
+    estimate = run.results.summary.models["shell-0.0005"].reduction_error
+    assert estimate is not None
+    assert error > 0.03
+    assert 0.4 * error < estimate < 2.5 * error
+    assert (
+        f"caution: the reduction of shell-0.0005 may change the tip's motion by "
+        f"{100.0 * estimate:.2g} % of its range, since friction depends on vibrations of its "
+        "plates; give damping, which ends these vibrations, and a smaller tolerance"
+    ) in run.results.summary.cautions
+    assert any(
+        f"shell-0.0005: the reduction changes the tip's motion by about {100.0 * estimate:.2g} %"
+        in note.line
+        for note in run.results.summary.design.quality_notes
+    )
+
+
+@pytest.mark.slow
+def test_the_coarser_basis_is_part_of_the_basis(tmp_path: Path) -> None:
+    """Reference: analytic, orthonormal columns and Cauchy's interlacing of eigenvalues."""
+    case = shells(tmp_path, 5e-4)
+    built = build(case, build_boom(case), case.models[0], BuildContext(MPI.COMM_WORLD))
+    assert built.shell is not None
+    basis, system = built.shell.coarser, built.system
+    assert basis.T @ basis == pytest.approx(np.eye(len(basis.T)), abs=1e-10)
+    coarser = restrict(system, basis)
+    assert 0.3 * system.num_modes < coarser.num_modes < 0.8 * system.num_modes
+    rigid = system.omega2 == 0.0
+    assert np.count_nonzero(coarser.omega2 == 0.0) == np.count_nonzero(rigid)
+    every, fewer = np.sort(system.omega2), np.sort(coarser.omega2)
+    assert (fewer >= every[: fewer.size] * (1.0 - 1e-9)).all()
+    # Rigid motions and the first elastic mode are in both.
+    assert fewer[rigid.sum()] == pytest.approx(every[rigid.sum()], rel=1e-3)
