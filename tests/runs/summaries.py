@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Summaries of invented runs."""
+"""Runs and sweeps without files, and their summaries and printed tables."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
 from io import StringIO
@@ -15,6 +16,7 @@ from rich.console import Console
 
 from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.trajectory import Trajectory
+from protractile.runs import CASES
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.reading import CheckedCase
@@ -26,6 +28,9 @@ from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.pipeline.results import Results
 from protractile.runs.pipeline.run import Run, run_case
 from protractile.runs.pipeline.summary import ModelSummary, StepsForPeaks, Summary
+from protractile.runs.sweep import run as sweep
+from protractile.runs.sweep.points import Plan
+from protractile.runs.sweep.run import Outcome
 
 if TYPE_CHECKING:
     from mpi4py.MPI import Intracomm
@@ -114,3 +119,16 @@ def motion_of(case: Case, number: int = 0) -> Trajectory:
     """Return the motion of one of a case's models, in the case's order."""
     model = case.models[number]
     return MotionPlan.of(build(case, build_boom(case), model).system, case, model).trajectory()
+
+
+COARSE = CASES / "coarse.toml"
+FAST = ["kantorovich-4", "beam-fe-bonded"]
+
+Planned = Callable[..., Plan]
+
+
+def run(planned: Plan, folder: Path = Path("out")) -> list[Outcome]:
+    """Return all outcomes of a sweep, run in this process."""
+    sweep.prepare(folder, planned.file)
+    with ThreadPoolExecutor(1) as pool:
+        return sweep.run_points(planned, folder, pool, lambda *_: None)

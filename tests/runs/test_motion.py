@@ -9,8 +9,6 @@ from typing import get_args
 import numpy as np
 import pytest
 
-pytest.importorskip("rainflow", reason="the cycles are counted by it")
-
 from protractile.analysis.fatigue import count_stress_ranges
 from protractile.analysis.model import AnalysisModel
 from protractile.analysis.modes import Mode, match_modes, modes
@@ -154,6 +152,7 @@ def test_results_are_shown_as_soon_as_each_model_has_finished() -> None:
     assert [*shown[-1].rows] == [*run.results.rows]
 
 
+COUNTED = "the cycles are counted by it"
 BOX = BoxSection(height=0.30, width=0.20, flange=0.006, web=0.006)
 
 
@@ -242,8 +241,7 @@ def test_immovable_rigid_segments_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("seed", range(5))
 def test_a_repetition_adds_what_the_history_written_twice_adds(seed: int) -> None:
     """Reference: other code, rainflow cycles of the history twice in a row, less those of one."""
-    import rainflow
-
+    rainflow = pytest.importorskip("rainflow", reason=COUNTED)
     stress = np.random.default_rng(seed).normal(0.0, 50e6, 100)
     added = Counter(dict(rainflow.count_cycles([*stress, *stress])))
     added.subtract(dict(rainflow.count_cycles(stress)))
@@ -264,6 +262,7 @@ def test_damage_of_a_load_that_remains(
     Slowly: one full cycle. Suddenly: full cycles of 110.6, 77.1, 56.3, 41.0 and 29.9 MPa, from each
     trough to the next peak of the decaying vibration, whose stress includes higher modes.
     """
+    pytest.importorskip("rainflow", reason=COUNTED)
     text = f"""
 title = "Load that remains"
 time = {{ duration = 4.0, output_step = 0.002 }}

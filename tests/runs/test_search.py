@@ -36,10 +36,22 @@ from protractile.runs.sweep.sampling import (
 from protractile.runs.sweep.search import rigid_wall_cautions
 from protractile.runs.sweep.variation import numbers
 from tests.docs.conftest import toml_blocks
-from tests.runs.cantilever import CANTILEVER, LOAD, MASS, static_tip
-from tests.runs.case_texts import CLAMPED, REST, STEEL, THIN, box, edited, elements, joint, table
-from tests.runs.summaries import printed
-from tests.runs.sweeping import run
+from tests.runs.case_texts import (
+    CANTILEVER,
+    CLAMPED,
+    LOAD,
+    MASS,
+    REST,
+    STEEL,
+    THIN,
+    box,
+    edited,
+    elements,
+    joint,
+    static_tip,
+    table,
+)
+from tests.runs.summaries import printed, run
 from tests.system.run_folder import protractile
 
 sweep = partial(protractile, "sweep", "case.toml")

@@ -36,8 +36,8 @@ from protractile.runs.report import theme
 from protractile.runs.report.figure_context import FigureContext
 from protractile.runs.report.force_figures import stress_history
 from studies.telescoping_column import END, LAW, LENGTH, STIFFNESS, column
-from tests.runs.cantilever import CANTILEVER
 from tests.runs.case_texts import (
+    CANTILEVER,
     COARSE,
     REST,
     STEEL,

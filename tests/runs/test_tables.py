@@ -29,8 +29,7 @@ from protractile.runs.report import theme
 from protractile.runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
 from protractile.runs.report.output import WORKBOOK, write_workbook
 from protractile.runs.report.tables import ROOMY, Amount, Column, Table
-from tests.runs.cantilever import CANTILEVER
-from tests.runs.case_texts import edited, load_checked_text, read_case, refusal, shipped
+from tests.runs.case_texts import CANTILEVER, edited, load_checked_text, read_case, refusal, shipped
 from tests.runs.summaries import printed
 
 ROWS = [("beam", "1 s\n2 mm"), ("[b]", "–")]

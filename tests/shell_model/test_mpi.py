@@ -1,12 +1,20 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Equal results on one rank and on several."""
+"""Equal results on one rank and on several, and compilation of forms."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+
+pytest.importorskip("dolfinx", reason="forms are compiled by FFCx")
+
 from mpi4py import MPI
 
 from protractile.dynamics.failure import NumericsError
@@ -217,3 +225,51 @@ def test_ranks_share_an_edge_of_three_walls(two_ranks: dict[str, Any]) -> None:
 
 def test_failure_on_one_rank_fails_all_ranks(two_ranks: dict[str, Any]) -> None:
     assert two_ranks["failed"] == ["the second rank cannot"] * 2
+
+
+ROOT = Path(__file__).parents[2]
+COMPILE = """
+import os, signal
+import ffcx.codegeneration.jit as compiler
+from mpi4py import MPI
+from dolfinx import fem, mesh
+import ufl
+from protractile.shell_model import compat
+domain = mesh.create_unit_interval(MPI.COMM_SELF, 2)
+if {killed}:
+    compiler._compile_objects = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
+one = fem.Constant(domain, 3.0)
+print(fem.assemble_scalar(fem.form(one * ufl.dx(domain=domain))))
+"""
+
+
+def compile_form(
+    folder: Path, killed: bool, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Compile and evaluate a form. Reference: analytic, the integral of 3 over a unit."""
+    outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
+    return subprocess.run(
+        [sys.executable, "-c", COMPILE.format(killed=killed)],
+        env=outside | {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder)} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_next_process_completes_a_killed_compilation(tmp_path: Path) -> None:
+    assert compile_form(tmp_path, True).returncode == -signal.SIGKILL
+    assert list((tmp_path / "fenics" / "protractile").glob("*.c"))
+    assert compile_form(tmp_path, False).stdout == "3.0\n"
+
+
+def test_only_the_first_compilation_needs_a_compiler(tmp_path: Path) -> None:
+    """Reference: by construction. The last line names the compiler and the packages."""
+    missing = compile_form(tmp_path, False, CC="/no/cc").stderr.splitlines()[-1]
+    assert "/no/cc" in missing
+    assert missing.endswith(
+        "; the forms of a shell are compiled once, which needs a C compiler and Python's headers: "
+        "apt install gcc python3-dev, or dnf install gcc python3-devel: 'CC'"
+    )
+    assert compile_form(tmp_path, False).stdout == "3.0\n"
+    assert compile_form(tmp_path, False, CC="/no/cc").stdout == "3.0\n"
