@@ -297,7 +297,7 @@ def test_every_table_of_pairs_is_checked() -> None:
                 for one in found
             ):
                 checked.add(key)
-    assert {"curve", "schema", "force_table", "yield_by_thickness"} <= pairs
+    assert {"curve", "table", "force_table", "yield_by_thickness"} <= pairs
     assert pairs - checked == UNORDERED
 
 
