@@ -359,7 +359,6 @@ def test_keys_are_shown_in_units_of_their_size() -> None:
         assert (shown[name].values.tolist(), shown[name].attrs["units"]) == (values, unit)
 
 
-@pytest.mark.usefixtures("unprinted")
 def test_lines_are_in_shown_units_with_gaps(planned: Planned, figures: list[Figure]) -> None:
     """Reference: the invented numbers 1.0, 1.1, ... in m and N; one model lacks the third."""
     charts(planned("joint.play=0:0.009:4"))
