@@ -28,7 +28,8 @@ from protractile.shell_model.boom_shell import ShellOptions, segment_mesh
 from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.segment.segment_shell import assemble_segment
-from protractile.shell_model.stress.stresses import ShellStress, wall_forces
+from protractile.shell_model.stress.stresses import ShellStress
+from studies.reference_models.shell_readings import wall_forces
 from studies.reference_models.statics import static_response
 from tests.shell_model.booms import STEEL, boom_in_space, box_segment
 from tests.touching import level, raised, touching
