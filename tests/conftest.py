@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Common fixtures: the boom of Rusiński and Wyciślok (1997), caches, ranks."""
 
+import gc
 import os
 import shutil
 import subprocess
@@ -54,6 +55,17 @@ def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
 
         compile_loop(compiled_in(tmp_path_factory))
         integrate(Motion(oscillator(), 1.0, 0.1), NEWMARK, iterated=False)
+
+
+def pytest_collection() -> None:
+    """Look for no garbage while modules are imported, which takes as long as their import."""
+    gc.disable()
+
+
+def pytest_collection_finish() -> None:
+    """Look for garbage among what tests make, and no more among the imported modules."""
+    gc.freeze()
+    gc.enable()
 
 
 def pytest_collection_modifyitems(items: list[pytest.Function]) -> None:

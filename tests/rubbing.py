@@ -11,8 +11,7 @@ from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.kernels.march import march
 from protractile.dynamics.motion import Motion
 from protractile.dynamics.motion_laws import SCurve
-from tests.dynamics.test_moving_thrust import pressed_along
-from tests.dynamics.test_telescoping import lossy
+from tests.dynamics.test_telescoping import lossy, pressed_along
 from tests.modal import modal_system
 
 

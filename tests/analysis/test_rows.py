@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Rows and curves of results: selections, extremes, files."""
+"""Rows and curves of results: selections, extremes, files; statics and modes from Python; wear."""
+
+from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -10,11 +14,18 @@ import xarray as xr
 from hypothesis import given
 from hypothesis import strategies as st
 
+import protractile as pt
 from protractile.analysis.curves import Curve, Curves, histories
+from protractile.analysis.fatigue import Life
 from protractile.analysis.measure import Measured
 from protractile.analysis.quantities import MEASURED
 from protractile.analysis.rows import EXTENDED, MOTION, REST, Row, Rows, extremes
+from protractile.analysis.states import States
+from protractile.analysis.wear import wear_rows
+from protractile.cases import load_case, run_case
+from protractile.runs.case.build import build_boom
 from protractile.runs.pipeline.results import read_netcdf
+from tests.booms import cantilever, force, telescope
 
 NUMBERS = st.floats(allow_nan=False, allow_infinity=False)
 TEXTS = st.text(st.characters(exclude_categories=["C"]), max_size=12)
@@ -192,3 +203,159 @@ def test_a_history_has_the_largest_stress_of_each_interval() -> None:
     np.testing.assert_allclose(curve.x, 1e-3 * (rise[1::2] - 0.5))
     (read,) = Curves.of(Curves([curve]).dataset)
     assert read.place == 2.0
+
+
+ARM = cantilever(force("arm", 8.0, -5.0e3))
+
+
+def test_a_motion_is_evaluated_as_a_run_of_a_case() -> None:
+    """Reference: other code path, the tip of the trajectory and the deflection at rest."""
+    gust = force("fly", 14.0, -500.0, history=pt.Ramp(0.1))
+    beam = pt.BeamElements(pt.with_weight(telescope(gust), angle=30.0), theory="timoshenko")
+    motion = beam.simulate(0.3)
+    rows, curves = beam.evaluate(motion)
+    (moved,) = rows.where(quantity="tip", state="motion")
+    tips = motion.data["tip"].values
+    assert abs(moved.value) == np.abs(tips).max()
+    assert moved.value == tips[np.isclose(motion.time, moved.time)][0]
+    (rest,) = rows.where(quantity="tip", state=REST)
+    assert rows.dynamic_factor(moved) == abs(moved.value) / abs(rest.value)
+    names = {curve.state for curve in curves}
+    assert {REST, "minimum", "maximum", "mode 1"} <= names
+
+
+@pytest.mark.parametrize(
+    ("wrong", "message"),
+    [
+        ({"requested": ["yeild"]}, "'yeild' is no kind of proof by beams; give 'yield', 'plate'"),
+        ({"requested": ["patch"]}, "'patch' is no kind of proof by beams"),
+        ({"permitted_tip": 0.0}, "permitted_tip: must be a number above 0"),
+        ({"resistance": pt.Resistance(pad=-1.0)}, "resistance.pad: must be a number above 0"),
+    ],
+)
+def test_a_wrong_request_is_an_error(wrong: dict[str, Any], message: str) -> None:
+    with pytest.raises(pt.BoomError, match=message):
+        pt.prove(ARM, {"own": []}, **wrong)
+
+
+def test_the_combination_without_an_equilibrium_is_named() -> None:
+    """Reference: analytic, about 50 times the buckling force of a cantilever (Euler 1744)."""
+    with pytest.raises(pt.NumericsError, match="far: the boom has no static equilibrium"):
+        pt.prove(cantilever(*ARM.loads, thrust=1e8), {"far": []})
+
+
+def test_plates_that_bend_leave_the_force_to_pads_at_corners() -> None:
+    """Reference: by hand, E A/t of the pads at the corner, which carry the whole force.
+
+    The pads away from the corners would have to bend the plates by more than those at the corners
+    are pressed in. Shares as the pads are stiff would be 1 to 2.
+    """
+    pads = tuple(
+        pt.SlidePad(
+            side=side, length=length, width=0.03, thickness=0.02, modulus=2e9, bears="wall",
+            offset=offset,
+        )
+        for side, length, offset in (
+            ("above", 0.1, 0.0), ("below", 0.1, 0.0), ("below", 0.2, 0.04),
+        )
+    )  # fmt: skip
+    padded = telescope(force("fly", 14.0, -1000.0), joint__pad=None, joint__pads=pads)
+    rows = pt.statics(padded).rows.where(state=REST)
+    whole, pressed, corner, beside = (
+        rows.where(quantity=quantity, place=f"station 2{name}")[0].value
+        for quantity, name in (
+            ("contact_force", ""), ("penetration", ""),
+            ("pad_force", ", below"), ("pad_force", ", below 2"),
+        )
+    )  # fmt: skip
+    assert corner == pytest.approx(2e9 * 0.1 * 0.03 / 0.02 * pressed, rel=1e-6)
+    assert [2.0 * corner, beside] == pytest.approx([abs(whole), 0.0], rel=1e-6)
+
+
+CASE: dict[str, Any] = {
+    "title": "Telescoping boom", "time": {"duration": 4.0, "output_step": 0.01},
+    "material": {"youngs_modulus": 2.1e11, "poissons_ratio": 0.3, "density": 7850.0},
+    "start": {"state": "equilibrium"}, "payload": {"mass": 200.0}, "damping": {"modal": 0.05},
+    "segment": [
+        {"name": "base", "length": 6.0, "supports": [{"x": 0.0, "kind": "clamped"}],
+         "section": {"height": 0.3, "width": 0.2, "flange": 0.006, "web": 0.006}},
+        {"name": "fly", "length": 5.0,
+         "section": {"height": 0.25, "width": 0.15, "flange": 0.005, "web": 0.005}},
+    ],
+    "joint": [
+        {"outer": "base", "inner": "fly", "extension": 2.0, "stations": ["tail", "head"],
+         "play": 0.004, "pad": {"length": 0.1, "width": 0.05, "thickness": 0.02},
+         "drive": {"travel": 1.5, "time": 3.0}}
+    ],
+    "life": {"wear": 2.0e-6, "repeats": 10000},
+    "model": [
+        {"name": "beam", "kind": "finite-element", "theory": "euler-bernoulli",
+         "element_length": 1.0}
+    ],
+}  # fmt: skip
+
+
+def test_wear_of_a_constant_force() -> None:
+    """Reference: analytic. Depth N k (F/2) s/A of each of two pads, which is added to the play."""
+    boom = build_boom(load_case(CASE))
+    time, force, way = np.linspace(0.0, 1.0, 11), 3000.0, 1.5
+    data = xr.Dataset(
+        {
+            "extension": ("time", way * time),
+            "contact_force": (("time", "station"), np.tile([force, -2.0 * force], (11, 1))),
+        }
+    )
+    states = cast(States, SimpleNamespace(boom=boom, recorded=data))
+    rows = Rows(wear_rows(states, "beam", Life(repeats=10_000, wear=2.0e-6), 0.01))
+    depth = 1.0e4 * 2.0e-15 * 0.5 * force * way / (0.1 * 0.05)
+    assert [(row.place, row.value) for row in rows.where(quantity="wear")] == [
+        ("station 1, above", pytest.approx(depth)),
+        ("station 1, below", 0.0),
+        ("station 2, above", 0.0),
+        ("station 2, below", pytest.approx(2.0 * depth)),
+    ]
+    assert [row.value for row in rows.where(quantity="worn_play")] == [
+        pytest.approx(0.004 + depth), pytest.approx(0.004 + 2.0 * depth),
+    ]  # fmt: skip
+    lives = [row.value for row in rows.where(quantity="wear_life")]
+    assert lives == [pytest.approx(1.0e4 * 0.02 / depth), pytest.approx(0.5e4 * 0.02 / depth)]
+    assert rows.governing is not None
+    assert rows.governing.utilisation == pytest.approx(2.0 * depth / 0.02)
+    # The tail rises by one depth, the head falls by two, and the tip turns about them. At the
+    # largest extension the tail, which rides on the fly, is closer to the head.
+    (tail, head), tip = boom.joints[0].stations, boom.tip + way
+    fall = (2.0 + 3.0 * (tip - head) / (head - tail - way)) * depth
+    (worn,) = rows.where(quantity="worn_tip")
+    assert worn.value == pytest.approx(0.01 + fall)
+    limited = Life(repeats=10_000, wear=2.0e-6, tip=0.05)
+    *_, worn, life = wear_rows(states, "beam", limited, 0.01)
+    assert (worn.limit, life.quantity) == (0.05, "wear_life")
+    assert life.value == pytest.approx(1.0e4 * 0.04 / fall)
+    # Without a coefficient or a drive nothing wears.
+    assert [*wear_rows(states, "beam", Life())] == []
+    fixed = SimpleNamespace(boom=boom, recorded=data.drop_vars("extension"))
+    assert [*wear_rows(cast(States, fixed), "beam", Life(wear=1.0))] == []
+
+
+def test_wear_of_a_run_is_that_of_its_statics() -> None:
+    """Reference: analytic, lever of the payload and the weight of nothing else, slow telescoping.
+
+    The head bears F (1 + a/l) and the tail F a/l, where the arm a grows and the overlap l shrinks
+    by the extension; vibration about these means adds nothing, within 2 %.
+    """
+    results = run_case(load_case(CASE))
+    rows = results.rows.where(model="beam", quantity="wear", state="motion")
+    boom = results.boom
+    (joint,) = boom.joints
+    weight, pad = 200.0 * 9.80665, joint.pad
+    assert pad is not None
+    # Pads lie within the overlap: half a length from its ends. The integral of a/l over the way.
+    arm, overlap, way = 2.0 + 0.05, 3.0 - 0.1, 1.5
+    tail = weight * ((arm + overlap) * np.log(overlap / (overlap - way)) - way)
+    head = tail + weight * way
+    scale = 1.0e4 * 2.0e-15 / (2.0 * pad.area)
+    worn = {row.place: row.value for row in rows if row.value}
+    assert worn == {
+        "station 1, above": pytest.approx(scale * tail, rel=0.02),
+        "station 2, below": pytest.approx(scale * head, rel=0.02),
+    }

@@ -30,8 +30,7 @@ from tests.dynamics.reference import (
     two_modes,
     with_rates,
 )
-from tests.dynamics.test_moving_thrust import pressed_along
-from tests.dynamics.test_telescoping import lossy, rider
+from tests.dynamics.test_telescoping import lossy, pressed_along, rider
 from tests.modal import modal_system, one_mass
 
 THROWN = np.array([0.8, -0.5, 0.3, 0.4])

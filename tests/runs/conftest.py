@@ -9,7 +9,7 @@ import pytest
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.sweep import output
 from protractile.runs.sweep.points import Plan, plan
-from tests.runs.sweeping import COARSE, FAST, Planned
+from tests.runs.summaries import COARSE, FAST, Planned
 
 
 @pytest.fixture

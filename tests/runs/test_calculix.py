@@ -30,7 +30,7 @@ from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.segment_shell import assemble_segment
 from studies.wall_buckling import BOXES, CALCULIX, COLUMN, LoadedBox
 from tests.runs.case_texts import refused, shipped
-from tests.shell_model.test_second_order import column
+from tests.shell_model.test_cylinder import column
 
 INSTALLED = pytest.mark.skipif(
     shutil.which("ccx") is None, reason="CalculiX is missing: apt install calculix-ccx"

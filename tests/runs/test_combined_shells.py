@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Combinations by a shell: one reduction for each geometry, patch stresses and buckling."""
+"""Shells from the cache, in other units, and in combinations."""
 
+import os
+from dataclasses import replace
 from pathlib import Path
+from time import sleep
+from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
@@ -13,17 +18,210 @@ from protractile.analysis.measure import measure
 from protractile.analysis.model import AnalysisModel
 from protractile.analysis.rows import COMBINATION, extremes
 from protractile.analysis.states import States
+from protractile.dynamics.excitation import Ramp
+from protractile.dynamics.gap_system import GapSystem
+from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator
+from protractile.dynamics.motion import Motion
+from protractile.geometry.joint import Pad
+from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.kinds.model import BuildContext
-from protractile.runs.folder.cache import Cache
+from protractile.runs.case.load_tables import LoadTable
+from protractile.runs.case.reading import convert_to_si
+from protractile.runs.case.schema import Case
+from protractile.runs.case.sections import SectionTable
+from protractile.runs.folder.cache import Cache, load_or_compute
 from protractile.runs.pipeline.combinations import CombinationState
 from protractile.runs.pipeline.combined_shells import shell_states
+from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.proofs import prove
-from tests.runs.case_texts import read_case
+from protractile.runs.process.terminal import shorten
+from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from tests.runs.case_texts import read_case, shipped
+from tests.runs.summaries import rubbing
 from tests.runs.test_combinations import CASES, FACTORS, LIFT
 from tests.system.run_folder import protractile
 
-SHELL = """
+pytestmark = pytest.mark.slow
+
+SIZES = "height", "width", "flange", "web"
+
+
+@pytest.fixture
+def case() -> Case:
+    return case_file.select(shipped("coarse"), "", ["shell"], 1.0)
+
+
+def reduce(case: Case, cache: Cache | None) -> ReducedShell:
+    tools = BuildContext(MPI.COMM_SELF, cache=cache)
+    return build(case, build_boom(case), case.models[0], tools).shell
+
+
+def entries(cache: Cache) -> list[Path]:
+    return list(cache.folder.glob("*.record"))
+
+
+def test_a_second_run_skips_mesh_and_reduction_of_the_same_mesh(case: Case, tmp_path: Path) -> None:
+    cache = Cache(tmp_path / "cache")
+    first = reduce(case, cache)
+    second = reduce(case, cache)
+    assert {*first.seconds} == {"mesh", "assembly", "rows", "reduction", "fields", "mesh error"}
+    assert list(second.seconds) == ["cache"]
+    for name in ("omega2", "load", "rows", "friction_rows"):
+        assert np.array_equal(getattr(first.system, name), getattr(second.system, name))
+    assert first.system.laws == second.system.laws
+    assert first.errors == second.errors
+    assert first.fields.identical(second.fields)
+    for made, kept in zip(first.meshes, second.meshes, strict=True):
+        assert made.plates == kept.plates
+        for name in ("points", "triangles", "walls", "thickness"):
+            assert np.array_equal(getattr(made, name), getattr(kept, name))
+    assert "reduction" in reduce(case_file.select(case, "", None, 0.6), cache).seconds
+    assert len(entries(cache)) == 2
+
+
+def varied(case: Case, play: float, times: float, ramp: float) -> Case:
+    """Return the case with another play, multiplied loads, and a gust that rises in ``ramp`` s."""
+    gust = LoadTable(segment="inner", x="head", magnitude=-50.0 * times, ramp=ramp)
+    joints = tuple(replace(joint, play=play) for joint in case.joints)
+    sections = [segment.section for segment in build_boom(case).segments]
+    segments = tuple(
+        segment.model_copy(
+            update={
+                "load": times * segment.load,
+                "height_to_width": None,
+                "section": section
+                and SectionTable(**{name: getattr(section, name) for name in SIZES}),
+            }
+        )
+        for segment, section in zip(case.segments, sections, strict=True)
+    )
+    return case.model_copy(update={"joints": joints, "segments": segments, "loads": (gust,)})
+
+
+def test_another_play_and_load_are_the_same_entry(case: Case, tmp_path: Path) -> None:
+    """Reference: other code path, the boom reduced with its own play and loads."""
+    cache = Cache(tmp_path / "cache")
+    reduce(varied(case, 0.014, 1.0, 0.5), cache)
+    other = varied(case, 0.004, -3.0, 0.1)
+    found = reduce(other, cache).system
+    assert len(entries(cache)) == 1
+    boom, (model,) = build_boom(other), other.models
+    contacts = model.model_boom(boom)
+    own = reduce_boom(contacts.boom, model.options(), MPI.COMM_SELF).system
+    assert found.laws == own.laws
+    assert [x.history for x in found.excitations] == [Ramp(0.1)]
+    for mine, theirs in (
+        (found.load, own.load),
+        (found.excitations[0].load, own.excitations[0].load),
+    ):
+        moved = found.rows / (found.omega2 + 1.0e4) @ mine
+        expected = own.rows / (own.omega2 + 1.0e4) @ theirs
+        assert np.abs(moved - expected).max() < 1e-9 * np.abs(expected).max()
+
+
+def test_of_two_at_a_time_one_reduces(case: Case, tmp_path: Path) -> None:
+    """Reference: by construction. Another process has the lock, and stores the shell meanwhile."""
+    cache = Cache(tmp_path / "cache")
+    shell = reduce(case, None)
+    other = os.fork()
+    if other == 0:
+        try:
+            load_or_compute(cache, ("the same",), MPI.COMM_SELF, lambda: sleep(0.5) or shell)
+        finally:
+            os._exit(0)
+    while not (cache.folder / ".lock").exists():
+        sleep(0.01)
+    sleep(0.1)
+    found = load_or_compute(
+        cache, ("the same",), MPI.COMM_SELF, lambda: pytest.fail("reduced again")
+    )
+    os.waitpid(other, 0)
+    assert np.array_equal(found.system.omega2, shell.system.omega2)
+    assert len(entries(cache)) == 1
+
+
+def test_unwritable_cache_gives_one_line(
+    case: Case, tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    folder = tmp_path / "cache"
+    folder.write_text("a file where the folder should be")
+    found = reduce(case, Cache(folder))
+    assert found.system.num_modes > 0
+    assert [record.getMessage() for record in caplog.records] == [
+        f"{shorten(str(folder))}: the cache cannot be written (Not a directory), and results "
+        "are not kept for later runs; give another folder in PROTRACTILE_CACHE, or "
+        "--no-cache"
+    ]
+
+
+# n = 1, so that the shell's contacts are no stiffer than a run's.
+LINEAR, QUADRATIC = {"stiffness": 1.0e9, "exponent": 1.0}, {"stiffness": 1.0e13, "exponent": 2.0}
+SERIES = {"kind": "kantorovich", "terms": (3, 3), "base": "complete", "rotary_inertia": True}
+ELEMENTS = {"kind": "finite-element", "element_length": 0.5, "rotary_inertia": True}
+SHELL = {"kind": "shell", "mesh_size": 0.5, "contact_tolerance": "any"}
+
+
+def case_of(table: dict[str, Any], friction: float = 0.2, **joint: Any) -> Case:
+    """Return the coarse case with one model, friction in its joint and other keys of it."""
+    case = rubbing(shipped("coarse"), friction) if friction else shipped("coarse")
+    model = KINDS[table["kind"]].model_validate({"name": "model", **table})
+    joints = tuple(replace(one, **joint) for one in case.joints)
+    return case.model_copy(update={"joints": joints, "models": (model,)})
+
+
+def system_of(case: Case) -> GapSystem:
+    """Return the system of a case's model."""
+    (model,) = case.models
+    tools = None
+    if model.needs_shell:
+        pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
+        from mpi4py import MPI
+
+        tools = BuildContext(MPI.COMM_SELF)
+    return build(case, build_boom(case), model, tools).system
+
+
+def agree(case: Case, integrator: Integrator, duration: float) -> None:
+    """Check motions of numbers in m and in mm: tip within 1e-9 of its range, the rest 1e-8."""
+    in_mm = convert_to_si(case.model_copy(update={"units": "mm-t-s"}))
+    si, mm = (integrator(Motion(system_of(one), duration)) for one in (case, in_mm))
+    assert mm.first_contact == pytest.approx(si.first_contact, rel=1.0e-6)
+    assert mm.first_contact < 0.5
+    assert mm.energy_residual == pytest.approx(si.energy_residual, rel=0.01, abs=1.0e-9)
+    for name in ("tip", "tail", "gap", "work", "friction_loss"):
+        expected = si.data[name].values
+        apart = np.abs(1.0e3 * mm.data[name].values - expected).max()
+        within = 1.0e-9 if name == "tip" else 1.0e-8
+        assert apart <= within * np.ptp(expected), name
+
+
+@pytest.mark.parametrize("model", [SERIES, ELEMENTS], ids=["series", "elements"])
+@pytest.mark.parametrize("law", [LINEAR, QUADRATIC], ids=["linear", "quadratic"])
+def test_beams_do_not_know_the_units(model: dict[str, Any], law: dict[str, float]) -> None:
+    """Reference: the model in SI units within 1e-9, with friction and contacts."""
+    agree(case_of(model, **law), FixedStep(1.0e-4), 1.0)
+
+
+def test_steps_by_tolerance_do_not_know_the_units() -> None:
+    """Reference: the same model in SI units, without play or without friction, until chaos."""
+    agree(case_of(SERIES, friction=0.0, play=0.0, **LINEAR), AdaptiveStep(), 0.3)
+
+
+@pytest.mark.parametrize(
+    ("line", "pad"),
+    [("near webs", None), ("near webs", Pad(0.1, 0.06)), ("surface", None)],
+    ids=["near webs", "pads", "surface"],
+)
+def test_shells_do_not_know_the_units(line: str, pad: Pad | None) -> None:
+    """Reference: the model in SI units within 1e-9, a coarse mesh with friction."""
+    points = {"surface_points": (4, 2)} if line == "surface" else {}
+    model = SHELL | {"contact_line": line} | points
+    agree(case_of(model, pad=pad, **LINEAR), FixedStep(1.0e-4), 0.6)
+
+
+COMBINED_SHELL = """
 model = [
   { name = "beam", kind = "finite-element" },
   { name = "shell", kind = "shell", mesh_size = 0.3, contact_tolerance = "any" },
@@ -32,7 +230,7 @@ buckling = { modes = 1 }
 """
 # Two levels of load and of axial forces at 45 degrees and, retracted, another geometry.
 TEXT = (
-    SHELL
+    COMBINED_SHELL
     + LIFT.replace("9e11", "2.1e11, yield_strength = 3.55e8")
     .replace('model = [{ name = "beam", kind = "finite-element", theory = "timoshenko" }]', "")
     .replace('bears = "corner"', "allowable_pressure = 2e7")
@@ -45,8 +243,6 @@ load_cases = ["raised"]
 factors = { dead = 1.0, payload = 0.0 }
 """
 )
-
-pytestmark = pytest.mark.slow
 
 
 @pytest.fixture(scope="module")

@@ -27,10 +27,10 @@ from protractile.runs.report.model_tables import law_table, model_table, step_ta
 from protractile.runs.report.predictability import comparison_tables, predictability_tables
 from tests.dynamics.reference import CHAOTIC
 from tests.runs.case_texts import shipped
-from tests.runs.paper_curves import members
 from tests.runs.summaries import (
     HORIZONS,
     PRESSED,
+    members,
     model_summary,
     rubbing,
     steps_for_peaks,

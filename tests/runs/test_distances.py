@@ -32,8 +32,7 @@ from protractile.runs.sweep.distances import (
 from protractile.runs.sweep.points import Plan, plan
 from protractile.runs.sweep.run import Outcome, run_point
 from tests.runs.case_texts import refused, shipped
-from tests.runs.summaries import printed, rubbing
-from tests.runs.sweeping import COARSE, run
+from tests.runs.summaries import COARSE, printed, rubbing, run
 
 TIME = np.arange(2001) / 1000
 MODELS = ["kantorovich-4", "kantorovich-5", "beam-fe-bonded"]

@@ -14,7 +14,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.case.usual_values import usual_of_tables
 from protractile.runs.process.bad_input import BadInput
 from tests.runs.case_texts import CASES, edited
-from tests.runs.test_usual_values import HOIST, LIFT, cautions
+from tests.runs.test_real_booms import HOIST, LIFT, cautions
 
 # Keys without a range of their own, as TABLE.KEY or KEY, by reason.
 EXEMPT = {

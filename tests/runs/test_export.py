@@ -133,7 +133,7 @@ def test_a_calibrated_beam_rests_and_peaks_elsewhere_on_its_springs(tmp_path: Pa
     from studies.calibrated_beams import calibrated_beam
 
     case = with_pads(friction_case(), 0.1, 0.06)
-    shell = model_of(case, "shell").model_copy(update={"mesh_size": 0.25})
+    shell = model_of(case, "shell").model_copy(update={"mesh_size": 0.5})
     model = calibrated_beam(case, shell, fields=False)
     case = case.model_copy(update={"models": (model,)})
     cache = Cache(tmp_path / "cache")

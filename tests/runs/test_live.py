@@ -30,7 +30,7 @@ from protractile.runs.pipeline.model_run import RunContext
 from protractile.runs.pipeline.models import build
 from protractile.runs.pipeline.run import run_case
 from protractile.runs.process.bad_input import BadInput
-from tests.runs.sweeping import COARSE
+from tests.runs.summaries import COARSE
 
 POST = "POST {path}beam HTTP/1.1\r\nHost: {host}\r\nContent-Length: "
 LIFT = str(CASES / "lift.toml")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Output of commands on streams of every kind, and the end of all ranks."""
+"""Output of commands on streams, the end of all ranks, and complete or absent files of a run."""
 
 import io
 import os
@@ -15,6 +15,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from protractile.runs import CASES
+from protractile.runs.folder.files import (
+    MANIFEST,
+    atomic_folder,
+    atomic_path,
+    find_damaged_file,
+    folder_lock,
+    modified_folder,
+)
 from protractile.runs.process import ending, terminal
 from protractile.runs.process.terminal import LONGEST, message, shorten
 
@@ -133,3 +141,185 @@ def test_ranks_abort_at_once_without_a_pipe(monkeypatch: pytest.MonkeyPatch) -> 
     with pytest.raises(AssertionError, match="MPI_Abort returned"):
         ending.fail("protractile: no number is finite", 3, comm)
     assert codes == [3]
+
+
+def contents(folder: Path) -> dict[str, str]:
+    return {
+        str(path.relative_to(folder)): path.read_text(encoding="utf-8")
+        for path in folder.rglob("*")
+        if path.is_file() and path.name != MANIFEST
+    }
+
+
+def write(folder: Path, *names: str) -> None:
+    for name in names:
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_text(" ".join(names), encoding="utf-8")
+
+
+def in_the_making(path: Path) -> subprocess.Popen[str]:
+    """Start a process that creates a folder, prints its path, and continues at a line of input."""
+    program = f"""
+from pathlib import Path
+from protractile.runs.folder.files import scratch_folder
+with scratch_folder(Path({str(path)!r})) as part:
+    (part / "half").write_text("half")
+    print(part, flush=True)
+    input()
+"""
+    return subprocess.Popen(
+        [sys.executable, "-c", program],
+        env=os.environ | {"PYTHONPATH": str(ROOT)},
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def test_only_complete_files_get_their_names(tmp_path: Path) -> None:
+    path = tmp_path / "summary.json"
+    with atomic_path(path) as part:
+        part.write_text("{}", encoding="utf-8")
+        assert part.suffix == path.suffix
+        assert not path.exists()
+    assert [p.name for p in tmp_path.iterdir()] == ["summary.json"]
+
+
+def test_a_folder_is_replaced_as_a_whole(tmp_path: Path) -> None:
+    folder = tmp_path / "figures"
+    for names in (("a.png", "b.png"), ("b.png", "deep/c.png")):
+        with atomic_folder(folder) as part:
+            write(part, *names)
+        assert contents(folder) == dict.fromkeys(names, " ".join(names))
+        write(folder, "mine")
+        folder.chmod(0o750)
+    assert folder.stat().st_mode & 0o777 == 0o750
+    assert [p.name for p in tmp_path.iterdir()] == ["figures"]
+
+
+@pytest.mark.parametrize("kind", ["file", "folder"])
+def test_failing_write_keeps_the_old_file(tmp_path: Path, kind: str) -> None:
+    place = tmp_path / "place"
+    path = place if kind == "file" else place / "a.png"
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("earlier", encoding="utf-8")
+
+    def fill_the_disk() -> None:
+        with (atomic_path if kind == "file" else atomic_folder)(place) as part:
+            half = part if kind == "file" else part / "a.png"
+            half.write_text("half", encoding="utf-8")
+            raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError, match="No space left on device") as failed:
+        fill_the_disk()
+    assert failed.value.filename == str(place)
+    assert path.read_text(encoding="utf-8") == "earlier"
+    assert [p.name for p in tmp_path.iterdir()] == ["place"]
+
+
+def test_changed_folder_keeps_other_files(tmp_path: Path) -> None:
+    folder = tmp_path / "out"
+    with atomic_folder(folder) as part:
+        write(part, "data", "report")
+    write(folder, "mine", "deep/mine")
+    (folder / "empty").mkdir()
+    (folder / "link").symlink_to("nowhere")
+    os.mkfifo(folder / "pipe")
+    with (
+        folder_lock(folder),
+        modified_folder(folder) as part,
+        atomic_path(part / "report") as report,
+    ):
+        report.write_text("again", encoding="utf-8")
+    mine = dict.fromkeys(("mine", "deep/mine"), "mine deep/mine")
+    assert contents(folder) == {"data": "data report", "report": "again", **mine}
+    assert (folder / "empty").is_dir()
+    assert os.readlink(folder / "link") == "nowhere"
+    assert (folder / "pipe").is_fifo()
+    *listed, _ = (folder / MANIFEST).read_text(encoding="utf-8").splitlines()
+    assert [line.split()[1] for line in listed] == ["data", "report"]
+    assert find_damaged_file(folder) is None
+    (folder / "mine").write_text("other", encoding="utf-8")
+    assert find_damaged_file(folder) is None
+    (folder / "data").write_text("other", encoding="utf-8")
+    assert find_damaged_file(folder) == "data"
+
+
+@pytest.mark.parametrize("part", [0.0, 0.3, 0.5, 0.99, "flipped", "pipe", "folder"])
+def test_a_damaged_manifest_hides_no_damage(tmp_path: Path, part: float | str) -> None:
+    """Reference: by construction. The manifest is cut, changed, or no regular file."""
+    folder = tmp_path / "out"
+    with atomic_folder(folder) as new:
+        write(new, "data", "report")
+    manifest = folder / MANIFEST
+    content = bytearray(manifest.read_bytes())
+    (folder / "data").write_text("other", encoding="utf-8")
+    assert find_damaged_file(folder) == "data"
+    manifest.unlink()
+    assert find_damaged_file(folder) is None
+    if part == "pipe":
+        os.mkfifo(manifest)
+    elif part == "folder":
+        manifest.mkdir()
+    elif part == "flipped":
+        content[content.index(b"data")] ^= 1
+        manifest.write_bytes(content)
+    else:
+        manifest.write_bytes(content[: int(float(part) * len(content))])
+    assert find_damaged_file(folder) == MANIFEST
+
+
+@pytest.mark.parametrize("disk", ["Linux's own", "another"])
+def test_folders_are_exchanged_on_every_disk(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, disk: str
+) -> None:
+    if disk == "another":
+        monkeypatch.setattr("ctypes.PyDLL", lambda *_, **__: object())
+    folder = tmp_path / "out"
+    for name in ("earlier", "later"):
+        with atomic_folder(folder) as part:
+            write(part, name)
+    assert contents(folder) == {"later": "later"}
+    assert [p.name for p in tmp_path.iterdir()] == ["out"]
+
+
+def test_folder_is_restored_after_a_killed_exchange(tmp_path: Path) -> None:
+    """The process is killed between the two renames of a file system without exchange."""
+    folder = tmp_path / "out"
+    with atomic_folder(folder) as part:
+        write(part, "earlier")
+    folder.rename(tmp_path / ".out.away")
+    with folder_lock(folder):
+        assert contents(folder) == {"earlier": "earlier"}
+
+
+def test_folder_changes_exclude_each_other(tmp_path: Path) -> None:
+    """Reference: by construction. The folder is replaced after the lock is released."""
+    folder = tmp_path / "out"
+
+    def replace() -> None:
+        with atomic_folder(folder) as part:
+            write(part, "later")
+
+    with ThreadPoolExecutor(1) as pool:
+        with folder_lock(folder):
+            other = pool.submit(replace)
+            time.sleep(0.1)
+            assert not other.done()
+        other.result()
+    assert contents(folder) == {"later": "later"}
+
+
+def test_leftovers_of_killed_processes_only_are_removed(tmp_path: Path) -> None:
+    folder, mine = tmp_path / "out", tmp_path / ".out.mine"
+    mine.mkdir()
+    killed, live = in_the_making(folder), in_the_making(folder)
+    parts = [Path(process.stdout.readline().strip()) for process in (killed, live)]
+    killed.kill()
+    killed.wait()
+    assert all((part / "half").exists() for part in parts)
+    with atomic_folder(folder) as part:
+        write(part, "whole")
+    assert sorted(tmp_path.iterdir()) == sorted([folder, mine, parts[1]])
+    live.communicate("\n")
+    assert sorted(tmp_path.iterdir()) == sorted([folder, mine])

@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Section forces along the boom, its cylinder, and stresses in the report."""
+"""Section forces along the boom, stresses in the report, and pairs of numbers."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args
 
 import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from pydantic import AfterValidator
 
 from protractile.analysis.curves import Curves, histories
 from protractile.analysis.model import section_forces
@@ -22,8 +24,11 @@ from protractile.dynamics.line import Line
 from protractile.geometry.boom import Boom, Cylinder, Load, Material, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.compression import Compression
+from protractile.geometry.fields import fields_of, names_of
+from protractile.runs.case import messages
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
+from protractile.runs.case.reading import load
 from protractile.runs.case.schema import Case
 from protractile.runs.case.toml import dumps
 from protractile.runs.pipeline.results import Results
@@ -31,7 +36,20 @@ from protractile.runs.report import theme
 from protractile.runs.report.figure_context import FigureContext
 from protractile.runs.report.force_figures import stress_history
 from studies.telescoping_column import END, LAW, LENGTH, STIFFNESS, column
-from tests.runs.case_texts import REST, STEEL, box, elements, joint, read_case, shipped, table
+from tests.runs.case_texts import (
+    CANTILEVER,
+    COARSE,
+    REST,
+    STEEL,
+    box,
+    edited,
+    elements,
+    joint,
+    read_case,
+    refusal,
+    shipped,
+    table,
+)
 from tests.runs.summaries import answers_of, model_summary, printed_check, summary_of
 from tests.touching import touching
 
@@ -247,3 +265,76 @@ def test_check_reports_the_cylinder_and_its_damping(case: Case) -> None:
     along = 1e-3 * turning(build_boom(case)) / ARM * 1.8 / np.hypot(1.8, 1.9)
     row = next(line for line in told.split("axial forces")[1].splitlines() if "base" in line)
     assert float(row.split()[1].replace("−", "-")) == pytest.approx(along, rel=1e-3)
+
+
+# Pairs without an order: points around a section, and modes.
+UNORDERED = {"corners", "shaper"}
+
+
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """Yield all parts of a type, also the metadata of annotated types."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts_of(part)
+
+
+def test_every_table_of_pairs_is_checked() -> None:
+    """Reference: exhaustive, all keys of the schema whose values are pairs of numbers."""
+    tables = [messages.schema.Case, *dict.fromkeys(messages._TABLES.values())]
+    pairs, checked = set(), set()
+    for schema in tables:
+        for key, name in names_of(schema).items():
+            field = fields_of(schema)[name]
+            found = [*field.metadata, *parts_of(field.annotation)]
+            for part in found:
+                inner = get_args(part)
+                if len(inner) == 2 and inner[1] is ... and len(get_args(inner[0])) == 2:
+                    both = get_args(inner[0])
+                    if all(float in {*parts_of(one)} for one in both):
+                        pairs.add(key)
+            if any(
+                isinstance(one, AfterValidator) and one.func.__qualname__.startswith("rising.")
+                for one in found
+            ):
+                checked.add(key)
+    assert {"curve", "table", "force_table", "yield_by_thickness"} <= pairs
+    assert pairs - checked == UNORDERED
+
+
+DENSITY = "density = 7850.0"
+STRENGTHS = "yield_by_thickness = [[0.01, 3e8], [0.02, 4e8]]"
+LOAD = "\n[[load]]\nsegment = 'beam'\nmagnitude = 1.0\ntable = "
+PAIRS_OF_A_LAW = "stiffness = 1e13\nexponent = 2.0\n"
+DRIVE = "\n[slew]\ntable = "
+
+
+@pytest.mark.parametrize(
+    ("text", "line"),
+    [
+        (f"{CANTILEVER}[buckling]\ncurve = [[2.0, 0.3], [0.0, 1.0]]",
+         "buckling.curve: slendernesses must rise; entry 2 is below entry 1: sort them"),
+        (f"{CANTILEVER}[buckling]\ncurve = [[0.0, 0.8], [1.0, 0.8], [2.0, 0.9]]",
+         "buckling.curve: reduction factors must not rise; entry 3 is above entry 2"),
+        # Its factor would hold for every slenderness.
+        (f"{CANTILEVER}[buckling]\ncurve = [[0.0, 1.0]]",
+         "buckling.curve: must have 2 pairs at least, got 1"),
+        (edited(CANTILEVER, (DENSITY, f"{DENSITY}, {STRENGTHS}")),
+         "material.yield_by_thickness: strengths must not rise; entry 2 is above entry 1"),
+        (f"{CANTILEVER}{DRIVE}[[0.0, 0.0], [2.0, 9.0], [1.0, 5.0]]",
+         "slew.table: times must rise; entry 3 is below entry 2: sort them"),
+        (f"{CANTILEVER}{LOAD}[[0.0, 1.0], [0.0, 2.0]]",
+         "load[1].table: times must rise; entry 2 repeats that of entry 1"),
+        (edited(COARSE, (PAIRS_OF_A_LAW, "force_table = [[2e-3, 9.0], [1e-3, 2.0]]\n")),
+         "joint[1].force_table: depths must rise; entry 2 is below entry 1: sort them"),
+    ],
+)  # fmt: skip
+def test_pairs_out_of_order_are_refused(tmp_path: Path, text: str, line: str) -> None:
+    """Reference: exact words."""
+    assert refusal(tmp_path, text) == line
+
+
+def test_a_curve_may_stay_level(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    curve = "[[0.0, 1.0], [0.5, 1.0], [2.0, 0.3]]"
+    path.write_text(f"{CANTILEVER}[buckling]\ncurve = {curve}", "utf-8")
+    assert load(str(path)).buckling.curve == ((0.0, 1.0), (0.5, 1.0), (2.0, 0.3))

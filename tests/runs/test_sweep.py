@@ -28,7 +28,7 @@ from protractile.runs.sweep.figures import in_display_units
 from protractile.runs.sweep.points import Plan
 from protractile.runs.sweep.run import Outcome
 from tests.runs.case_texts import refused
-from tests.runs.sweeping import FAST, Planned, run
+from tests.runs.summaries import FAST, Planned, run
 
 
 @pytest.fixture

@@ -1,22 +1,35 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Tables in the terminal, in Markdown and in the report, and interactive charts."""
+"""Tables and charts, their texts and units, and case files that `protractile new` writes."""
 
 import base64
 import gzip
 import json
 import math
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.colors import to_rgb
 
+from protractile.cases import run_case
 from protractile.geometry.typography import fixed, number, scientific
+from protractile.geometry.units import System
+from protractile.runs.case.reading import load_checked
+from protractile.runs.case.starting_points import write_case
+from protractile.runs.cautions import rules
+from protractile.runs.cautions.context import Context
+from protractile.runs.check import check_case
+from protractile.runs.options import Kind, Standard
+from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.model_quality import main_models
+from protractile.runs.pipeline.proofs import prove
+from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import theme
 from protractile.runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
+from protractile.runs.report.output import WORKBOOK, write_workbook
 from protractile.runs.report.tables import ROOMY, Amount, Column, Table
-from tests.runs.case_texts import shipped
+from tests.runs.case_texts import CANTILEVER, edited, load_checked_text, read_case, refusal, shipped
 from tests.runs.summaries import printed
 
 ROWS = [("beam", "1 s\n2 mm"), ("[b]", "–")]
@@ -202,3 +215,109 @@ def test_headings_break_before_cells_and_numbers_keep_their_units() -> None:
     wide, narrow = (printed(Table("", columns).show, width=width) for width in (24, 20))
     assert "41.3 bending" in wide
     assert "2 × 10⁻¹²" in narrow
+
+
+def test_a_title_is_no_formula(tmp_path: Path) -> None:
+    """Reference: other code, the types of cells as openpyxl reads them."""
+    openpyxl = pytest.importorskip("openpyxl")
+    results = run_case(read_case(tmp_path, edited(CANTILEVER, ('"Cantilever"', '"=1+2"'))))
+    write_workbook(results, tmp_path, "kept", "--excel")
+    book = openpyxl.load_workbook(tmp_path / WORKBOOK)
+    cell = book["quantities"]["A1"]
+    assert (cell.value, cell.data_type) == ("=1+2: SI units", "s")
+    types = {one.data_type for sheet in book for row in sheet.iter_rows() for one in row}
+    assert "f" not in types
+
+
+def test_a_title_is_no_card() -> None:
+    """Reference: CalculiX manual: a line that begins with one asterisk is a card."""
+    pytest.importorskip("dolfinx", reason="shells need FEniCSx")
+    from protractile.runs.export.calculix import deck
+
+    lines = deck("*INCLUDE, INPUT=other.inp", [], [], []).splitlines()
+    assert lines[:2] == ["*HEADING", "Boom: *INCLUDE, INPUT=other.inp"]
+
+
+IN_MM = """
+title = "A lift in millimetres"
+units = "mm-t-s"
+time = { duration = 3.0 }
+gravity = { angle = 30.0 }
+start = { state = "equilibrium" }
+payload = { mass = 1.0 }
+material = { youngs_modulus = 2.1e5, poissons_ratio = 0.3, density = 7.85e-9 }
+load = [{ segment = "fly", x = "head", magnitude = -5.0e6, moment = true }]
+model = [{ name = "beam", kind = "finite-element" }]
+[[segment]]
+name = "base"
+length = 5200.0
+supports = [{ x = 0.0, kind = "hinged" }]
+section = { height = 340.0, width = 230.0, flange = 12.0, web = 8.0 }
+[[segment]]
+name = "fly"
+length = 5000.0
+section = { height = 280.0, width = 180.0, flange = 12.0, web = 8.0 }
+[[joint]]
+outer = "base"
+inner = "fly"
+extension = 4000.0
+stations = ["tail", "head"]
+play = 2.0
+pad = { length = 120.0, width = 50.0, thickness = 18.0 }
+[[cylinder]]
+segment = "base"
+x = 1800.0
+depth = 220.0
+ground = [350.0, -900.0]
+stiffness = 45000.0
+"""
+
+
+@pytest.mark.parametrize(
+    ("message", "shown"),
+    [
+        ("must be below 4.8 m, got 4.9 m", "must be below 4800 mm, got 4900 mm"),
+        ("-0.033 m of 150 kg at 2e8 Pa and 3 m/s",
+         "-33 mm of 0.15 t at 200 MPa and 3000 mm/s"),
+        ("at t = 0.5 s, of 20 N/m", "at t = 0.5 s, of 0.02 N/mm"),
+        ("elements of x2 m and 5 mm", "elements of x2 m and 5 mm"),
+    ],
+)  # fmt: skip
+def test_amounts_are_in_the_units_of_the_case(message: str, shown: str) -> None:
+    """Reference: by hand."""
+    assert System("mm-t-s").convert(message) == shown
+    assert System().convert(message) == message
+
+
+def test_a_refusal_is_in_the_units_of_the_case(tmp_path: Path) -> None:
+    """Reference: by hand, free are 340 - 12 - 280 - 12 = 36 mm, 230 - 8 - 180 - 8 = 34 mm."""
+    found = refusal(tmp_path, edited(IN_MM, ("play = 2.0", "play = 50.0")))
+    assert found.startswith("joint[1].play: 'fly' does not fit in 'base': 36 mm of height ")
+    assert "a play of 50 mm is asked for" in found
+
+
+def test_forces_are_in_kilonewtons(tmp_path: Path) -> None:
+    """Reference: the table of cylinders, whose forces are in kN."""
+    tables = {table.title: table for table in check_case(load_checked_text(tmp_path, IN_MM)).tables}
+    assert tables["Loads"].rows[2][4] == "−5 kN m"
+    (rest,) = (table for title, table in tables.items() if title.startswith("Static results at"))
+    rows = {row[0]: row for row in rest.rows}
+    (own,) = tables["Cylinders at rest, t = 0"].rows
+    assert rows["cylinder force"][1] == f"{float(own[-1]):.3g} kN"
+
+
+@pytest.mark.parametrize("standard", Standard)
+@pytest.mark.parametrize("kind", Kind)
+def test_a_new_case_passes_its_proofs_without_cautions(
+    here: Path, standard: Standard, kind: Kind
+) -> None:
+    write_case("new.toml", standard, kind)
+    checked = load_checked("new.toml")
+    assert len(checked.case.combinations) == {"en13001": 4, "en280": 3}[standard]
+    assert rules.cautions(Context(checked.case, checked.boom), rules.OF_INPUTS) == []
+    proofs = prove(checked.case, combination_states(checked.case))
+    assert proofs.rows
+    assert all(abs(row.value) <= row.limit for row in proofs.rows if row.limit is not None)
+    with pytest.raises(BadInput) as caught:
+        write_case("new.toml", standard, kind)
+    assert str(caught.value) == "new.toml: file: exists already; give another name"

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""CSV files from other programs, and refusal of special and oversized files, without waiting."""
+"""CSV files from other programs, refusal of special and oversized files, booms without loads."""
 
 import os
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from protractile.geometry.units import Unit
@@ -15,8 +16,21 @@ from protractile.runs.case.user_files import MAX_BYTES, check_not_working_folder
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.inputs import series
 from protractile.runs.folder.files import MANIFEST
-from protractile.runs.pipeline.results import prepare
-from tests.runs.case_texts import COARSE, read_case, refusal, refused
+from protractile.runs.pipeline.results import Results, prepare
+from tests.runs.case_texts import (
+    CLAMPED,
+    COARSE,
+    REST,
+    STEEL,
+    box,
+    elements,
+    joint,
+    read_case,
+    refusal,
+    refused,
+    table,
+)
+from tests.system.run_folder import protractile
 
 GUST = '[[base]]\nacceleration = 1.0\nfile = "gust.csv"\n\n[[model]]'
 
@@ -258,3 +272,78 @@ def test_units_are_products_of_powers(
 def test_unknown_units_are_refused(text: str) -> None:
     with pytest.raises(ValueError, match="no unit"):
         Unit.of(text)
+
+
+UNLOADED = f"""
+title = "A boom that nothing loads"
+time = {{ duration = 0.1, output_step = 1e-3 }}
+{STEEL}
+{table("[damping]", modal=0.01)}
+{box("base", (0.0, 6.5), (0.300, 0.220, 0.006, 0.005), CLAMPED)}
+{box("fly", (5.3, 11.3), (0.256, 0.180, 0.005, 0.004))}
+{joint("fly", "base", 0.003, (5.3, 6.5))}
+{elements("elements")}
+{table("[[model]]", name="rigid", kind="rigid")}
+{elements("bonded", bonded=True)}
+"""
+
+
+def load_text(**keys: object) -> str:
+    return table("[[load]]", segment="fly", x="head", **keys)
+
+
+# What is added, and whether the boom moves.
+ADDED = {
+    "nothing": ("", False),
+    "at rest": (REST, False),
+    "a load of nothing": (load_text(magnitude=0.0), False),
+    "thrown": (table("[start]", velocity={"fly": 0.1}), True),
+    "let go": (load_text(magnitude=-500.0, released=True), True),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ADDED)
+def test_a_boom_without_loads_is_run_and_reported(
+    kind: str, request: pytest.FixtureRequest
+) -> None:
+    """Reference: analytic. Without loads the boom is straight, and at rest unless thrown."""
+    added, moves = ADDED[kind]
+    if kind not in {"nothing", "thrown"}:
+        request.getfixturevalue("unprinted")
+    Path("case.toml").write_text(UNLOADED + added, encoding="utf-8")
+    assert protractile("check", "case.toml") == 0
+    assert protractile("run", "case.toml", "--no-pictures", "--out", "out") == 0
+    results = Results.load(Path("out"))
+    rests = results.curves.where(model="elements", state="rest", play=True)
+    ends = [curve.values["deflection"] for curve in rests.where(segment=rests[-1].segment)]
+    assert not ends[-1].any()
+    assert any(end.any() for end in ends) == (kind == "let go")
+    tips = results.trajectories["tip"].values
+    assert bool(np.abs(tips).max() > 1e-3) == moves
+    assert Path("out/report.html").is_file()
+    assert not Path("out/figures").exists()
+    assert protractile("report", "--figures", "out") == 0
+    assert Path("out/figures/at-rest.png").exists() == (kind == "let go")
+    assert Path("out/figures/envelopes.png").exists() == moves
+
+
+@pytest.mark.parametrize("kind", ADDED)
+def test_members_need_a_load_to_change(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    text = UNLOADED + ADDED[kind][0]
+    Path("plain.toml").write_text(text, encoding="utf-8")
+    Path("case.toml").write_text(f"{text}[ensemble]\nmembers = 4\n", encoding="utf-8")
+    for *command, file in (("check", "case.toml"), ("run", "--members", "4", "plain.toml")):
+        assert protractile(*command, file) == 2
+        assert capsys.readouterr().err == (
+            f"protractile: {file}: ensemble.vary: no load acts from t = 0 on, of which members "
+            "change a part; give vary = 'clearance', or leave the ensemble out\n"
+        )
+
+
+def test_members_need_a_play_to_change() -> None:
+    text = UNLOADED.replace("play = 0.003", "play = 0.0")
+    assert refusal(Path(), f'{text}[ensemble]\nmembers = 4\nvary = "clearance"\n') == (
+        "ensemble.vary: there is no play, of which members change a part; give vary = 'load', or "
+        "leave the ensemble out"
+    )

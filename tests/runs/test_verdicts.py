@@ -27,18 +27,22 @@ from protractile.runs.paper.verdicts import Judgement, Verdict, decisive, print_
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.terminal_tables import print_models
 from tests.runs.case_texts import shipped
-from tests.runs.paper_curves import (
+from tests.runs.summaries import (
     FIRST_CONTACT,
     PEAKS,
     curves,
     members,
+    model_summary,
     paper,
+    printed,
+    rubbing,
+    steps_for_peaks,
     stratifying,
+    summary_of,
     swing,
     verdict,
     verdicts,
 )
-from tests.runs.summaries import model_summary, printed, rubbing, steps_for_peaks, summary_of
 from tests.touching import contact_laws, touching
 
 TIME = np.arange(10_001) / 1000

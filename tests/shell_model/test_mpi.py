@@ -1,12 +1,20 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Equal results on one rank and on several."""
+"""Equal results on one rank and on several, and compilation of forms."""
 
 import json
+import os
+import signal
+import subprocess
+import sys
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+
+pytest.importorskip("dolfinx", reason="forms are compiled by FFCx")
+
 from mpi4py import MPI
 
 from protractile.dynamics.failure import NumericsError
@@ -143,28 +151,28 @@ def serial_motion() -> dict[str, Any]:
 
 
 @pytest.fixture(scope="module")
-def three_ranks(
+def two_ranks(
     tmp_path_factory: pytest.TempPathFactory, serial_motion: dict[str, Any]
 ) -> dict[str, Any]:
-    """Return the results of three ranks."""
-    done = ranks_in(tmp_path_factory.mktemp("three"))(3, _PROGRAM)
+    """Return the results of two ranks."""
+    done = ranks_in(tmp_path_factory.mktemp("two"))(2, _PROGRAM)
     assert done.returncode == 0, done.stderr
     told: dict[str, Any] = json.loads(done.stdout.strip().splitlines()[-1])
     return told
 
 
-def test_ranks_give_the_serial_frequencies(three_ranks: dict[str, Any]) -> None:
+def test_ranks_give_the_serial_frequencies(two_ranks: dict[str, Any]) -> None:
     """Reference: the serial run, to 1e-8. The first is the free slide along x."""
-    found, serial = np.array(three_ranks["frequencies"]), frequencies(MPI.COMM_SELF)
+    found, serial = np.array(two_ranks["frequencies"]), frequencies(MPI.COMM_SELF)
     assert np.abs([found[0], serial[0]]) == pytest.approx([0.0, 0.0], abs=1.0e-3)
     assert found[1:] == pytest.approx(serial[1:], rel=1.0e-8)
 
 
-def test_ranks_give_the_serial_coordinates(three_ranks: dict[str, Any]) -> None:
+def test_ranks_give_the_serial_coordinates(two_ranks: dict[str, Any]) -> None:
     """Reference: the serial run, mode by mode and sign by sign."""
     found, serial = (
         {name: np.array(part) for name, part in answer.items()}
-        for answer in (three_ranks["spatial"], spatial(MPI.COMM_SELF))
+        for answer in (two_ranks["spatial"], spatial(MPI.COMM_SELF))
     )
     assert np.sqrt(found["omega2"]) == pytest.approx(np.sqrt(serial["omega2"]), rel=1.0e-6)
     for name in ("rows", "load"):
@@ -172,9 +180,9 @@ def test_ranks_give_the_serial_coordinates(three_ranks: dict[str, Any]) -> None:
         assert off < 1.0e-5 * np.abs(serial[name]).max()
 
 
-def test_ranks_give_the_serial_motion(three_ranks: dict[str, Any]) -> None:
+def test_ranks_give_the_serial_motion(two_ranks: dict[str, Any]) -> None:
     """Reference: one rank, to the last bit of all that decides a motion, and of its stresses."""
-    found, serial = three_ranks["rubbing"], rubbing(MPI.COMM_SELF)
+    found, serial = two_ranks["rubbing"], rubbing(MPI.COMM_SELF)
     stresses, expected = (np.array(one.pop("stresses")) for one in (found, serial))
     assert np.count_nonzero(serial["friction_rows"]) > 0
     assert found == serial
@@ -182,38 +190,86 @@ def test_ranks_give_the_serial_motion(three_ranks: dict[str, Any]) -> None:
     assert (stresses == expected).all()
 
 
-def test_ranks_give_the_serial_inertia_loads(three_ranks: dict[str, Any]) -> None:
+def test_ranks_give_the_serial_inertia_loads(two_ranks: dict[str, Any]) -> None:
     """Reference: one rank, to the last bit, also on edges of three walls."""
-    assert three_ranks["accelerated"] == accelerated(MPI.COMM_SELF)
+    assert two_ranks["accelerated"] == accelerated(MPI.COMM_SELF)
 
 
-def test_ranks_find_the_same_points(three_ranks: dict[str, Any]) -> None:
+def test_ranks_find_the_same_points(two_ranks: dict[str, Any]) -> None:
     """Reference: the serial run."""
-    assert three_ranks["pressed"] == pytest.approx(compliances(MPI.COMM_SELF), rel=1.0e-6)
+    assert two_ranks["pressed"] == pytest.approx(compliances(MPI.COMM_SELF), rel=1.0e-6)
 
 
-def test_ranks_buckle_at_the_serial_factors(three_ranks: dict[str, Any]) -> None:
+def test_ranks_buckle_at_the_serial_factors(two_ranks: dict[str, Any]) -> None:
     """Reference: the serial run, to 1e-8."""
     serial = buckled(MPI.COMM_SELF)
     assert 0.0 < serial[0] < serial[1]
-    assert three_ranks["buckled"] == pytest.approx(serial, rel=1.0e-8)
+    assert two_ranks["buckled"] == pytest.approx(serial, rel=1.0e-8)
 
 
 def test_ranks_give_the_serial_motion_of_all(
-    three_ranks: dict[str, Any], serial_motion: dict[str, Any]
+    two_ranks: dict[str, Any], serial_motion: dict[str, Any]
 ) -> None:
     """Reference: the serial run, to 1e-9 of the range."""
-    found = three_ranks["moved"]
+    found = two_ranks["moved"]
     tip = np.array(found["tip"])
     assert np.abs(tip - serial_motion["tip"]).max() < 1.0e-9 * np.ptp(tip)
     assert found["residual"] == pytest.approx(serial_motion["residual"], rel=1.0e-3)
 
 
-def test_ranks_share_an_edge_of_three_walls(three_ranks: dict[str, Any]) -> None:
+def test_ranks_share_an_edge_of_three_walls(two_ranks: dict[str, Any]) -> None:
     """Reference: analytic, the dofs of vertices and edges, each once for any partition."""
     serial = [short_box(MPI.COMM_SELF, size).num_dofs for size in SHORT_SIZES]
-    assert three_ranks["dofs"] == serial == [780, 2220]
+    assert two_ranks["dofs"] == serial == [780, 2220]
 
 
-def test_failure_on_one_rank_fails_all_ranks(three_ranks: dict[str, Any]) -> None:
-    assert three_ranks["failed"] == ["the second rank cannot"] * 3
+def test_failure_on_one_rank_fails_all_ranks(two_ranks: dict[str, Any]) -> None:
+    assert two_ranks["failed"] == ["the second rank cannot"] * 2
+
+
+ROOT = Path(__file__).parents[2]
+COMPILE = """
+import os, signal
+import ffcx.codegeneration.jit as compiler
+from mpi4py import MPI
+from dolfinx import fem, mesh
+import ufl
+from protractile.shell_model import compat
+domain = mesh.create_unit_interval(MPI.COMM_SELF, 2)
+if {killed}:
+    compiler._compile_objects = lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL)
+one = fem.Constant(domain, 3.0)
+print(fem.assemble_scalar(fem.form(one * ufl.dx(domain=domain))))
+"""
+
+
+def compile_form(
+    folder: Path, killed: bool, **environment: str
+) -> subprocess.CompletedProcess[str]:
+    """Compile and evaluate a form. Reference: analytic, the integral of 3 over a unit."""
+    outside = {k: v for k, v in os.environ.items() if not k.startswith(("OMPI_", "PMIX_", "PMI"))}
+    return subprocess.run(
+        [sys.executable, "-c", COMPILE.format(killed=killed)],
+        env=outside | {"PYTHONPATH": str(ROOT), "XDG_CACHE_HOME": str(folder)} | environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+
+
+def test_next_process_completes_a_killed_compilation(tmp_path: Path) -> None:
+    assert compile_form(tmp_path, True).returncode == -signal.SIGKILL
+    assert list((tmp_path / "fenics" / "protractile").glob("*.c"))
+    assert compile_form(tmp_path, False).stdout == "3.0\n"
+
+
+def test_only_the_first_compilation_needs_a_compiler(tmp_path: Path) -> None:
+    """Reference: by construction. The last line names the compiler and the packages."""
+    missing = compile_form(tmp_path, False, CC="/no/cc").stderr.splitlines()[-1]
+    assert "/no/cc" in missing
+    assert missing.endswith(
+        "; the forms of a shell are compiled once, which needs a C compiler and Python's headers: "
+        "apt install gcc python3-dev, or dnf install gcc python3-devel: 'CC'"
+    )
+    assert compile_form(tmp_path, False).stdout == "3.0\n"
+    assert compile_form(tmp_path, False, CC="/no/cc").stdout == "3.0\n"

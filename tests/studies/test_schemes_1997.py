@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Schemes of the 1990s, compared with a textbook, and contacts compared with a spring."""
+"""Schemes of the 1990s against a textbook, and outcomes of the numerics of 1997."""
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -10,6 +12,17 @@ from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
+from protractile.geometry.arrays import Array
+from protractile.runs.case import reading as case_file
+from studies.numerics_1997.samples import (
+    SERIES,
+    STEPS,
+    Example,
+    ModelRun,
+    Numerics,
+    Sample,
+    all_numerics,
+)
 from studies.numerics_1997.schemes import (
     CENTRAL,
     NEWMARK,
@@ -18,12 +31,22 @@ from studies.numerics_1997.schemes import (
     integrate,
     lowest,
 )
+from studies.numerics_1997.survey import (
+    METHODS,
+    TOLERANCES,
+    WITH,
+    WITHOUT,
+    Survey,
+    diverges_near_7_s,
+    solve,
+)
+from studies.numerics_1997.tables import tables
 from tests.modal import modal_system, oscillator
 
 ALL = (NEWMARK, WILSON, CENTRAL)
 DEEP = 100.0
 # Number of steps for the measurement of an eigenvalue.
-STEPS = 100
+STEPS_OF_ERRORS = 100
 
 
 def textbook_root(scheme: Scheme, phase: float) -> complex:
@@ -52,7 +75,7 @@ def textbook_root(scheme: Scheme, phase: float) -> complex:
 
 def measured_root(scheme: Scheme, phase: float) -> complex:
     """Return the eigenvalue λ of the amplification matrix from a computed motion."""
-    motion = Motion(oscillator(), STEPS * phase, phase, position=np.ones(1))
+    motion = Motion(oscillator(), STEPS_OF_ERRORS * phase, phase, position=np.ones(1))
     way = integrate(motion, scheme, iterated=False).trajectory.states[:, 0]
     behind = np.stack([way[2:-1], way[1:-2], way[:-3]], axis=1)
     return _rotating_root(np.roots([1.0, *-np.linalg.lstsq(behind, way[3:], rcond=1.0e-9)[0]]))
@@ -158,3 +181,129 @@ def test_the_lowest_modes_are_kept_in_their_order() -> None:
     assert cut.omega2.tolist() == [0.0, 4.0]
     assert cut.load.tolist() == [2.0, 3.0]
     assert cut.rows.tolist() == [[1.0, 2.0]]
+
+
+TIME = np.arange(0.0, 10.0, 1.6e-3)
+CUTOFF = 1.7
+
+
+def moved(tip: Array, head: float = 0.1, gained: float = 0.0, since: float = 0.0) -> ModelRun:
+    """Return a tip, a head that is a part of it, and an energy in J of 1 J initially."""
+    return ModelRun(TIME, tip, head * tip, np.where(since <= TIME, gained, 0.0), 1.0)
+
+
+def swing(frequency: float = 0.9, late: float = 0.0) -> Array:
+    """Return a vibration in m with a delay in s after six seconds."""
+    return np.sin(2.0 * np.pi * frequency * (TIME - late * np.clip(TIME - 6.0, 0.0, 1.0)))
+
+
+def sample(*tips: Array, gained: float = 0.0, since: float = 0.0) -> Sample:
+    *series, elements = (moved(tip, gained=gained, since=since) for tip in tips)
+    return Sample([*series, elements], moved(0.05 * tips[0]))
+
+
+@pytest.mark.parametrize(
+    ("others", "early", "late"),
+    [(swing(), 0.0, 0.0), (swing(late=0.15), 0.0, 0.135), (swing(late=0.4), 0.0, 0.36)],
+)  # fmt: skip
+def test_peaks_conform_and_part(others: Array, early: float, late: float) -> None:
+    """Reference: analytic, sines of the same phase, and one with a delay after 6 s."""
+    found = sample(swing(), swing(), others)
+    assert found.peaks(CUTOFF) == pytest.approx((early, late), abs=0.04)
+    assert found.conforms_then_diverges(CUTOFF) == (late > 0.2)
+
+
+def test_diverged_motion_has_no_peaks() -> None:
+    lost = sample(swing(), swing(), swing(late=0.4), gained=2.0, since=6.5)
+    assert lost.peaks(CUTOFF) == pytest.approx((np.inf, np.nan), nan_ok=True)
+    assert not lost.conforms_then_diverges(CUTOFF)
+
+
+def test_the_series_solved_well_take_the_place_of_those_of_then() -> None:
+    case = case_file.load(str(WITHOUT))
+    accurate = sample(swing(), 2.0 * swing(), 3.0 * swing())
+    found = sample(swing(), swing(), swing(late=0.4))
+    (mixed,) = Example(case, {}, CUTOFF, [accurate]).with_accurate_series([found])
+    heights = [np.abs(one.tip).max() for one in mixed.models]
+    assert heights == pytest.approx([1.0, 2.0, 1.0], rel=1e-3)
+    assert mixed.elements is found.elements
+
+
+def test_models_are_as_far_apart_as_their_tips() -> None:
+    """Reference: by hand, ±1 m and a tenth more after 6 s, which is 0.1 of 2.2."""
+    larger = np.where(TIME > 6.0, 1.1, 1.0) * swing()
+    early, late = sample(swing(), swing(), larger).tip_distances()
+    assert early == 0.0
+    assert late == pytest.approx(0.1 / 2.2, rel=0.01)
+
+
+@pytest.mark.parametrize(("head", "stratifies"), [(0.1, False), (1.0, True)])
+def test_s7_takes_all_of_its_parts(head: float, stratifies: bool) -> None:
+    """Reference: by hand. Tips differ late by 0.05 of their range, heads by 0 or all of it."""
+    tips = swing(), swing(), np.where(TIME > 6.0, 1.1, 1.0) * swing()
+    runs = [moved(tip, 0.1) for tip in tips[:2]] + [moved(tips[2], head)]
+    assert Sample(runs, moved(0.05 * tips[0])).stratifies() == stratifies
+
+
+@pytest.mark.parametrize(("gained", "breaks"), [(0.9, np.inf), (-2.0, np.inf), (1.1, 6.5)])
+def test_energy_gain_beyond_the_work_is_divergence(gained: float, breaks: float) -> None:
+    run = moved(swing(), gained=gained, since=6.5)
+    assert run.divergence_time == pytest.approx(breaks, abs=2e-3)
+    assert diverges_near_7_s(sample(swing(), gained=gained, since=6.5)) == np.isfinite(breaks)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_general_solver_swings_an_oscillator(method: str) -> None:
+    """Reference: analytic, 1 − cos t."""
+    system = replace(oscillator(), load=np.ones(1))
+    found = solve(system, 5.0, method, 1e-8, 2000)
+    assert found.time[-1] == 5.0
+    assert found.states[:, 0] == pytest.approx(1.0 - np.cos(found.time), abs=1e-5)
+    assert found.velocities[:, 0] == pytest.approx(np.sin(found.time), abs=1e-5)
+
+
+def test_a_general_solver_ends_with_its_steps() -> None:
+    found = solve(replace(oscillator(), load=np.ones(1)), 1000.0, "RK45", 1e-8, 50)
+    assert found.time.size == 51
+    assert found.time[-1] < 100.0
+
+
+def test_a_general_solver_slides_against_friction() -> None:
+    """Reference: analytic, (F − R) t²/2 from rest."""
+    friction = DryFriction(coefficient=1.0, station=0, normal_force=0.25)
+    rows = {"friction_rows": np.ones((1, 1)), "frictions": [friction], "stations": [0.0]}
+    system = replace(oscillator(), omega2=np.zeros(1), load=np.ones(1), **rows)
+    found = solve(system, 2.0, "RK45", 1e-6, 2000)
+    assert found.states[-1, 0] == pytest.approx(0.5 * 0.75 * 4.0, rel=1e-3)
+
+
+def survey(samples: Sequence[Sample], reached: float) -> Survey:
+    """Return a survey: the same motions by all numerics, the same end time in s of all solvers."""
+    case = case_file.load(str(WITHOUT)), case_file.load(str(WITH))
+    examples = [Example(one, {}, CUTOFF, [sample(swing(), swing(), swing())]) for one in case]
+    found = dict.fromkeys(all_numerics(), samples)
+    ways = product(METHODS, TOLERANCES, SERIES, (False, True))
+    far = dict.fromkeys(ways, reached)
+    return Survey(*examples, found, found, far)
+
+
+def test_outcomes_follow_from_the_runs() -> None:
+    """Reference: by hand. Two of four runs diverge after 6 s, the energy of two diverges at 6.5 s,
+    and a solver reaches 2 of 7 s.
+    """
+    alike, parting = (swing(), swing(), swing()), (swing(), swing(), swing(late=0.4))
+    lost = sample(*alike, gained=2.0, since=6.5)
+    outcomes = survey([sample(*parting), sample(*parting), lost, lost], 2.0).outcomes
+    first = str(Numerics(all_numerics()[0].scheme, True, STEPS[0]))
+    assert (outcomes["S3"].shown, outcomes["S3"].why) == (True, f"in 50 % of runs by {first}")
+    assert outcomes["S7"].shown
+    assert outcomes["S8"].shown
+    assert outcomes["S8"].why.endswith("energy breaks out in 2 of 4 runs, at 6.5 to 6.5 s")
+    assert not outcomes["S10"].shown
+    assert outcomes["S10"].why.startswith("2000 steps of a general solver reach 2 s of the 7 s")
+
+
+def test_every_table_has_a_row_for_each_of_its_numerics() -> None:
+    """Reference: 4 statements; 18 numerics, in the first two after the accurate run; 2 solvers."""
+    made = tables(survey([sample(swing(), swing(), swing())], 2.0))
+    assert [len(table.rows) for table in made] == [4, 19, 19, 2 * len(TOLERANCES)]

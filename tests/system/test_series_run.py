@@ -100,6 +100,7 @@ def test_a_report_is_rendered_again_from_the_data(series: Path, again: Path) -> 
     assert files(again) == files(series)
 
 
+@pytest.mark.usefixtures("unprinted")
 def test_pictures_of_figures_are_kept_up_to_date(again: Path) -> None:
     """Reference: the figures of the report; without a request there are no files."""
     report = again / "report.html"
