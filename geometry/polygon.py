@@ -222,7 +222,7 @@ def _of_arrays(corners: Array, thicknesses: Array, radii: Array) -> PolygonSecti
 
 
 def bent(section: Section, radius: float, below: float = np.inf) -> PolygonSection:
-    """Return a section with bends at its corners, except at welds of different thickness.
+    """Return a section with bends at its sharp corners, except at welds of different thickness.
 
     >>> round(pt.bent(pt.hexagon(0.5, 0.4, 0.2, 0.006, 0.006, 0.006), radius=0.03).area, 7)
     0.0087302
@@ -239,11 +239,10 @@ def bent(section: Section, radius: float, below: float = np.inf) -> PolygonSecti
         walls = tuple(plate.thickness for plate in section.plates)
         section = PolygonSection(tuple(plate.start for plate in section.plates), walls)
     corners, thicknesses, radii = section.upwards
-    bends = (thicknesses == np.roll(thicknesses, 1)) & (corners[:, 1] < below)
+    alike = thicknesses == np.roll(thicknesses, 1)
+    bends = alike & (corners[:, 1] < below) & (radii == 0.0)
     if not bends.any():
-        raise SectionError(
-            "bend_radius has no corner between plates of one thickness; leave it out"
-        )
+        raise SectionError("no sharp corner has plates of one thickness; leave bend_radius out")
     return _of_arrays(corners, thicknesses, np.where(bends, radius, radii))
 
 
