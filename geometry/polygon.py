@@ -221,7 +221,9 @@ def _of_arrays(corners: Array, thicknesses: Array, radii: Array) -> PolygonSecti
     return PolygonSection(places, tuple(thicknesses.tolist()), tuple(radii.tolist()))
 
 
-def bent(section: Section, radius: float, below: float = np.inf) -> PolygonSection:
+def bent(
+    section: Section, radius: float, below: float = np.inf, inner: bool = False
+) -> PolygonSection:
     """Return a section with bends at its sharp corners, except at welds of different thickness.
 
     >>> round(pt.bent(pt.hexagon(0.5, 0.4, 0.2, 0.006, 0.006, 0.006), radius=0.03).area, 7)
@@ -229,8 +231,9 @@ def bent(section: Section, radius: float, below: float = np.inf) -> PolygonSecti
 
     Args:
         section: section of flat plates.
-        radius: radius of the mid-line in m.
+        radius: radius in m, of the mid-line unless ``inner``.
         below: z in m of the corners of a polygon below which they are bent; all unless given.
+        inner: whether the radius is that of the inner surface, of the bending tool.
 
     Raises:
         SectionError: no corner is bent, or as in :class:`PolygonSection`.
@@ -243,7 +246,8 @@ def bent(section: Section, radius: float, below: float = np.inf) -> PolygonSecti
     bends = alike & (corners[:, 1] < below) & (radii == 0.0)
     if not bends.any():
         raise SectionError("no sharp corner has plates of one thickness; leave bend_radius out")
-    return _of_arrays(corners, thicknesses, np.where(bends, radius, radii))
+    middle = radius + 0.5 * inner * thicknesses
+    return _of_arrays(corners, thicknesses, np.where(bends, middle, radii))
 
 
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:

@@ -15,12 +15,15 @@ from protractile.cases import run_case
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import EarthPoint
 from protractile.geometry.load import Moment
+from protractile.geometry.polygon import PolygonSection
+from protractile.geometry.section import SectionError
 from protractile.geometry.typography import amount
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine, combined_cases
 from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case
+from protractile.runs.case.sections import UTable
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_rows
 from protractile.runs.pipeline.statics import boom_with_play, cylinder_force, state_at_rest
@@ -187,6 +190,20 @@ def test_a_section_by_outer_sizes_is_that_of_its_mid_lines(tmp_path: Path) -> No
     own, other = (build_boom(read_case(tmp_path, text + JACK)) for text in (DRAWN, outside))
     moments_of_area = [boom.segments[0].second_moment_of_area for boom in (own, other)]
     assert moments_of_area[0] == pytest.approx(moments_of_area[1], rel=1e-14)
+
+
+def test_bends_of_a_drawing_have_the_radius_of_the_tool() -> None:
+    """Reference: by hand, the mid-line is half a thickness from each surface."""
+    sizes = {"height": 0.64, "width": 0.47, "top": 0.006, "bottom": 0.008, "web": 0.006}
+    keys = {"shape": "U", "radius": 0.16, "facets": 2, "bend_radius": 0.024}
+    for outside, (top, below) in ((True, (0.027, 0.156)), (False, (0.024, 0.16))):
+        made = UTable.model_validate(sizes | keys | {"outside": outside}).section()
+        assert isinstance(made, PolygonSection)
+        # The last corner of each lower bend is the weld to the web.
+        assert made.radii == pytest.approx((below,) * 3 + (0.0, top, top, 0.0, below))
+    large = UTable.model_validate(sizes | keys | {"bend_radius": 0.3})
+    with pytest.raises(SectionError, match=r"^bends take 0\.6 m of a plate of 0\.47 m;"):
+        large.section()
 
 
 def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
