@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import hypot
 from typing import Annotated
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.fields import HistoryRef, In, NotNegative, Number, part
 from protractile.geometry.load import Load, Moment, Torque
+from protractile.geometry.segment import SAME_PLACE
 
 
 @part
@@ -37,7 +39,7 @@ class Head:
 
         The force F acts at (x, y, z) = (ahead, beside, −below) from the end. By the work on the
         slopes w′ and v′ and on the twist, the moments are x F_z − z F_x and x F_y − y F_x, and the
-        torque is y F_z − z F_y.
+        torque is y F_z − z F_y. Round-off is left out.
 
         Args:
             segment: index of the last segment.
@@ -48,10 +50,11 @@ class Head:
         """
         along, aside, up = (float(component) for component in force)
         ahead, beside, above = part * self.ahead, part * self.beside, -part * self.below
+        round_off = SAME_PLACE * hypot(*force) * hypot(ahead, beside, above)
         for load in (
             Moment(segment, "z", ahead * up - above * along, x, history),
             Moment(segment, "y", ahead * aside - beside * along, x, history),
             Torque(segment, "z", beside * up - above * aside, x, history),
         ):
-            if load.magnitude:
+            if abs(load.magnitude) > round_off:
                 yield load
