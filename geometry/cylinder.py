@@ -102,11 +102,11 @@ class Cylinder:
     closed: Annotated[Positive, In("m")] | None = None
     """the length in m from pin to pin of the retracted cylinder"""
     open: Annotated[Positive, In("m")] | None = None
-    """the length in m from pin to pin of the extended cylinder"""
+    """the length in m from pin to pin of the extended cylinder, of one stage, below twice closed"""
     bore: Annotated[Positive, In("m")] | None = None
     """the diameter in m of the piston"""
     rod: Annotated[Positive, In("m")] | None = None
-    """the diameter in m of the rod"""
+    """the diameter in m of the rod, below the bore"""
     pressure: Annotated[Positive, In("Pa")] | None = None
     """the largest permitted oil pressure in Pa"""
     oil_modulus: Annotated[Positive, In("Pa")] = 1.4e9
@@ -231,8 +231,8 @@ class Cylinder:
             spatial: whether the boom is three-dimensional.
 
         Raises:
-            BoomError: the cylinder has no length or stiffness, its ground is in earth axes, it does
-                not reach, or a flat boom has two side by side.
+            BoomError: the cylinder has no length or stiffness, its ground is in earth axes, its rod
+                does not fit into it, it does not reach, or a flat boom has two side by side.
         """
         if isinstance(self.ground, EarthPoint):
             raise BoomError(
@@ -247,6 +247,12 @@ class Cylinder:
                 if getattr(self, key) is None:
                     what = "missing; the stiffness needs it beside bore, rod and closed, or give it"
                     raise BoomError(f"{where}.{key}", what)
+        if self.bore is not None and self.rod is not None and self.rod >= self.bore:
+            what = f"must be below the bore of {self.bore:g} m, got {self.rod:g} m"
+            raise BoomError(f"{where}.rod", what)
+        if self.closed and self.open and self.open >= 2.0 * self.closed:
+            what = f"must be below {2.0 * self.closed:g} m, twice closed, as the rod goes into the"
+            raise BoomError(f"{where}.open", f"{what} closed cylinder, got {self.open:g} m")
         for key, sign in (("closed", 1.0), ("open", -1.0)):
             end = getattr(self, key)
             if end is not None and sign * (self.length - end) < -_REACH * end:

@@ -463,6 +463,15 @@ def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
             "reach; change it, the ground or the luffing angle",
         ),
         (
+            replace(jack, rod=0.14),
+            "cylinders[0].rod: must be below the bore of 0.14 m, got 0.14 m",
+        ),
+        (
+            replace(jack, open=6.0),
+            "cylinders[0].open: must be below 6 m, twice closed, as the rod goes into the closed "
+            "cylinder, got 6 m",
+        ),
+        (
             replace(jack, rod=None),
             "cylinders[0].rod: missing; the stiffness needs it beside bore, rod and closed, or "
             "give it",
