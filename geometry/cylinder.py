@@ -133,7 +133,7 @@ class Cylinder:
         return 2 if self.spread > 0.0 else 1
 
     @property
-    def stroke(self) -> float | None:
+    def extension(self) -> float | None:
         """The length in m by which the cylinder is extended; None without ``closed``."""
         return None if self.closed is None else self.length - self.closed
 
@@ -146,7 +146,7 @@ class Cylinder:
     def axial_stiffness(self) -> float:
         """The axial stiffness in N/m: ``stiffness``, or that of oil column and rod in series.
 
-        The oil column is as long as the stroke, and the rod as the closed cylinder. Barrel and
+        The oil column is as long as the extension, and the rod as the closed cylinder. Barrel and
         hoses are rigid.
         """
         if self.stiffness is not None:

@@ -211,7 +211,7 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
     data = {"bore": 0.14, "rod": 0.1, "closed": 1.5, "open": 2.4, "pressure": 2.5e7}
     text = DRAWN + table("[[cylinder]]", **CYLINDER, **data)
     shown = printed_check(read_case(tmp_path, text), 120)
-    assert "Stroke of cylinder 1: 0.4007 m." in shown
+    assert "Cylinder 1 is extended by 0.4007 m of its stroke of 0.9 m." in shown
     case = read_case(tmp_path, text)
     force = cylinder_force(state_at_rest(case, boom_with_play(case, build_boom(case))), 1)
     pressure = amount(force / (0.25 * pi * 0.14**2), "Pa")
