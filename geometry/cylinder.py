@@ -83,7 +83,7 @@ class Cylinder:
     x: Place
     """the x of the lug in m"""
     depth: Annotated[Number, In("m")] = 0.0
-    """the depth in m of the lug below the segment's axis"""
+    """the depth in m of the lug below the segment's axis, which goes through the centroid"""
     ground: Ground = field(kw_only=True)
     """the other end in m, which does not luff: { front, below }, its distances in front of and
     below the foot pin in earth axes; or [x, height above the axis] in the axes of the boom at the

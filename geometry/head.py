@@ -25,7 +25,8 @@ class Head:
     ahead: Annotated[Number, In("m")] = 0.0
     """the distance in m of the load beyond the end of the last segment, along the axis"""
     below: Annotated[Number, In("m")] = 0.0
-    """the distance in m of the load below the axis, negative above it"""
+    """the distance in m of the load below the axis, which goes through the centroid of the last
+    segment; negative above it"""
     beside: Annotated[Number, In("m")] = 0.0
     """the distance in m of the load beside the axis, towards +y; only in space"""
     mass: Annotated[NotNegative, In("kg")] = 0.0

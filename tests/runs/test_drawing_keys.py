@@ -206,6 +206,19 @@ def test_bends_of_a_drawing_have_the_radius_of_the_tool() -> None:
         large.section()
 
 
+def test_check_prints_the_height_of_the_axis(tmp_path: Path) -> None:
+    """Reference: by hand, first moments of four plates with mitred corners."""
+    outer = 'shape = "unequal box", height = 0.3, width = 0.22, top = 0.006, bottom = 0.014'
+    text = DRAWN.replace("height = 0.3, width = 0.22, flange = 0.006", outer)
+    assert text != DRAWN
+    width, web, high = 0.22, 0.006, 0.31
+    inner = (width - web) * (0.3 - 0.01), 0.014 + 0.145
+    area, middle = (width + web) * high, 0.5 * high
+    height = (area * middle - inner[0] * inner[1]) / (area - inner[0])
+    line = "Height of the axis, through the centroid, above the outer surface of the bottom: base "
+    assert f"{line}{height:.4g} m." in printed_check(read_case(tmp_path, text + JACK), 120)
+
+
 def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
     """Reference: exact words; the pressure of the printed force on the bore."""
     data = {"bore": 0.14, "rod": 0.1, "closed": 1.5, "open": 2.4, "pressure": 2.5e7}
