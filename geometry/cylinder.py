@@ -83,7 +83,7 @@ class Cylinder:
     x: Place
     """the x of the lug in m"""
     depth: Annotated[Number, In("m")] = 0.0
-    """the depth in m of the lug below the segment's axis"""
+    """the depth in m of the lug below the segment's axis, which goes through the centroid"""
     ground: Ground = field(kw_only=True)
     """the other end in m, which does not luff: { front, below }, its distances in front of and
     below the foot pin in earth axes; or [x, height above the axis] in the axes of the boom at the
@@ -102,11 +102,11 @@ class Cylinder:
     closed: Annotated[Positive, In("m")] | None = None
     """the length in m from pin to pin of the retracted cylinder"""
     open: Annotated[Positive, In("m")] | None = None
-    """the length in m from pin to pin of the extended cylinder"""
+    """the length in m from pin to pin of the extended cylinder, of one stage, below twice closed"""
     bore: Annotated[Positive, In("m")] | None = None
     """the diameter in m of the piston"""
     rod: Annotated[Positive, In("m")] | None = None
-    """the diameter in m of the rod"""
+    """the diameter in m of the rod, below the bore"""
     pressure: Annotated[Positive, In("Pa")] | None = None
     """the largest permitted oil pressure in Pa"""
     oil_modulus: Annotated[Positive, In("Pa")] = 1.4e9
@@ -133,7 +133,7 @@ class Cylinder:
         return 2 if self.spread > 0.0 else 1
 
     @property
-    def stroke(self) -> float | None:
+    def extension(self) -> float | None:
         """The length in m by which the cylinder is extended; None without ``closed``."""
         return None if self.closed is None else self.length - self.closed
 
@@ -146,7 +146,7 @@ class Cylinder:
     def axial_stiffness(self) -> float:
         """The axial stiffness in N/m: ``stiffness``, or that of oil column and rod in series.
 
-        The oil column is as long as the stroke, and the rod as the closed cylinder. Barrel and
+        The oil column is as long as the extension, and the rod as the closed cylinder. Barrel and
         hoses are rigid.
         """
         if self.stiffness is not None:
@@ -231,8 +231,8 @@ class Cylinder:
             spatial: whether the boom is three-dimensional.
 
         Raises:
-            BoomError: the cylinder has no length or stiffness, its ground is in earth axes, it does
-                not reach, or a flat boom has two side by side.
+            BoomError: the cylinder has no length or stiffness, its ground is in earth axes, its rod
+                does not fit into it, it does not reach, or a flat boom has two side by side.
         """
         if isinstance(self.ground, EarthPoint):
             raise BoomError(
@@ -247,6 +247,12 @@ class Cylinder:
                 if getattr(self, key) is None:
                     what = "missing; the stiffness needs it beside bore, rod and closed, or give it"
                     raise BoomError(f"{where}.{key}", what)
+        if self.bore is not None and self.rod is not None and self.rod >= self.bore:
+            what = f"must be below the bore of {self.bore:g} m, got {self.rod:g} m"
+            raise BoomError(f"{where}.rod", what)
+        if self.closed and self.open and self.open >= 2.0 * self.closed:
+            what = f"must be below {2.0 * self.closed:g} m, twice closed, as the rod goes into the"
+            raise BoomError(f"{where}.open", f"{what} closed cylinder, got {self.open:g} m")
         for key, sign in (("closed", 1.0), ("open", -1.0)):
             end = getattr(self, key)
             if end is not None and sign * (self.length - end) < -_REACH * end:

@@ -4,11 +4,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import hypot
 from typing import Annotated
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.fields import HistoryRef, In, NotNegative, Number, part
 from protractile.geometry.load import Load, Moment, Torque
+from protractile.geometry.segment import SAME_PLACE
 
 
 @part
@@ -23,7 +25,8 @@ class Head:
     ahead: Annotated[Number, In("m")] = 0.0
     """the distance in m of the load beyond the end of the last segment, along the axis"""
     below: Annotated[Number, In("m")] = 0.0
-    """the distance in m of the load below the axis, negative above it"""
+    """the distance in m of the load below the axis, which goes through the centroid of the last
+    segment; negative above it"""
     beside: Annotated[Number, In("m")] = 0.0
     """the distance in m of the load beside the axis, towards +y; only in space"""
     mass: Annotated[NotNegative, In("kg")] = 0.0
@@ -37,7 +40,7 @@ class Head:
 
         The force F acts at (x, y, z) = (ahead, beside, −below) from the end. By the work on the
         slopes w′ and v′ and on the twist, the moments are x F_z − z F_x and x F_y − y F_x, and the
-        torque is y F_z − z F_y.
+        torque is y F_z − z F_y. Round-off is left out.
 
         Args:
             segment: index of the last segment.
@@ -48,10 +51,11 @@ class Head:
         """
         along, aside, up = (float(component) for component in force)
         ahead, beside, above = part * self.ahead, part * self.beside, -part * self.below
+        round_off = SAME_PLACE * hypot(*force) * hypot(ahead, beside, above)
         for load in (
             Moment(segment, "z", ahead * up - above * along, x, history),
             Moment(segment, "y", ahead * aside - beside * along, x, history),
             Torque(segment, "z", beside * up - above * aside, x, history),
         ):
-            if load.magnitude:
+            if abs(load.magnitude) > round_off:
                 yield load

@@ -221,16 +221,19 @@ def _of_arrays(corners: Array, thicknesses: Array, radii: Array) -> PolygonSecti
     return PolygonSection(places, tuple(thicknesses.tolist()), tuple(radii.tolist()))
 
 
-def bent(section: Section, radius: float, below: float = np.inf) -> PolygonSection:
-    """Return a section with bends at its corners, except at welds of different thickness.
+def bent(
+    section: Section, radius: float, below: float = np.inf, inner: bool = False
+) -> PolygonSection:
+    """Return a section with bends at its sharp corners, except at welds of different thickness.
 
     >>> round(pt.bent(pt.hexagon(0.5, 0.4, 0.2, 0.006, 0.006, 0.006), radius=0.03).area, 7)
     0.0087302
 
     Args:
         section: section of flat plates.
-        radius: radius of the mid-line in m.
+        radius: radius in m, of the mid-line unless ``inner``.
         below: z in m of the corners of a polygon below which they are bent; all unless given.
+        inner: whether the radius is that of the inner surface, of the bending tool.
 
     Raises:
         SectionError: no corner is bent, or as in :class:`PolygonSection`.
@@ -239,12 +242,12 @@ def bent(section: Section, radius: float, below: float = np.inf) -> PolygonSecti
         walls = tuple(plate.thickness for plate in section.plates)
         section = PolygonSection(tuple(plate.start for plate in section.plates), walls)
     corners, thicknesses, radii = section.upwards
-    bends = (thicknesses == np.roll(thicknesses, 1)) & (corners[:, 1] < below)
+    alike = thicknesses == np.roll(thicknesses, 1)
+    bends = alike & (corners[:, 1] < below) & (radii == 0.0)
     if not bends.any():
-        raise SectionError(
-            "bend_radius has no corner between plates of one thickness; leave it out"
-        )
-    return _of_arrays(corners, thicknesses, np.where(bends, radius, radii))
+        raise SectionError("no sharp corner has plates of one thickness; leave bend_radius out")
+    middle = radius + 0.5 * inner * thicknesses
+    return _of_arrays(corners, thicknesses, np.where(bends, middle, radii))
 
 
 def closed_polygon(corners: Sequence[Offset], thicknesses: Sequence[float]) -> Section:

@@ -59,8 +59,8 @@ class Support:
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
     """the linear dashpot of an elastic support in N s/m, parallel to its stiffness"""
     depth: Annotated[Number, In("m")] = 0.0
-    """the depth in m of its pin below the segment's axis, for the first support of a segment with a
-    cylinder or axial forces"""
+    """the depth in m of its pin below the segment's axis, which goes through the centroid, for the
+    first support of a segment with a cylinder or axial forces"""
     pin: Pin | None = None
     """the table of its pin, for the proof of the foot"""
 

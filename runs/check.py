@@ -354,8 +354,11 @@ def _cylinders(state: StaticState, system: System) -> Table:
         arm = "" if segment.foot is None else system.of(cylinder.arm(segment.foot), "m")
         place, length = f"{system.of(cylinder.x, 'm'):g}", system.of(cylinder.length, "m")
         rows.append((segment.name, place, length, arm, force))
-        if cylinder.stroke is not None:
-            notes.append(f"Stroke of cylinder {k}: {system.text(cylinder.stroke, 'm')}.")
+        if cylinder.extension is not None:
+            said = f"Cylinder {k} is extended by {system.text(cylinder.extension, 'm')}"
+            if cylinder.closed and cylinder.open:
+                said += f" of its stroke of {system.text(cylinder.open - cylinder.closed, 'm')}"
+            notes.append(f"{said}.")
         if cylinder.piston_area is not None:
             pressure = amount(force / cylinder.piston_area, "Pa")
             notes.append(f"Oil pressure of cylinder {k}: {pressure}.")

@@ -207,7 +207,8 @@ class RopeTable(CaseTable):
     falls: Count | None = None
     """the number of falls between head and hook; those of the table hoist unless given"""
     winch: Annotated[NotNegative, In("m")] = 0.0
-    """the distance in m of the winch behind the boom's foot, on its axis"""
+    """the distance in m of the winch behind the boom's foot, on its axis, which goes through the
+    centroid"""
 
 
 class AxialTable(CaseTable):

@@ -49,11 +49,12 @@ class ShapeTable(CaseTable):
     make: ClassVar[Callable[..., Section]]
     shape: str
     outside: Flag = False
-    """whether heights, widths, corners and radii are those of the outer surface, as drawn, instead
-    of mid-lines"""
+    """whether heights, widths, corners and the radius of a U are those of the outer surface, as
+    drawn, instead of mid-lines, and bend_radius is that of the inner surface"""
     bend_radius: Length | None = None
-    """the radius of mid-lines in m at bends, which are the corners between plates of one thickness;
-    other corners are welds; all are sharp unless given, except the bends of a U"""
+    """the radius of mid-lines in m, with outside = true the inner radius of the bending tool, at
+    bends, which are the corners between plates of one thickness; other corners are welds; all are
+    sharp unless given, except the bottom bends of a U, which have its radius"""
 
     def section(self) -> Section:
         """Return the section that the keys define.
@@ -68,8 +69,9 @@ class ShapeTable(CaseTable):
 @lru_cache(maxsize=256)
 def _section(table: ShapeTable) -> Section:
     made = type(table).make(**table.model_dump(exclude={"shape", "outside", "bend_radius"}))
-    made = made if table.bend_radius is None else bent(made, table.bend_radius)
-    return made.within_outline() if table.outside else made
+    made = made.within_outline() if table.outside else made
+    radius = table.bend_radius
+    return made if radius is None else bent(made, radius, inner=table.outside)
 
 
 class SectionTable(ShapeTable):

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,8 @@ WHOLE_SIGN = 0.04
 ALONG_HEIGHT, MAX_HEIGHT, MIN_HEIGHT, SECTIONS, LEGEND_LINE = 1.8, 2.6, 0.7, 1.6, 0.24
 # Angle of the boom in degrees above which up to this number of sections are drawn beside it.
 STEEP, BESIDE = 25.0, 3
+# Number of characters that fit into a line of the legend.
+LINE_CHARACTERS = 66
 # Margin beside the boom, as a fraction of its length.
 MARGIN = 0.06
 # Maximum number of sections side by side, and their distance as a fraction of the largest width.
@@ -146,11 +149,12 @@ def boom_sheet(case: Case, boom: Boom) -> Sheet:
         _draw_sections(panels["sections"], boom, sections)
     entries = detailed.meanings | dict.fromkeys(_remarks(case, boom), Line2D([], [], linestyle=""))
     columns = 2 if max(map(len, entries)) <= LEGEND_CHARACTERS else 1
-    lines = -(-len(entries) // columns)
+    names = [fill(meaning, LINE_CHARACTERS) for meaning in entries]
+    lines = -(-sum(name.count("\n") + 1 for name in names) // columns)
     sheet.set_size_inches(theme.WIDTH, sum(heights_of_rows) + 0.4 + LEGEND_LINE * (lines + 1))
     sheet.legend(
         [*entries.values()],
-        [*entries],
+        names,
         loc="outside lower left",
         ncols=columns,
         fontsize=9.5,

@@ -11,6 +11,7 @@ from protractile.geometry.boom import Boom, Direction, Joint
 from protractile.geometry.fit import room
 from protractile.geometry.section import Section
 from protractile.geometry.units import System
+from protractile.geometry.walls import trapezoids
 from protractile.runs.case.schema import Case
 from protractile.runs.report.tables import Cell, Column, Table
 
@@ -18,12 +19,19 @@ from protractile.runs.report.tables import Cell, Column, Table
 def segment_table(case: Case, boom: Boom) -> Table:
     """Return the table of positions, masses and sections of segments, in the case's units."""
     column, segments, boxes = partial(column_in_units, case.system), boom.segments, []
+    axes = []
     for table, segment in zip(case.segments, segments, strict=True):
         box = "unknown" if segment.section is None else _size(segment.section)
         if segment.head_section is not None:
             box += f" to\n{_size(segment.head_section)}"
         inferred = table.section is None and segment.section is not None
         boxes.append(f"{box}, inferred" if inferred else box)
+        ends = [each for each in (segment.section, segment.head_section) if each is not None]
+        if any("z" not in each.mirrors for each in ends):
+            # Corners of the outer surface are the first two of each plate.
+            lowest = [float(trapezoids(each.plates)[:, :2, 1].min()) for each in ends]
+            heights = " to ".join(case.system.text(-z, "m") for z in lowest)
+            axes.append(f"{segment.name} {heights}")
     columns = [
         Column("segment", [segment.name for segment in segments]),
         Column(f"x\n{case.system.label('m')}", [_span(case.system, one.ends) for one in segments]),
@@ -32,7 +40,8 @@ def segment_table(case: Case, boom: Boom) -> Table:
         Column("rotary inertia\nper length\nkg m", [one.rotary_inertia for one in segments], ".3g"),
         Column("h × b of\nmid-lines, t of\nflange / web, mm", boxes),
     ]
-    return Table("Segments", columns)
+    above = "Height of the axis, through the centroid, above the outer surface of the bottom: "
+    return Table("Segments", columns, [f"{above}{', '.join(axes)}."] if axes else [])
 
 
 def stiffener_table(boom: Boom, system: System) -> Table:
@@ -104,8 +113,8 @@ def _span(system: System, ends: tuple[float, float]) -> str:
 
 
 def _size(section: Section) -> str:
-    """Return two lines of text: height and width of a section, then its plate thicknesses."""
-    size, plates = str(section).rsplit(" x ", 1)
+    """Return lines of text: height and width of a section, its plate thicknesses, and its bends."""
+    size, plates = str(section).replace(", R ", "\nR ").rsplit(" x ", 1)
     return f"{size.replace(' x ', ' × ')}\nt {plates}"
 
 

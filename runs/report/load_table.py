@@ -10,7 +10,7 @@ import numpy as np
 
 from protractile.dynamics.excitation import resolving_times
 from protractile.geometry.boom import Boom
-from protractile.geometry.load import Load, PartialLoad, Torque
+from protractile.geometry.load import Load, Moment, PartialLoad, Torque
 from protractile.geometry.typography import SHOWN, in_shown_unit
 from protractile.geometry.units import System
 from protractile.runs.case.actions import head_moments, thrusts, wind
@@ -75,8 +75,7 @@ def _rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
                 yield _LoadRow(key, segment.name, direction, _CONSTANT, load, "N/m")
     for i, (table, of) in enumerate(zip(case.loads, boom.loads, strict=False), start=1):
         place = _place_of(boom, of, case.system)
-        direction = f"{table.direction}, moment" if table.moment else table.direction
-        yield _history_row(f"load[{i}]", place, direction, table, case.time.duration)
+        yield _history_row(f"load[{i}]", place, _direction(of), table, case.time.duration)
     if case.payload is not None and gravity is None and case.payload.gravity != 0.0:
         weight = boom.loads[len(case.loads)].magnitude
         yield _LoadRow("payload", tip, "z", _CONSTANT, weight, "N")
@@ -84,19 +83,24 @@ def _rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
         yield _history_row(f"base[{i}]", _ALL, base.direction, base, case.time.duration)
     if case.head is not None:
         for of in head_moments(case, case.head, len(boom.segments) - 1, boom.tip):
-            direction = "torque" if isinstance(of, Torque) else f"{of.direction}, moment"
-            yield _LoadRow("head", tip, direction, _CONSTANT, of.magnitude, "N m")
+            yield _LoadRow("head", tip, _direction(of), _CONSTANT, of.magnitude, "N m")
     if case.wind is not None:
         for of in wind(case, case.wind, boom.segments, boom.joints):
             unit = {PartialLoad: "N/m", Load: "N"}.get(type(of), "N m")
             largest = of.magnitude * getattr(of.history, "peak", 1.0)
             place, history = _place_of(boom, of, case.system), case.wind.description or _CONSTANT
-            yield _LoadRow("wind", place, of.direction, history, largest, unit)
+            yield _LoadRow("wind", place, _direction(of), history, largest, unit)
     for lead in boom.leads:
         yield _LoadRow("rope", tip, "to the winch", _CONSTANT, lead.force, "N")
     for i, thrust in enumerate(thrusts(case, boom.segments), start=1):
         place = _place(boom, thrust.segment, thrust.x, case.system)
         yield _LoadRow(f"axial[{i}]", place, _AXIAL, _CONSTANT, thrust.force, "N")
+
+
+def _direction(load: Load) -> str:
+    if isinstance(load, Torque):
+        return "torque"
+    return f"{load.direction}, moment" if isinstance(load, Moment) else load.direction
 
 
 def _place(boom: Boom, segment: int, x: float, system: System) -> str:

@@ -204,7 +204,7 @@ def by_data(angle: float) -> Boom:
     """Return the crane with a cylinder whose stiffness follows from its data and its length."""
     boom = crane(angle)
     (jack,) = boom.cylinders
-    data = {"closed": 2.0, "open": 4.6, "bore": 0.2, "rod": 0.14, "pressure": 2.5e7}
+    data = {"closed": 2.3, "open": 4.5, "bore": 0.2, "rod": 0.14, "pressure": 2.5e7}
     return replace(boom, cylinders=(replace(jack, stiffness=None, **data),))
 
 

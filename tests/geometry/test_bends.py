@@ -122,6 +122,22 @@ def test_bends_are_the_limit_of_many_chords(sharp: Section) -> None:
     assert found == pytest.approx(list(fine + (fine - coarse) / 3.0), rel=1e-9)
 
 
+@pytest.mark.parametrize("facets", [1, 3])
+def test_bends_at_the_top_of_a_u_leave_its_circle(facets: int) -> None:
+    """Reference: analytic, two quarter rings instead of four ends of plates up to the corners."""
+    sharp = u_section(0.632, 0.462, 0.146, facets, WALL, WALL, WALL)
+    section = bent(sharp, RADIUS)
+    saved = (4.0 - pi) * RADIUS * WALL
+    assert section.area == pytest.approx(sharp.area - saved, rel=1e-12)
+    ring = 0.5 * pi * RADIUS * WALL
+    # First moments about the upper mid-line: quarter rings, and the mitred plates in their place.
+    down = ring * RADIUS - WALL * (RADIUS**2 + WALL**2 / 12.0)
+    sides = 0.5 * WALL * RADIUS**2 - WALL**3 / 8.0
+    middle = 0.316 - sharp.centroid[1]
+    first = sharp.area * middle + 2.0 * (down - sides)
+    assert 0.316 - section.centroid[1] == pytest.approx(first / section.area, rel=1e-12)
+
+
 def test_sharp_corners_are_the_limit_of_small_bends() -> None:
     """Reference: other input, the sharp section; errors fall with the radius."""
     errors = []
@@ -186,10 +202,8 @@ def test_impossible_bends(radius: float, message: str) -> None:
 def test_a_welded_box_has_no_bends() -> None:
     with pytest.raises(SectionError) as error:
         bent(BoxSection(0.3, 0.2, 0.006, WALL), RADIUS)
-    assert (
-        str(error.value)
-        == "bend_radius has no corner between plates of one thickness; leave it out"
-    )
+    line = "no sharp corner has plates of one thickness; leave bend_radius out"
+    assert str(error.value) == line
     with pytest.raises(SectionError) as error:
         PolygonSection(((0.0, 0.0), (0.2, 0.0), (0.0, 0.2)), (WALL,) * 3, (0.01,))
     assert str(error.value) == "3 corners have as many radii, got 1"

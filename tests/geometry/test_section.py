@@ -438,7 +438,7 @@ def test_stroke_follows_by_the_law_of_cosines() -> None:
         jack = Cylinder(0, 2.0, 0.4, ground=ground, closed=1.5, stiffness=1e7)
         placed = jack.in_boom_axes(luffing, Support(0.0, "hinged"))
         assert placed.length == pytest.approx(expected, rel=1e-12)
-        assert placed.stroke == pytest.approx(expected - 1.5, rel=1e-12)
+        assert placed.extension == pytest.approx(expected - 1.5, rel=1e-12)
 
 
 def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
@@ -447,7 +447,7 @@ def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
         0, 4.0, 0.3, ground=(1.0, -4.3), bore=0.14, rod=0.10, closed=3.0, open=5.2, pressure=2.5e7
     )
     area, rod = 0.25 * np.pi * 0.14**2, 0.25 * np.pi * 0.10**2
-    assert jack.stroke == 2.0
+    assert jack.extension == 2.0
     assert jack.axial_stiffness == pytest.approx(
         1.0 / (2.0 / (1.4e9 * area) + 3.0 / (2.1e11 * rod)), rel=1e-12
     )
@@ -461,6 +461,15 @@ def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
             replace(jack, open=4.5),
             "cylinders[0].open: 4.5 m, and from ground to lug it is 5 m: the cylinder does not "
             "reach; change it, the ground or the luffing angle",
+        ),
+        (
+            replace(jack, rod=0.14),
+            "cylinders[0].rod: must be below the bore of 0.14 m, got 0.14 m",
+        ),
+        (
+            replace(jack, open=6.0),
+            "cylinders[0].open: must be below 6 m, twice closed, as the rod goes into the closed "
+            "cylinder, got 6 m",
         ),
         (
             replace(jack, rod=None),

@@ -277,6 +277,23 @@ def test_loads_are_listed_with_their_largest_values(tmp_path: Path) -> None:
     assert load_table(case, build_boom(case)).rows == [row]
 
 
+def test_wind_and_head_load_the_tip_with_moments_and_torque(tmp_path: Path) -> None:
+    """Reference: by hand: a wind from the side of 200 N, and a head of 60 kg, on a level boom."""
+    drawn = (
+        '[wind]\npressure = 100.0\nshape_factor = 1.0\nload_area = 2.0\ndirection = "side"\n'
+        "[gravity]\nangle = 0.0\n[head]\nahead = 0.8\nbelow = 0.5\nmass = 60.0\n"
+    )
+    lateral = boom_of(drawn).replace("play = 0.004", "play = 0.004\nlateral_play = 0.004")
+    case = read_case(tmp_path, lateral)
+    rows = load_table(case, build_boom(case)).rows
+    assert [row[2:5] for row in rows if row[1] == "fly at 14 m"] == [
+        ("z, moment", "constant", "−235.4 N m"),
+        ("y", "constant", "200 N"),
+        ("y, moment", "constant", "160 N m"),
+        ("torque", "constant", "100 N m"),
+    ]
+
+
 def test_tables_are_in_the_units_of_the_case(tmp_path: Path) -> None:
     """Reference: the same boom in SI units."""
     case = convert_to_si(

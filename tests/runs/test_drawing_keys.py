@@ -15,12 +15,15 @@ from protractile.cases import run_case
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import EarthPoint
 from protractile.geometry.load import Moment
+from protractile.geometry.polygon import PolygonSection
+from protractile.geometry.section import SectionError
 from protractile.geometry.typography import amount
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine, combined_cases
 from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case
+from protractile.runs.case.sections import UTable
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_rows
 from protractile.runs.pipeline.statics import boom_with_play, cylinder_force, state_at_rest
@@ -189,12 +192,39 @@ def test_a_section_by_outer_sizes_is_that_of_its_mid_lines(tmp_path: Path) -> No
     assert moments_of_area[0] == pytest.approx(moments_of_area[1], rel=1e-14)
 
 
+def test_bends_of_a_drawing_have_the_radius_of_the_tool() -> None:
+    """Reference: by hand, the mid-line is half a thickness from each surface."""
+    sizes = {"height": 0.64, "width": 0.47, "top": 0.006, "bottom": 0.008, "web": 0.006}
+    keys = {"shape": "U", "radius": 0.16, "facets": 2, "bend_radius": 0.024}
+    for outside, (top, below) in ((True, (0.027, 0.156)), (False, (0.024, 0.16))):
+        made = UTable.model_validate(sizes | keys | {"outside": outside}).section()
+        assert isinstance(made, PolygonSection)
+        # The last corner of each lower bend is the weld to the web.
+        assert made.radii == pytest.approx((below,) * 3 + (0.0, top, top, 0.0, below))
+    large = UTable.model_validate(sizes | keys | {"bend_radius": 0.3})
+    with pytest.raises(SectionError, match=r"^bends take 0\.6 m of a plate of 0\.47 m;"):
+        large.section()
+
+
+def test_check_prints_the_height_of_the_axis(tmp_path: Path) -> None:
+    """Reference: by hand, first moments of four plates with mitred corners."""
+    outer = 'shape = "unequal box", height = 0.3, width = 0.22, top = 0.006, bottom = 0.014'
+    text = DRAWN.replace("height = 0.3, width = 0.22, flange = 0.006", outer)
+    assert text != DRAWN
+    width, web, high = 0.22, 0.006, 0.31
+    inner = (width - web) * (0.3 - 0.01), 0.014 + 0.145
+    area, middle = (width + web) * high, 0.5 * high
+    height = (area * middle - inner[0] * inner[1]) / (area - inner[0])
+    line = "Height of the axis, through the centroid, above the outer surface of the bottom: base "
+    assert f"{line}{height:.4g} m." in printed_check(read_case(tmp_path, text + JACK), 120)
+
+
 def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
     """Reference: exact words; the pressure of the printed force on the bore."""
     data = {"bore": 0.14, "rod": 0.1, "closed": 1.5, "open": 2.4, "pressure": 2.5e7}
     text = DRAWN + table("[[cylinder]]", **CYLINDER, **data)
     shown = printed_check(read_case(tmp_path, text), 120)
-    assert "Stroke of cylinder 1: 0.4007 m." in shown
+    assert "Cylinder 1 is extended by 0.4007 m of its stroke of 0.9 m." in shown
     case = read_case(tmp_path, text)
     force = cylinder_force(state_at_rest(case, boom_with_play(case, build_boom(case))), 1)
     pressure = amount(force / (0.25 * pi * 0.14**2), "Pa")

@@ -273,7 +273,16 @@ def drawn(name: str) -> Figure:
 
 
 def legend(sheet: Figure) -> list[str]:
-    return [text.get_text() for text in sheet.legends[0].get_texts()]
+    return [text.get_text().replace("\n", " ") for text in sheet.legends[0].get_texts()]
+
+
+def test_a_long_legend_fits_on_its_sheet() -> None:
+    """Reference: by construction, the size of the sheet."""
+    sheet = drawn("crane-proof")
+    sheet.draw_without_rendering()
+    box = sheet.legends[0].get_window_extent()
+    assert 0.0 <= box.x0 < box.x1 <= sheet.bbox.width
+    assert box.y0 >= 0.0
 
 
 def test_a_lift_stands_at_its_angle() -> None:
