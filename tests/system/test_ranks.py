@@ -210,7 +210,7 @@ def test_a_case_runs_and_is_reported(name: str, tmp_path: Path) -> None:
     results = run.results
     page = render(results, Addition(), figures_of(results), [])
     assert case.title in unescape(page)
-    assert ("First vertical and lateral peaks of the tip" in page) == (name == "spatial")
+    assert ("Tip, lateral (y)" in page) == (name == "spatial")
     models = results.summary.models
     assert list(models) == [model.name for model in case.models]
     assert max(model.energy_residual for model in models.values()) < 1e-3
