@@ -30,7 +30,7 @@ from protractile.runs.case.load_tables import LoadCaseTable, TelescopingTable
 from protractile.runs.case.schema import Case
 from protractile.runs.chart.keys import ChartTable, Keys
 from protractile.runs.pipeline.beam_states import static_states
-from protractile.runs.pipeline.combinations import combination_states
+from protractile.runs.pipeline.combinations import CombinationState, combination_states
 from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.pipeline.statics import boom_with_play
 from protractile.runs.pipeline.tipping import foot_of, hook_place
@@ -44,7 +44,7 @@ NO_EQUILIBRIUM, STROKE = "no equilibrium", "stroke of the cylinder"
 
 # Largest distance of a governing utilisation below 1, smallest relative step of the payload towards
 # it and towards the limit of reach, and the fraction of the largest payload that is tried first.
-_ACCURACY, _STEP, _REACH, _FIRST = 4.0e-7, 1.0e-7, 1.0e-5, 0.02
+_ACCURACY, _STEP, _REACH, _FIRST = 4.0e-7, 1.0e-7, 5.0e-4, 0.02
 
 
 class Configuration(NamedTuple):
@@ -108,6 +108,8 @@ class Search:
     radius: float  #: horizontal distance in m of the loaded tip from the slewing axis
     #: load case and rated state by payload in kg
     points: dict[float, tuple[LoadCaseTable, States]] = field(default_factory=dict)
+    #: states of a combination by payload in kg and name
+    combined: dict[tuple[float, str], list[CombinationState]] = field(default_factory=dict)
     #: tip deflection in m by payload in kg, to begin with as expected
     tips: dict[float, float] = field(default_factory=dict)
     #: change of the tip deflection less its guess, over the change of the guess
@@ -174,8 +176,9 @@ class Search:
                 failures[payload] = str(error)
                 return 1.0
 
-        # Brackets grow from the first payload, faster and faster.
-        low, high, factor = first, first, 0.8
+        # Brackets grow from the first payload, faster and faster. The payload causes two thirds of
+        # a typical utilisation.
+        low, high, factor = first, first, 1.0 / (1.0 + 2.0 * abs(excess(first)))
         while excess(low) > 0.0:
             if low == 0.0:
                 what = f"{PROVED[followed[1]].title} {percent(1.0 + excess(0.0))} without payload"
@@ -203,17 +206,20 @@ class Search:
             NoCapacityError: the tip cannot stand at the radius, or there is no equilibrium.
         """
         case = combined_case(self.case, self.point(payload)[0])
-        if followed is not None:
-            (combination,) = (
-                one for one in case.combinations if followed[0].startswith(f"{one.name}, ")
-            )
-            combination = combination.model_copy(update={"proofs": (followed[1],)})
-            case = case.model_copy(update={"combinations": (combination,)})
-        try:
-            states = combination_states(case)
-            return governing(row for state in states for row in proofs_of(state, case))
-        except NUMERICAL_ERRORS:
-            raise NoCapacityError(NO_EQUILIBRIUM) from None
+        rows, kinds = list[Row](), None if followed is None else [followed[1]]
+        for combination in case.combinations:
+            if followed is not None and not followed[0].startswith(f"{combination.name}, "):
+                continue
+            at, single = (payload, combination.name), {"combinations": (combination,)}
+            try:
+                if at not in self.combined:
+                    self.combined[at] = combination_states(case.model_copy(update=single))
+                rows += [
+                    row for state in self.combined[at] for row in proofs_of(state, case, kinds)
+                ]
+            except NUMERICAL_ERRORS:
+                raise NoCapacityError(NO_EQUILIBRIUM) from None
+        return governing(rows)
 
     def point(self, payload: float) -> tuple[LoadCaseTable, States]:
         """Return the load case with a payload in kg and its rated state, with the tip in place.

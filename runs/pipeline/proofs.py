@@ -6,7 +6,7 @@ Only the governing proof of each part of the boom is kept.
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Iterable, Iterator, Sequence
+from collections.abc import Collection, Hashable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 from protractile.analysis.fatigue import HAS_RAINFLOW, Spectrum, details, fatigue_proofs
@@ -58,25 +58,28 @@ def prove(case: Case, states: Sequence[CombinationState]) -> Proofs:
     return Proofs.among([*proved, *_fatigue(case)], notes, case)
 
 
-def proofs_of(state: CombinationState, case: Case) -> Iterator[Row]:
-    """Yield the proofs of a combination that its case demands.
+def proofs_of(
+    state: CombinationState, case: Case, kinds: Collection[str] | None = None
+) -> Iterator[Row]:
+    """Yield the proofs of a combination: those of ``kinds``, or those that its case demands.
 
     Raises:
         NumericsError: the combination has no equilibrium.
     """
     table, factor = state.combined.combination, state.critical_factor
+    requested = table.proofs if kinds is None else kinds
     if state.states is None:
         raise NumericsError(
             f"{state.combined.name}: no static equilibrium; the boom is unrestrained or buckles"
         )
-    if factor is None and "column" in table.proofs:
+    if factor is None and "column" in requested:
         factor = estimate_critical_factor(state.states.boom)
-    if "tipping" in table.proofs:
+    if "tipping" in requested:
         yield from tipping_proofs(state.combined, state.states)
     yield from proofs(
         state.states,
         state.rows,
-        table.proofs,
+        requested,
         Resistance(**table.resistance.model_dump()),
         case.buckling.curve if case.buckling else (),
         case.limits.tip_at_rest if case.limits else None,
