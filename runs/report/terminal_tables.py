@@ -51,11 +51,11 @@ from protractile.runs.report.tables import Column, Table, print_text
 SHOWN = {
     "model": "model",
     "degrees of freedom": "dofs",
-    "first contact\ns": "first contact\ns",
-    "first tip peak\ns": "first tip peak\ns",
+    "first contact\ns": "first\ncontact\ns",
+    "first tip peak\ns": "first\ntip peak\ns",
     "first tip peak\nmm": "peak\nmm",
-    "energy residual\n/ largest work": "energy residual\n/ largest work",
-    "computing time\ns": "computing\ntime, s",
+    "energy residual\n/ largest work": "energy\nresidual",
+    "computing time\ns": "time\ns",
 }
 
 
