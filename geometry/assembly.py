@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""The parts of a boom, and what follows from them without checks."""
+"""The parts of a boom before its checks, which read them."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from protractile.geometry.station import Station, stations
 
 @dataclass(frozen=True)
 class Assembly:
-    """Segments from the base to the tip, with joints, loads and cylinders, as yet unchecked."""
+    """Segments from the base to the tip, with joints, loads and cylinders, before any check."""
 
     segments: Sequence[Segment]
     joints: Sequence[Joint] = ()
@@ -78,6 +78,7 @@ class Assembly:
         return places
 
     def end_observations(self, quantities: Iterable[Quantity]) -> list[Observation]:
+        """Return an observation of each quantity at each place of :attr:`observed`."""
         return [
             Observation(f"{name}_{what}".removesuffix("_deflection"), segment, x, what)
             for name, (segment, x) in self.observed.items()
