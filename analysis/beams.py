@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
 
 from protractile.analysis.curves import diagrams
 from protractile.analysis.equilibria import vibrating_system
@@ -137,9 +138,11 @@ def prove(
             states = States.at_rest(static_beam(loaded), duration)
         except NumericsError as error:
             raise NumericsError(f"{name}: {error}") from error
-        rows = Rows(extremes(measure(states), BEAM, COMBINATION + name))
+        names = BEAM, COMBINATION + name
+        rows = partial(Rows, [*extremes(measure(states), *names)])
         factor = estimate_critical_factor(loaded) if loaded.compressed else None
-        proved += proofs(states, rows, requested, resistance, curve, permitted_tip, factor)
+        found = proofs(states, rows, requested, resistance, curve, permitted_tip, factor)
+        proved += [row._replace(model=names[0], state=names[1]) for row in found]
     return governing(proved)
 
 

@@ -8,6 +8,7 @@ linear and the shear stress constant. Restraint by adjacent walls and pad forces
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -29,22 +30,24 @@ SHEAR = 5.34
 _EQUAL = 1.0e-9
 
 
-class PlateStress(NamedTuple):
-    """Stresses of a plate in static states."""
+class PlateStresses(NamedTuple):
+    """Stresses of the plates of a segment in static states."""
 
     segment: Segment  #: the segment
-    plate: Plate  #: the wall
+    plates: tuple[Plate, ...]  #: the walls
     x: Array  #: (num_places,) x of the cross-sections in m
-    #: (2, num_states, num_places) axial stress at the ends of the mid-line in Pa, in tension
+    #: (2, num_plates, num_states, num_places) axial stress at the ends of mid-lines in Pa, in
+    #: tension
     edges: Array
-    fibres: Array  #: (2, num_states, num_places) axial stress at the outer corners in Pa
-    shear: Array  #: (num_states, num_places) mean shear stress in Pa, not negative
-    width: float  #: width in m for buckling
+    fibres: Array  #: (2, num_plates, num_states, num_places) axial stress at outer corners in Pa
+    shear: Array  #: (num_plates, num_states, num_places) mean shear stress in Pa, not negative
+    slenderness: Array  #: (num_plates, 1, 1) width for buckling over thickness
 
     @property
-    def slenderness(self) -> float:
-        """The width for buckling over the thickness."""
-        return self.width / self.plate.thickness
+    def strengths(self) -> Array:
+        """The yield strengths (num_plates, 1, 1) in Pa; NaN where unknown."""
+        known = [self.segment.strength(plate) or np.nan for plate in self.plates]
+        return np.array(known)[:, None, None]
 
 
 def normal_coefficient(ratio: float | Array) -> Array:
@@ -73,7 +76,7 @@ def stress_ratio(edges: Array) -> Array:
 
 def panel_factor(
     material: Material,
-    slenderness: float,
+    slenderness: float | Array,
     edges: tuple[float, float] | Array,
     shear: float | Array,
 ) -> Array:
@@ -83,7 +86,7 @@ def panel_factor(
 
     Args:
         material: isotropic material.
-        slenderness: width over thickness.
+        slenderness: width over thickness, (...) or a number.
         edges: axial stresses (2, ...) at both edges in Pa, positive in tension.
         shear: shear stress (...) in Pa.
     """
@@ -102,12 +105,11 @@ def measure_plates(states: States) -> Iterator[Measured]:
 
     Plates without compression and shear have none.
     """
-    for plate in plate_stresses(states):
-        factors = panel_factor(plate.segment.material, plate.slenderness, plate.edges, plate.shear)
-        if np.isfinite(factors).any():
-            at = plate.x, None, None
-            name, of = plate.segment.name, plate.plate.name
-            yield Measured("plate_buckling", name, of, factors, states.time, at)
+    for found in plate_stresses(states):
+        name, at = found.segment.name, (found.x, None, None)
+        for plate, factors in zip(found.plates, _elastic_factor(found), strict=True):
+            if np.isfinite(factors).any():
+                yield Measured("plate_buckling", name, plate.name, factors, states.time, at)
 
 
 def weakest_plates(rows: Rows) -> list[Row]:
@@ -120,10 +122,10 @@ def weakest_plates(rows: Rows) -> list[Row]:
     return [*weakest.values()]
 
 
-def plate_stresses(states: States) -> Iterator[PlateStress]:
-    """Yield the stresses of each plate of segments with known sections.
+def plate_stresses(states: States) -> Iterator[PlateStresses]:
+    """Yield the stresses of the plates of each segment with a known section.
 
-    A tapered segment has a section of its own at each place.
+    A tapered segment has a section of its own at each place, each with its stresses.
     """
     for number, segment in enumerate(states.boom.segments):
         x, curves = states.model.lines[number].x, states.section_forces(number)
@@ -133,13 +135,13 @@ def plate_stresses(states: States) -> Iterator[PlateStress]:
         for part in [slice(k, k + 1) for k in range(x.size)] if tapered else [slice(None)]:
             of_part = {name: values[:, part] for name, values in curves.items()}
             section = segment.section_at(float(x[part][0]))
-            yield from _plates(segment, section, x[part], of_part)
+            yield _of_section(segment, section, x[part], of_part)
 
 
-def _plates(
+def _of_section(
     segment: Segment, section: Section, x: Array, curves: Mapping[LineQuantity, Array]
-) -> Iterator[PlateStress]:
-    """Yield the stresses of each plate under section forces (num_states, num_places)."""
+) -> PlateStresses:
+    """Return the stresses of plates under section forces (num_states, num_places)."""
     names: tuple[LineQuantity, ...] = (
         "moment", "lateral_moment", "shear", "lateral_shear", "torque",
     )  # fmt: skip
@@ -149,50 +151,77 @@ def _plates(
     mean = curves["normal"] / section.area
     along_y = lateral / section.lateral_second_moment_of_area
     along_z = moment / section.second_moment_of_area
-    forces = [
-        (shear, dict(section.shear_plates("z"))),
-        (lateral_shear, dict(section.shear_plates("y"))),
-    ]
-    corners = np.transpose(outer_corners(section))
-    for k, (plate, width) in enumerate(zip(section.plates, section.buckling_widths, strict=True)):
-        outer = corners[[k, (k + 1) % len(section.plates)]]
-        edges, fibres = (
-            np.array([mean + along_y * y + along_z * z for y, z in ends])
-            for ends in ((plate.start, plate.end), outer)
-        )
-        along = sum(np.abs(force * shares.get(k, 0.0)) for force, shares in forces)
-        flow = along / plate.length + np.abs(torque) / (2.0 * section.enclosed_area)
-        yield PlateStress(segment, plate, x, edges, fibres, flow / plate.thickness, width)
+    data = _plate_data(section)
+    edges, fibres = (mean + along_y * y + along_z * z for y, z in (data.edges, data.fibres))
+    along = np.abs(shear * data.shares_z) + np.abs(lateral_shear * data.shares_y)
+    flow = along / data.lengths + np.abs(torque) / (2.0 * section.enclosed_area)
+    return PlateStresses(
+        segment, section.plates, x, edges, fibres, flow / data.thicknesses, data.slenderness
+    )
 
 
-def reduced_stress(
-    plate: PlateStress, strength: float, curve: Sequence[tuple[float, float]] = ()
-) -> Array:
-    """Return the equivalent stress (num_states, num_places) of a plate in Pa, with buckling.
+class _PlateData(NamedTuple):
+    """Data of the plates of a section; numbers of plates are (num_plates, 1, 1)."""
+
+    edges: Array  #: (2, 2, num_plates, 1, 1) y and z in m of the start and the end of mid-lines
+    fibres: Array  #: (2, 2, num_plates, 1, 1) y and z in m of the outer corners
+    shares_z: Array  #: parts of plates of a shear force along z
+    shares_y: Array  #: parts of plates of a shear force along y
+    lengths: Array  #: lengths of mid-lines in m
+    thicknesses: Array  #: thicknesses in m
+    slenderness: Array  #: width for buckling over thickness
+
+
+# Combinations and load cases share the sections of a case.
+@lru_cache(maxsize=256)
+def _plate_data(section: Section) -> _PlateData:
+    plates = section.plates
+    corners = np.array(outer_corners(section))
+    ends = np.transpose([[plate.start for plate in plates], [plate.end for plate in plates]])
+    edges = ends.transpose(0, 2, 1)
+    fibres = np.stack([corners, np.roll(corners, -1, axis=1)], axis=1)
+    shares_z, shares_y = np.zeros((2, len(plates)))
+    for k, share in section.shear_plates("z"):
+        shares_z[k] = share
+    for k, share in section.shear_plates("y"):
+        shares_y[k] = share
+    lengths, walls = np.transpose([(plate.length, plate.thickness) for plate in plates])
+    slenderness = np.array(section.buckling_widths) / walls
+    data = edges, fibres, shares_z, shares_y, lengths, walls, slenderness
+    return _PlateData(*(np.asarray(each)[..., None, None] for each in data))
+
+
+def reduced_stress(stresses: PlateStresses, curve: Sequence[tuple[float, float]] = ()) -> Array:
+    """Return the equivalent stress (num_plates, num_states, num_places) in Pa, with buckling.
 
     √((σ/ρ)² + 3 (τ/χ)²) with the largest compression σ of the mid-line (EN 1993-1-5, 10 (5) b).
+    It is NaN for plates without yield strength.
 
     Args:
-        plate: stresses of a plate.
-        strength: yield strength in Pa.
+        stresses: stresses of plates.
         curve: pairs of slenderness and reduction factor, for ρ and χ; if empty, :func:`winter` and
             :func:`shear_reduction` apply.
     """
-    largest_compression = np.maximum(-plate.edges.min(axis=0), 0.0)
-    slenderness = relative_slenderness(plate, strength)
-    along, across = reduction_factors(slenderness, stress_ratio(plate.edges), curve)
-    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * plate.shear / across))
+    largest_compression = np.maximum(-stresses.edges.min(axis=0), 0.0)
+    slenderness = relative_slenderness(stresses)
+    along, across = reduction_factors(slenderness, stress_ratio(stresses.edges), curve)
+    return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * stresses.shear / across))
 
 
-def relative_slenderness(plate: PlateStress, strength: float) -> Array:
-    """Return the slenderness λ̄ (num_states, num_places) of a plate with a yield strength in Pa."""
-    largest_compression = np.maximum(-plate.edges.min(axis=0), 0.0)
-    equivalent = np.sqrt(largest_compression**2 + 3.0 * plate.shear**2)
-    critical = panel_factor(plate.segment.material, plate.slenderness, plate.edges, plate.shear)
+def relative_slenderness(stresses: PlateStresses) -> Array:
+    """Return the slenderness λ̄ (num_plates, num_states, num_places); NaN without strength."""
+    largest_compression = np.maximum(-stresses.edges.min(axis=0), 0.0)
+    equivalent = np.sqrt(largest_compression**2 + 3.0 * stresses.shear**2)
     with np.errstate(divide="ignore"):
         # Without stress the factor is infinite, and the slenderness zero.
-        relative = np.where(equivalent > 0.0, strength / equivalent, 0.0) / critical
-    return np.asarray(np.sqrt(relative))
+        relative = np.where(equivalent > 0.0, stresses.strengths / equivalent, 0.0)
+    return np.asarray(np.sqrt(relative / _elastic_factor(stresses)))
+
+
+def _elastic_factor(stresses: PlateStresses) -> Array:
+    """Return the factors (num_plates, num_states, num_places) at which plates buckle."""
+    material, slenderness = stresses.segment.material, stresses.slenderness
+    return panel_factor(material, slenderness, stresses.edges, stresses.shear)
 
 
 def reduction_factors(

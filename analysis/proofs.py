@@ -8,13 +8,12 @@ section forces of second order.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from protractile.analysis.plate_buckling import (
-    PlateStress,
     plate_stresses,
     reduced_stress,
     reduction_factors,
@@ -33,9 +32,6 @@ BY_BEAMS = "yield", "plate", "column", "pad", "cylinder", "pin", "deflection"
 # Relative difference below which utilisations are equal.
 _EQUAL = 1.0e-9
 
-# Kinds of proofs by a shell, and the kind that requests each.
-_OF_SHELLS = {"patch": "yield", "buckling": "plate"}
-
 
 class Resistance(NamedTuple):
     """Factors by which resistances are divided."""
@@ -50,7 +46,7 @@ class Resistance(NamedTuple):
 
 def proofs(
     states: States,
-    rows: Rows,
+    rows: Callable[[], Rows],
     requested: Collection[str],
     resistance: Resistance,
     curve: ReductionCurve = (),
@@ -60,9 +56,11 @@ def proofs(
 ) -> Iterator[Row]:
     """Yield the proofs of states for which the boom has numbers.
 
+    Only those that are requested are computed.
+
     Args:
         states: states under the loads of a combination.
-        rows: extremes of these states, and wall stresses of a shell.
+        rows: function that returns extremes of these states, and wall stresses of a shell.
         requested: kinds of proofs, of :data:`BY_BEAMS`; ``yield`` and ``plate`` include those by a
             shell.
         resistance: factors on resistances.
@@ -71,19 +69,20 @@ def proofs(
         critical_factor: buckling factor of the axial forces; None if it is unknown.
         buckling: buckling of the segments of a shell.
     """
-    proved = [
-        *(_of_plates(states, resistance, curve) if {"yield", "plate"} & {*requested} else ()),
-        *_of_shells(states, rows, resistance, curve, buckling),
-        *_of_forces(states, rows, resistance),
-        *_of_column(states, resistance, critical_factor),
-    ]
-    if permitted_tip is not None:
-        (tip,) = rows.where(quantity="tip")
-        proved.append(_proof("deflection", "tip", "", tip.value, permitted_tip))
-    model, state = rows[0].model, rows[0].state
-    for proof in proved:
-        if _OF_SHELLS.get(proof.quantity, proof.quantity) in requested:
-            yield proof._replace(model=model, state=state)
+    kinds = {*requested}
+    if kinds & {"yield", "plate"}:
+        yield from _of_plates(states, kinds, resistance, curve)
+    if "yield" in kinds:
+        yield from _of_walls(rows(), resistance)
+    if "plate" in kinds:
+        yield from _of_shells(states, resistance, curve, buckling)
+    if kinds & {"pad", "cylinder", "pin"}:
+        yield from (row for row in _of_forces(states, rows(), resistance) if row.quantity in kinds)
+    if "column" in kinds:
+        yield from _of_column(states, resistance, critical_factor)
+    if "deflection" in kinds and permitted_tip is not None:
+        (tip,) = rows().where(quantity="tip")
+        yield _proof("deflection", "tip", "", tip.value, permitted_tip)
 
 
 def governing(proved: Iterable[Row]) -> Rows:
@@ -107,60 +106,65 @@ def _proof(
     return Row("", "", True, kind, part, place, abs(effect), x, limit=limit)
 
 
-def _of_plates(states: States, resistance: Resistance, curve: ReductionCurve) -> Iterator[Row]:
+def _of_plates(
+    states: States, kinds: Collection[str], resistance: Resistance, curve: ReductionCurve
+) -> Iterator[Row]:
     """Yield the proofs of strength and buckling of each plate by section forces."""
-    for plate, strength in strong_plates(states):
-        equivalent = np.sqrt(np.abs(plate.fibres).max(axis=0) ** 2 + 3.0 * plate.shear**2)
-        reduced = reduced_stress(plate, strength, curve)
-        for kind, stress, factor in (
-            ("yield", equivalent, resistance.material),
-            ("plate", reduced, resistance.stability),
-        ):
-            step, at = np.unravel_index(int(stress.argmax()), stress.shape)
-            where = plate.segment.name, plate.plate.name
-            yield _proof(
-                kind, *where, float(stress[step, at]), strength / factor, float(plate.x[at])
-            )
+    for found in plate_stresses(states):
+        strengths = found.strengths
+        proved = []
+        if "yield" in kinds:
+            axial = np.abs(found.fibres).max(axis=0)
+            equivalent = np.sqrt(axial**2 + 3.0 * found.shear**2)
+            proved.append(("yield", equivalent, resistance.material))
+        if "plate" in kinds:
+            proved.append(("plate", reduced_stress(found, curve), resistance.stability))
+        for k, (plate, strength) in enumerate(zip(found.plates, strengths.ravel(), strict=True)):
+            for kind, stresses, factor in proved if np.isfinite(strength) else ():
+                stress = stresses[k]
+                step, at = np.unravel_index(int(stress.argmax()), stress.shape)
+                where, limit = (found.segment.name, plate.name), float(strength) / factor
+                yield _proof(kind, *where, float(stress[step, at]), limit, float(found.x[at]))
 
 
-def strong_plates(states: States) -> Iterator[tuple[PlateStress, float]]:
-    """Yield the stresses of each plate with a yield strength, and this strength in Pa."""
-    for plate in plate_stresses(states):
-        strength = plate.segment.strength(plate.plate)
-        if strength is not None:
-            yield plate, strength
+def most_slender_plate(states: Iterable[States]) -> tuple[float, str, str] | None:
+    """Return the largest slenderness λ̄ of a plate, and the names of its segment and itself.
 
-
-def most_slender_plate(states: Iterable[States]) -> tuple[float, PlateStress] | None:
-    """Return the largest slenderness λ̄ of a plate in all states, and the plate; None if none."""
+    None if no plate has a yield strength.
+    """
     slender = (
-        (float(relative_slenderness(plate, strength).max()), plate)
+        (float(slenderness.max()), found.segment.name, plate.name)
         for each in states
-        for plate, strength in strong_plates(each)
+        for found in plate_stresses(each)
+        for plate, slenderness in zip(found.plates, relative_slenderness(found), strict=True)
+        if np.isfinite(slenderness).all()
     )
     return max(slender, key=lambda row: row[0], default=None)
 
 
-def _of_shells(
-    states: States,
-    rows: Rows,
-    resistance: Resistance,
-    curve: ReductionCurve,
-    buckling: Iterable[WallBuckling],
-) -> Iterator[Row]:
-    """Yield the proofs by wall stresses and buckling factors of a shell."""
+def _of_walls(rows: Rows, resistance: Resistance) -> Iterator[Row]:
+    """Yield the proofs of strength by the wall stresses of a shell."""
     for row in rows.where(quantity="wall_stress"):
         if row.limit is not None:
             limit = row.limit / resistance.material
             yield _proof("patch", row.part, "", row.value, limit, row.x)
+
+
+def _of_shells(
+    states: States,
+    resistance: Resistance,
+    curve: ReductionCurve,
+    buckling: Iterable[WallBuckling],
+) -> Iterator[Row]:
+    """Yield the proofs of stability by the buckling factors of the segments of a shell."""
     for result in buckling:
-        plates = [plate for plate in plate_stresses(states) if plate.segment.name == result.segment]
+        plates = [found for found in plate_stresses(states) if found.segment.name == result.segment]
         strength = plates[0].segment.yield_strength if plates else None
         if strength is None or not result.factors:
             continue
         stress = max(
-            float(np.hypot(np.abs(plate.edges).max(axis=0), np.sqrt(3.0) * plate.shear).max())
-            for plate in plates
+            float(np.hypot(np.abs(found.edges).max(axis=0), np.sqrt(3.0) * found.shear).max())
+            for found in plates
         )
         slenderness = float(np.sqrt(strength / (stress * result.factors[0])))
         reduction = float(min(reduction_factors(slenderness, 1.0, curve)))

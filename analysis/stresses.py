@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from operator import attrgetter
 
 import numpy as np
@@ -75,6 +76,8 @@ def _corners(segment: Segment, x: Array, spatial: bool) -> tuple[Array, Array, A
     return np.zeros_like(z[heights]), z[heights], np.array(least)
 
 
+# Load cases and combinations have the same sections.
+@lru_cache(maxsize=256)
 def outer_corners(section: Section) -> tuple[Array, Array]:
     """Return y and z (num_corners,) in m of the outer corners of the plates, from the centroid.
 

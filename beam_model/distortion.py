@@ -123,8 +123,7 @@ def distortion_compliance(segment: Segment, presses: tuple[Press, ...]) -> Array
 
     around = [collars_at(x) for x in 0.5 * (axis.nodes[:-1] + axis.nodes[1:])]
     frames = {
-        # Sections are frozen dataclasses, which have a hash. A protocol cannot tell this.
-        collars: _frame(segment.material, section, collars)  # type: ignore[arg-type]
+        collars: _frame(segment.material, section, collars)
         for collars in dict.fromkeys((*around, *map(collars_at, places)))
     }
     rows = [np.kron(axis.at(press.x), frames[collars_at(press.x)].row(press)) for press in presses]

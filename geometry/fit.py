@@ -77,8 +77,7 @@ def room(
     """
     first, last = max(outer.start, inner.start + extension), min(outer.end, inner.end + extension)
     sizes = [
-        # Sections have a hash, which a protocol cannot demand of dataclasses.
-        free_room(outer.section_at(x), inner.section_at(x - extension), joint.play)  # type: ignore[arg-type]
+        free_room(outer.section_at(x), inner.section_at(x - extension), joint.play)
         for x in (first, last)
     ]
     heights, widths = zip(*sizes, strict=True)

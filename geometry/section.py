@@ -123,6 +123,10 @@ class Face(NamedTuple):
 class Section(Protocol):
     """Thin-walled section with one cell."""
 
+    def __hash__(self) -> int:
+        """Return a hash, by which results of equal sections are kept."""
+        return object.__hash__(self)
+
     @property
     def area(self) -> float:
         """The cross-sectional area in m²."""

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Annotated, NamedTuple
 
 import numpy as np
@@ -24,6 +25,16 @@ class Strip(NamedTuple):
     wall: int
     low: float
     high: float
+
+
+# Load cases and combinations have the same sections and collars.
+@lru_cache(maxsize=256)
+def _strips(section: Section, walls: tuple[str, ...], low: float, high: float) -> tuple[Strip, ...]:
+    return tuple(
+        Strip(k, low, min(high, 0.5 * plate.length))
+        for k, plate in enumerate(section.plates)
+        if (not walls or plate.name in walls) and low < 0.5 * plate.length
+    )
 
 
 @part
@@ -57,14 +68,9 @@ class Collar:
         """The x of the midpoint in m."""
         return 0.5 * sum(self.span)
 
-    def strips(self, section: Section) -> list[Strip]:
+    def strips(self, section: Section) -> tuple[Strip, ...]:
         """Return the parts of the walls of a section that the collar covers."""
-        low, high = self.across or (0.0, np.inf)
-        return [
-            Strip(k, low, min(high, 0.5 * plate.length))
-            for k, plate in enumerate(section.plates)
-            if (not self.walls or plate.name in self.walls) and low < 0.5 * plate.length
-        ]
+        return _strips(section, self.walls, *(self.across or (0.0, np.inf)))
 
     def width(self, section: Section) -> float:
         """Return the total width of the collar's strips around a section in m."""

@@ -97,6 +97,13 @@ def moments(plates: Sequence[Plate], radii: Array) -> Array:
 
 # Load cases and combinations have the same sections.
 @lru_cache(maxsize=256)
+def outer_size(section: Section) -> tuple[float, float]:
+    """Return the width along y and the height along z in m of the outer surface of a section."""
+    width, height = np.ptp(trapezoids(section.plates)[:, :2], axis=(0, 1)).tolist()
+    return width, height
+
+
+@lru_cache(maxsize=256)
 def free_room(outer: Section, inner: Section, play: float = 0.0) -> tuple[float, float]:
     """Return the total clearances in m, along z and along y, of a section within another one.
 

@@ -14,7 +14,7 @@ from protractile.geometry.joint import Joint
 from protractile.geometry.load import Load, PartialLoad
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import SAME_PLACE, Segment
-from protractile.geometry.walls import trapezoids
+from protractile.geometry.walls import outer_size
 
 # Density of air in kg/m³ for the pressure of a wind speed (EN 13001-2, ISO 4302).
 AIR_DENSITY = 1.25
@@ -76,8 +76,7 @@ def wind_loads(
             raise BoomError(f"segments[{number}].section", what)
         steps = 1 if segment.head_section is None else _STEPS
         for a, b in pairwise(np.linspace(start, end, steps + 1).tolist()):
-            surface = trapezoids(segment.section_at(0.5 * (a + b)).plates)[:, :2]
-            width, height = np.ptp(surface, axis=(0, 1)).tolist()
+            width, height = outer_size(segment.section_at(0.5 * (a + b)))
             sizes: dict[Direction, tuple[float, float]] = {"y": (height, lateral), "z": (width, up)}
             for along, (size, part) in sizes.items():
                 if abs(part) > SAME_PLACE:

@@ -37,14 +37,15 @@ from protractile.runs.pipeline.tipping import foot_of, hook_place
 
 # Deviation of the radius in m at which the luffing angle is found, most steps to find it, and most
 # proofs that are followed to a capacity.
-_RADIUS, _STEPS, _MOST_PROOFS = 2.0e-6, 30, 8
+_RADIUS, _STEPS, _MOST_PROOFS = 2.0e-5, 30, 8
 # Reasons without a proof that limit a capacity.
 LARGEST, OUT_OF_REACH = "largest payload", "out of reach"
 NO_EQUILIBRIUM, STROKE = "no equilibrium", "stroke of the cylinder"
 
-# Largest distance of a governing utilisation below 1, smallest relative step of the payload towards
-# it and towards the limit of reach, and the fraction of the largest payload that is tried first.
-_ACCURACY, _STEP, _REACH, _FIRST = 4.0e-7, 1.0e-7, 5.0e-4, 0.02
+# Largest distance of a governing utilisation below 1, the utilisation that is sought, smallest
+# relative step of the payload towards it and towards the limit of reach, and the fraction of the
+# largest payload that is tried first.
+_ACCURACY, _AIM, _STEP, _REACH, _FIRST = 1.0e-6, 1.0 - 3.0e-7, 1.0e-7, 5.0e-4, 0.02
 
 
 class Configuration(NamedTuple):
@@ -170,8 +171,7 @@ class Search:
                 proofs = self._proofs(payload, followed)
                 utilisation = max((row.utilisation or 0.0 for row in proofs), default=0.0)
                 # On the safe side, a proof within the accuracy below 1 counts as the root.
-                aim = 1.0 - 0.5 * _ACCURACY
-                return 0.0 if abs(utilisation - aim) <= 0.5 * _ACCURACY else utilisation - aim
+                return 0.0 if -_ACCURACY <= utilisation - 1.0 <= 0.0 else utilisation - _AIM
             except NoCapacityError as error:
                 failures[payload] = str(error)
                 return 1.0

@@ -100,14 +100,16 @@ def complete_system(system: GapSystem, case: Case, boom: Boom, lines: Sequence[L
 
     ``lines`` are the lines along the segments, which changes of axial forces need.
     """
-    system = with_elastic_drives(system, case, boom)
-    system = replace(system, travels=[*system.travels, *axial_travels(system, boom, lines)])
+    if boom.telescopes:
+        system = with_elastic_drives(system, case, boom)
+    if boom.axial_changes:
+        system = replace(system, travels=[*system.travels, *axial_travels(system, boom, lines)])
     return with_hanging_load(system, case, boom)
 
 
 def axial_travels(system: GapSystem, boom: Boom, lines: Sequence[Line]) -> Iterator[Travel]:
     """Yield a :class:`Travel` without moving contacts for each change of axial forces."""
-    if not (boom.axial_changes and lines):
+    if not lines:
         return
     deflections = [dict(line.deflections) for line in lines]
     # Contacts count as stiff as the softest segment, so that no direction lacks stiffness.

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from protractile.analysis.fatigue import HAS_RAINFLOW, Spectrum, details, fatigue_proofs
 from protractile.analysis.proofs import Resistance, governing, most_slender_plate, proofs
 from protractile.analysis.quantities import PROVED
-from protractile.analysis.rows import Row, Rows
+from protractile.analysis.rows import COMBINATION, Row, Rows
 from protractile.analysis.states import States
 from protractile.beam_model.static_model import estimate_critical_factor
 from protractile.dynamics.failure import NumericsError
@@ -76,9 +76,9 @@ def proofs_of(
         factor = estimate_critical_factor(state.states.boom)
     if "tipping" in requested:
         yield from tipping_proofs(state.combined, state.states)
-    yield from proofs(
+    proved = proofs(
         state.states,
-        state.rows,
+        lambda: state.rows,
         requested,
         Resistance(**table.resistance.model_dump()),
         case.buckling.curve if case.buckling else (),
@@ -86,6 +86,8 @@ def proofs_of(
         factor,
         state.buckling,
     )
+    name = COMBINATION + state.combined.name
+    yield from (row._replace(model=state.model, state=name) for row in proved)
 
 
 def _fatigue(case: Case) -> Iterator[Row]:
@@ -137,10 +139,10 @@ def _curve_note(case: Case, states: Sequence[CombinationState]) -> Iterator[str]
     )
     end = case.buckling.curve[-1][0]
     if most is not None and most[0] > end:
-        slenderness, plate = most
+        slenderness, segment, plate = most
         yield (
             f"`buckling.curve` ends at a slenderness of {end:g}, and the "
-            f"{wall_name(plate.plate.name)} of {plate.segment.name} has {slenderness:.3g}: beyond "
+            f"{wall_name(plate)} of {segment} has {slenderness:.3g}: beyond "
             "its end the factor falls with the square of the slenderness. Give further pairs."
         )
 
