@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cache
-from math import acos, atan2, degrees, hypot
+from math import acos, atan2, cos, degrees, hypot, radians
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -102,11 +102,14 @@ class NoCapacityError(Exception):
 
 @dataclass
 class Search:
-    """Search for the capacity of a configuration at a radius in m."""
+    """Search for the capacity of a configuration at a radius in m, or at a luffing angle."""
 
     case: Case  #: case with a chart
     configuration: Configuration  #: the configuration
-    radius: float  #: horizontal distance in m of the loaded tip from the slewing axis
+    #: horizontal distance in m of the loaded tip from the slewing axis; of the straight boom for a
+    #: luffing angle
+    radius: float
+    angle: float | None = None  #: luffing angle in degrees; None if it follows from the radius
     #: load case and rated state by payload in kg
     points: dict[float, tuple[LoadCaseTable, States]] = field(default_factory=dict)
     #: states of a combination by payload in kg and name
@@ -149,8 +152,8 @@ class Search:
         straight, _ = hook_place(self.case, states.boom, table.angle, 0.0)
         force = float(states.observed(name)[0]) if states.boom.cylinders else None
         return Cell(
-            self.configuration, self.radius, capacity, reason, table.angle, height, tip,
-            radius - straight, force, tuple(proofs.values()),
+            self.configuration, self.radius if self.angle is None else radius, capacity, reason,
+            table.angle, height, tip, radius - straight, force, tuple(proofs.values()),
         )  # fmt: skip
 
     def _root(self, first: float, followed: _Key) -> tuple[float, str]:
@@ -237,7 +240,7 @@ class Search:
             assert table.angle is not None
             found = _tip(states)
             reached, _ = hook_place(self.case, states.boom, table.angle, found)
-            if abs(reached - self.radius) < _RADIUS:
+            if self.angle is not None or abs(reached - self.radius) < _RADIUS:
                 self.points[payload], self.tips[payload] = (table, states), found
                 return table, states
             if last is not None and guess != last[0]:
@@ -276,6 +279,8 @@ class Search:
         Raises:
             NoCapacityError: the radius is out of reach.
         """
+        if self.angle is not None:
+            return self.angle
         chassis, head, length = self.case.chassis, self.case.head, self.configuration.length
         if head is not None:
             length, tip = length + head.ahead, tip - head.below
@@ -288,11 +293,16 @@ class Search:
 
 
 def solve(case: Case, configuration: Configuration) -> list[Cell]:
-    """Return the cells of a configuration at all radii of the chart."""
+    """Return the cells of a configuration at all radii or luffing angles of the chart."""
+    chart, foot = chart_of(case), case.chassis.foot_ahead if case.chassis else 0.0
+    searches = [Search(case, configuration, radius) for radius in chart.radii]
+    for angle in chart.luffing:
+        straight = foot + configuration.length * cos(radians(angle))
+        searches.append(Search(case, configuration, straight, angle))
     cells: list[Cell] = []
     near = None
-    for radius in chart_of(case).radii:
-        cells.append(Search(case, configuration, radius).cell(near))
+    for search in searches:
+        cells.append(search.cell(near))
         near = cells[-1] if cells[-1].proofs else near
     return cells
 

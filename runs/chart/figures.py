@@ -48,8 +48,8 @@ def _over_radius(chart: Chart) -> Figure:
             values = np.array([100.0 * (cell.proofs[0].utilisation or 0.0) for cell in carrying])
         at = np.array([cell.radius for cell in carrying])
         curves.append(Curve(_name(cells), values, color, marker="o", at=at))
-    radii = np.array(chart_of(chart.case).radii)
-    shown = Plot(np.array([0.0, 1.05 * radii.max()]), curves, (heading,), along="radius (m)")
+    farthest = max(cell.radius for cells in chart.cells for cell in cells)
+    shown = Plot(np.array([0.0, 1.05 * farthest]), curves, (heading,), along="radius (m)")
     title = "The chart over the radius"
     return Figure("over-radius", title, "One curve for each length.", chart=shown, main=True)
 

@@ -21,9 +21,11 @@ class ChartTable(CaseTable):
 
     load_case: Name
     """the name of the load case whose payload is searched"""
-    radii: Annotated[tuple[Positive, ...], In("m"), Field(min_length=1, max_length=_MOST)]
+    radii: Annotated[tuple[Positive, ...], In("m"), Field(max_length=_MOST)] = ()
     """the horizontal distances in m of the loaded tip from the slewing axis of the chassis, or from
     the foot pin without chassis"""
+    luffing: Annotated[tuple[Angle, ...], In("deg"), Field(max_length=_MOST)] = ()
+    """the luffing angles in degrees, in place of radii"""
     extensions: Annotated[
         tuple[Annotated[dict[str, NotNegative], In("m")], ...], Field(max_length=_MOST)
     ] = ()

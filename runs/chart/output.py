@@ -65,7 +65,9 @@ def utilisation(cell: Cell) -> str:
 def chart_table(chart: Chart) -> Table:
     """Return the table of capacities over radius and length."""
     keys = chart_of(chart.case)
-    columns, cell_text = [Column("radius", keys.radii, ".4g", "m")], text_of(chart)
+    radius, angle = ("radius", keys.radii, "m"), ("luffing angle", keys.luffing, "deg")
+    name, rows, unit = radius if keys.radii else angle
+    columns, cell_text = [Column(name, rows, ".4g", unit)], text_of(chart)
     for cells in chart.cells:
         columns.append(Column(f"{number(cells[0].length)} m", [cell_text(cell) for cell in cells]))
     kinds = {kind_of(cell) for cells in chart.cells for cell in cells if cell.capacity}
@@ -74,7 +76,7 @@ def chart_table(chart: Chart) -> Table:
     if keys.payload is not None:
         what = f"Governing utilisations in % with {number(keys.payload)} kg"
     governing = ", ".join(f"{letter} {name}" for letter, name in letters.items())
-    notes = [f"{what}, over radius and boom length. Governing: {governing}.", *_reasons(chart)]
+    notes = [f"{what}, over {name} and boom length. Governing: {governing}.", *_reasons(chart)]
     notes += _not_proved(chart)
     return Table("Load chart", columns, notes, "chart")
 

@@ -124,6 +124,8 @@ def plan(case: Case, file: str) -> list[Configuration]:
     if chart.load_case not in names:
         what = f"{chart.load_case!r} is no load case; give {choices(names) or '[[load_case]]'}"
         raise BadInput(file, "chart.load_case", what)
+    if bool(chart.radii) == bool(chart.luffing):
+        raise BadInput(file, "chart.radii", "give radii, or luffing, the angles in their place")
     if chart.extensions and chart.lengths:
         raise BadInput(file, "chart.lengths", "extensions are given; leave one of them out")
     inner = [one.inner for one in case.joints if one.extension is not None]

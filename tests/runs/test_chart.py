@@ -225,6 +225,21 @@ def test_the_tip_hangs_at_the_radius() -> None:
         assert cell.droop == pytest.approx(-cell.tip * sin(turn), abs=1.0e-5)
 
 
+def test_rows_by_luffing_angle_have_the_capacities_at_their_radii() -> None:
+    """Reference: the cells by radius, at the radii of the loaded tip."""
+    tables = flexible()
+    case = pt.load_case(
+        tables | {"chart": tables["chart"] | {"radii": [], "luffing": [30.0, 60.0]}}
+    )
+    (configuration,) = run.plan(case, "case")
+    for cell in solve(case, configuration):
+        assert cell.capacity is not None
+        assert cell.angle in (30.0, 60.0)
+        same = Search(pt.load_case(tables), configuration, cell.radius).cell()
+        assert same.capacity == pytest.approx(cell.capacity, rel=1.0e-5)
+        assert same.angle == pytest.approx(cell.angle, abs=1.0e-3)
+
+
 @pytest.mark.parametrize("radius", [6.0, 10.0])
 def test_the_drooped_radius_is_near_that_of_elasticas(radius: float) -> None:
     """Reference: analytic, two elasticas with play; small deflections miss (w/L)² of the radius."""
@@ -314,6 +329,8 @@ def test_configurations_follow_the_table_telescoping() -> None:
     [
         ({"chart": {"load_case": "x", "radii": [4.0]}},
          "chart.load_case: 'x' is no load case; give 'lift'"),
+        ({"chart": {"load_case": "lift"}},
+         "chart.radii: give radii, or luffing, the angles in their place"),
         ({"chart": {"load_case": "lift", "radii": [15.0]}},
          "chart.radii[1]: must be at most 14 m, the reach of the longest boom, got 15 m"),
         ({"chart": {"load_case": "lift", "radii": [4.0], "lengths": [15.0]}},
