@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
+from math import hypot
 from operator import attrgetter
 from typing import Annotated, Any
 
@@ -54,14 +55,16 @@ class Thrust:
 
 @part
 class Lead:
-    """Force of the rope from the head back to the winch, which stands on the axis of the boom.
+    """Force of the rope from the head on the axis of the boom back to the winch.
 
     The rope points to the winch as the boom deflects. Second-order work of its force S over the
-    distance ℓ to the winch is that of an axial force and of a spring S/ℓ across the axis
-    (Timoshenko and Gere 1961, article 2.6: a force through a fixed point).
+    distance ℓ to the winch is that of an axial force S cos β and of a spring S/ℓ across the axis,
+    S cos² β/ℓ in the plane of the angle β between rope and axis (Timoshenko and Gere 1961, article
+    2.6: a force through a fixed point).
 
-    >>> pt.Lead(segment=1, x=14.0, force=28e3).stiffness
-    2000.0
+    >>> lead = pt.Lead(segment=1, x=14.0, force=28e3)
+    >>> lead.stiffness("z"), lead.components[0]
+    (2000.0, -28000.0)
     """
 
     segment: SegmentRef
@@ -71,12 +74,21 @@ class Lead:
     force: Annotated[Number, In("N")]
     """the force in N"""
     winch: Annotated[Number, In("m")] = 0.0
-    """the x in m of the winch, at or behind the foot, where nothing deflects"""
+    """the x in m of the winch, where nothing deflects"""
+    depth: Annotated[Number, In("m")] = 0.0
+    """the depth in m of the winch below the axis"""
 
     @property
-    def stiffness(self) -> float:
-        """The stiffness S/ℓ in N/m across the axis."""
-        return self.force / (self.x - self.winch)
+    def components(self) -> tuple[float, float]:
+        """The components of the force along x and z in N."""
+        along, up = self.winch - self.x, -self.depth
+        return self.force * along / hypot(along, up), self.force * up / hypot(along, up)
+
+    def stiffness(self, direction: Direction) -> float:
+        """Return the stiffness in N/m across the axis in a direction."""
+        distance = hypot(self.winch - self.x, self.depth)
+        part = ((self.winch - self.x) / distance) ** 2 if direction == "z" else 1.0
+        return self.force * part / distance
 
 
 def with_compression(
@@ -255,7 +267,7 @@ class AxialChange:
                 for lead in self.leads:
                     if lead.segment == number:
                         head = spline(lead.x)
-                        total = total - lead.stiffness * np.outer(head, head)
+                        total = total - lead.stiffness(direction) * np.outer(head, head)
         return total
 
 

@@ -23,7 +23,7 @@ from protractile.geometry.fields import (
     part,
 )
 from protractile.geometry.load import LoadedSegment
-from protractile.geometry.place import Place, SegmentRef
+from protractile.geometry.place import Depth, Place, SegmentRef
 from protractile.geometry.support import Pin, Support
 
 # Young's modulus in Pa of the rod, of steel, and fraction of a length that is rounded in drawings.
@@ -32,12 +32,23 @@ _ROD_MODULUS, _REACH = 2.1e11, 1.0e-6
 
 @part
 class EarthPoint:
-    """A point in earth axes, from the pin of the foot about which the boom luffs."""
+    """Point in earth axes, from the pin of the foot, about which the boom luffs, or of the head."""
 
     front: Annotated[Number, In("m")]
-    """the horizontal distance in m in front of the foot pin"""
+    """the horizontal distance in m in front of the pin"""
     below: Annotated[Number, In("m")]
-    """the vertical distance in m below the foot pin"""
+    """the vertical distance in m below the pin"""
+
+    def turned(self, angle: float) -> tuple[float, float]:
+        """Return its distances in m along and above the axis of a boom at a luffing angle in rad.
+
+        >>> [round(distance, 12) for distance in pt.EarthPoint(3.0, 1.0).turned(0.5 * np.pi)]
+        [-1.0, -3.0]
+        """
+        return (
+            self.front * cos(angle) - self.below * sin(angle),
+            -self.front * sin(angle) - self.below * cos(angle),
+        )
 
 
 def _ground(value: Any) -> Any:
@@ -82,8 +93,9 @@ class Cylinder:
     """the name of the segment"""
     x: Place
     """the x of the lug in m"""
-    depth: Annotated[Number, In("m")] = 0.0
-    """the depth in m of the lug below the segment's axis, which goes through the centroid"""
+    depth: Depth = 0.0
+    """the depth in m of the lug below the segment's axis, which goes through the centroid, or from
+    a surface, { bottom = -0.1 } below that of the bottom, { top = 0.4 } below that of the top"""
     ground: Ground = field(kw_only=True)
     """the other end in m, which does not luff: { front, below }, its distances in front of and
     below the foot pin in earth axes; or [x, height above the axis] in the axes of the boom at the
@@ -208,8 +220,7 @@ class Cylinder:
         point = self.ground
         if not isinstance(point, EarthPoint):
             return self
-        along = point.front * cos(angle) - point.below * sin(angle)
-        up = -point.front * sin(angle) - point.below * cos(angle)
+        along, up = point.turned(angle)
         return replace(self, ground=(foot.x + along, up - foot.depth))
 
     def normal_force(self, x: Array, foot: Support | None) -> Array:

@@ -164,6 +164,8 @@ VALID_INPUT = {
     "tuple_type": "a list",
     "place": "a number of m, 'tail', 'head' or a distance in m from one of them such as "
     "{{ tail = 0.2 }}",
+    "depth": "a number of m below the axis, or a distance in m from an outer surface such as "
+    "{{ bottom = 0.2 }}",
     "ground": "a list of two numbers, or a table of two such as {{ front = 0.7, below = 1.1 }}",
     "modes": "a whole number above 0, or 'auto'",
     "contact_tolerance": "a number from {least} to below 1, or 'any'",
@@ -174,6 +176,8 @@ _VALID_IN_PYTHON = {
     "tuple_type": "a sequence",
     "place": "a number of m, 'tail', 'head' or a distance in m from one of them such as "
     "Distance(tail=0.2)",
+    "depth": "a number of m below the axis, or a distance in m from an outer surface such as "
+    "Level(bottom=0.2)",
     "ground": "two numbers, x and z in m",
     "dataclass_type": "a {class_name}",
     "string_pattern_mismatch": VALID_NAME,

@@ -60,7 +60,7 @@ def ground_lines(boom: Assembly, bodies: Sequence[LoadedSegment]) -> Iterator[Gr
     for lead in boom.leads:
         for direction in boom.directions:
             push = bodies[lead.segment].unit_load_vector(lead.x, direction)
-            yield GroundLine(lead.segment, push, lead.stiffness, 0.0)
+            yield GroundLine(lead.segment, push, lead.stiffness(direction), 0.0)
     for number, segment in enumerate(boom.segments):
         for support in segment.supports:
             if support.dashpot > 0.0:

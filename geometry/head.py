@@ -4,13 +4,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
+from functools import partial
 from math import hypot
 from typing import Annotated
 
 from protractile.geometry.arrays import Array
+from protractile.geometry.cylinder import EarthPoint
 from protractile.geometry.fields import HistoryRef, In, NotNegative, Number, part
 from protractile.geometry.load import Load, Moment, Torque
-from protractile.geometry.segment import SAME_PLACE
+from protractile.geometry.place import Depth, resolve_level
+from protractile.geometry.segment import SAME_PLACE, Segment
 
 
 @part
@@ -24,14 +28,35 @@ class Head:
 
     ahead: Annotated[Number, In("m")] = 0.0
     """the distance in m of the load beyond the end of the last segment, along the axis"""
-    below: Annotated[Number, In("m")] = 0.0
+    below: Depth = 0.0
     """the distance in m of the load below the axis, which goes through the centroid of the last
-    segment; negative above it"""
+    segment, negative above it, or from a surface, as the depth of a lug"""
     beside: Annotated[Number, In("m")] = 0.0
     """the distance in m of the load beside the axis, towards +y; only in space"""
     mass: Annotated[NotNegative, In("kg")] = 0.0
     """the mass in kg of the head itself, halfway between the segment's end and the load; its weight
     is of the group dead"""
+    level: EarthPoint | None = None
+    """the load's place { front, below } in earth axes from the pin at ahead and below, for a cage
+    that stays level at each luffing angle; at the pin unless given"""
+
+    def in_boom_axes(self, segment: Segment, angle: float) -> Head:
+        """Return the head on the last segment with its load in the axes of the boom.
+
+        >>> cage = pt.Head(ahead=0.2, level=pt.EarthPoint(front=0.8, below=0.5))
+        >>> cage.in_boom_axes(boom.segments[1], 0.0).ahead
+        1.0
+
+        Args:
+            segment: the last segment.
+            angle: luffing angle in rad.
+
+        Raises:
+            BoomError: the depth is from a surface, and the segment has no section.
+        """
+        head = resolve_level(self, "head", partial(segment.surfaces, segment.end))
+        along, up = (0.0, 0.0) if self.level is None else self.level.turned(angle)
+        return replace(head, ahead=head.ahead + along, below=head.below - up, level=None)
 
     def moments(
         self, segment: int, x: float, force: Array, history: HistoryRef, part: float = 1.0

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
@@ -26,7 +27,7 @@ from protractile.geometry.fields import (
     part,
 )
 from protractile.geometry.material import Material
-from protractile.geometry.place import Place, resolve_distances
+from protractile.geometry.place import Place, resolve_distances, resolve_level
 from protractile.geometry.section import Direction, Plate, Section
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Support
@@ -36,6 +37,7 @@ from protractile.geometry.taper import (
     mean_area,
     middle_section,
 )
+from protractile.geometry.walls import outer_surfaces
 
 # Fraction of a segment's length below which two x are equal: far below any part, above round-off.
 SAME_PLACE = 1.0e-10
@@ -132,6 +134,11 @@ class Segment:
                 resolve_distances(item, self.start, self.end) for item in getattr(self, group)
             )
             object.__setattr__(self, group, on_segment)
+        supports = tuple(
+            resolve_level(support, f"segment.{self.name}", partial(self.surfaces, support.x))
+            for support in self.supports
+        )
+        object.__setattr__(self, "supports", supports)
 
     @classmethod
     def of_section(
@@ -221,6 +228,10 @@ class Segment:
         if self.head_section is None:
             return self.section
         return interpolate_section(self.section, self.head_section, (x - self.start) / self.length)
+
+    def surfaces(self, x: float) -> tuple[float, float] | None:
+        """Return the z in m of the outer surfaces of bottom and top at x in m; None if unknown."""
+        return None if self.section is None else outer_surfaces(self.section_at(x))
 
     @property
     def ends(self) -> tuple[float, float]:

@@ -9,8 +9,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from protractile.geometry.fields import BoomError, In, NotNegative, Number, Positive, part
-from protractile.geometry.place import Place
+from protractile.geometry.fields import BoomError, In, NotNegative, Positive, part
+from protractile.geometry.place import Depth, Place
 from protractile.geometry.section import Direction
 
 
@@ -58,9 +58,10 @@ class Support:
     given"""
     dashpot: Annotated[NotNegative, In("N s/m")] = 0.0
     """the linear dashpot of an elastic support in N s/m, parallel to its stiffness"""
-    depth: Annotated[Number, In("m")] = 0.0
-    """the depth in m of its pin below the segment's axis, which goes through the centroid, for the
-    first support of a segment with a cylinder or axial forces"""
+    depth: Depth = 0.0
+    """the depth in m of its pin below the segment's axis, which goes through the centroid, or from
+    a surface, { bottom = 0.26 } above that of the bottom, { top = 0.4 } below that of the top; for
+    the first support of a segment with a cylinder or axial forces"""
     pin: Pin | None = None
     """the table of its pin, for the proof of the foot"""
 

@@ -5,12 +5,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from protractile.geometry.arrays import Array
 from protractile.geometry.section import Plate, Section, distance_from_line
-from protractile.geometry.segment import Segment
+
+if TYPE_CHECKING:
+    from protractile.geometry.segment import Segment
 
 # Sine of the angle between plates below which they have a butt joint instead of a mitre, which
 # would be long between different thicknesses.
@@ -61,6 +64,12 @@ def trapezoids(plates: Sequence[Plate], radii: Array | float = 0.0) -> Array:
     cut, tangent = radii * np.tan(half_turns(plates)), normal[:, ::-1] * [-1.0, 1.0]
     start, end = start + cut[:, None] * tangent, end - np.roll(cut, -1)[:, None] * tangent
     return np.stack([start + first, end + last, end - last, start - first], axis=1)
+
+
+def outer_surfaces(section: Section) -> tuple[float, float]:
+    """Return the z in m of the outer surfaces of bottom and top."""
+    heights = trapezoids(section.plates)[:, :2, 1]
+    return float(heights.min()), float(heights.max())
 
 
 def moments(plates: Sequence[Plate], radii: Array) -> Array:

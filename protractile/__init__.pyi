@@ -4,7 +4,9 @@
 # What a boom is made of
 from protractile.geometry.boom import Boom as Boom
 from protractile.geometry.cylinder import Cylinder as Cylinder
+from protractile.geometry.cylinder import EarthPoint as EarthPoint
 from protractile.geometry.place import Distance as Distance
+from protractile.geometry.place import Level as Level
 from protractile.geometry.joint import Drive as Drive
 from protractile.geometry.joint import Joint as Joint
 from protractile.geometry.joint import Pad as Pad

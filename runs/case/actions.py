@@ -6,13 +6,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import fields, replace
 from math import cos, radians, sin
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from pydantic import ValidationError
 
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import History, InitialImpulse, ReleasedLoad, Step
+from protractile.geometry.arrays import Array
 from protractile.geometry.axial import Lead, Thrust, with_compression
 from protractile.geometry.boom import Boom, BoomError, Direction, Joint, Segment, Stop
 from protractile.geometry.fields import check_kind, check_numbers, describe, error_in_python
@@ -20,6 +21,7 @@ from protractile.geometry.head import Head
 from protractile.geometry.joint import BareStop
 from protractile.geometry.load import AngularAcceleration, Load, Moment, PartialLoad
 from protractile.geometry.place import Distance, at, resolve_segments
+from protractile.geometry.section import COMPONENT
 from protractile.geometry.segment import SAME_PLACE
 from protractile.geometry.typography import choices
 from protractile.geometry.wind import wind_direction, wind_loads
@@ -44,14 +46,15 @@ def loads(case: Case, segments: Sequence[Segment], joints: Sequence[Joint]) -> I
         BoomError: a segment or section is unknown, or a history, the head or the wind is invalid.
     """
     gravity = case.gravity
-    for number, table in enumerate(case.loads, start=1):
+    for number, table in case.loads_of_segments:
         yield _load(f"load[{number}]", table)
+    for force in oblique_forces(case, segments):
+        yield from force.loads()
     last, end, extra = len(segments) - 1, segments[-1].end, _extra_weight(case)
     if extra:
         up = -1.0 if gravity is None else -gravity.cosine
         yield Load(last, "z", extra * up, end, Step())
-    if case.head is not None:
-        yield from head_moments(case, case.head, last, end)
+    yield from head_moments(case, segments)
     if case.wind is not None:
         yield from wind(case, case.wind, segments, joints)
     if gravity is not None:
@@ -141,27 +144,85 @@ def thrusts(case: Case, segments: Sequence[Segment]) -> Iterator[Thrust]:
         BoomError: a segment is unknown, or a point is outside its segment.
     """
     for number, table in enumerate(case.axial, start=1):
-        where = f"axial[{number}]"
-        name: Any = segments[-1].name if table.segment is None else table.segment
-        place: Any = Distance(head=0.0) if table.x is None else table.x
-        thrust = resolve_segments(Thrust(name, place, table.force), where, segments)
-        segments[thrust.segment].check_place(f"{where}.x", thrust.x)
-        yield thrust
+        name = segments[-1].name if table.segment is None else table.segment
+        thrust = _place_on(f"axial[{number}]", name, table.x, segments)
+        yield replace(thrust, force=table.force)
+
+
+def _place_on(where: str, name: str, x: Any, segments: Sequence[Segment]) -> Thrust:
+    """Return a force of 0 N on a segment with a name, at its end without x."""
+    place: Any = Distance(head=0.0) if x is None else x
+    thrust = resolve_segments(Thrust(name, place, 0.0), where, segments)
+    segments[thrust.segment].check_place(f"{where}.x", thrust.x)
+    return thrust
 
 
 def tip_thrusts(case: Case, segments: Sequence[Segment]) -> Iterator[Thrust]:
-    """Yield the axial forces at the tip in addition to the weights of masses of the segments."""
+    """Yield the axial forces of weights at the tip, of wind, of oblique loads and of the rope."""
     last, end, gravity, hoist = len(segments) - 1, segments[-1].end, case.gravity, case.hoist
     if gravity is not None:
         hanging = gravity.acceleration * hoist.mass if hoist and hoist.hanging else 0.0
         yield Thrust(last, end, (_extra_weight(case) + hanging) * gravity.sine)
-    if case.wind is not None:
-        along = wind_direction(radians(case.wind.direction), _luffing(case))[0]
-        peak = build_history("wind", case.wind).peak
-        force = peak * case.wind.load_area * case.wind.dynamic_pressure
-        yield Thrust(last, end, -float(along) * force)
+    blows = [] if case.wind is None else [wind_on_load(case, case.wind, segments)]
+    for force in (*blows, *oblique_forces(case, segments)):
+        if force.vector[0]:
+            yield Thrust(force.segment, force.x, -float(force.vector[0]) * force.history.peak)
+
+
+class ObliqueForce(NamedTuple):
+    """A force at a place of the axis, or where the payload hangs."""
+
+    segment: int  #: index of the segment
+    x: float  #: x in m of the place, or of the end of the boom
+    vector: Array  #: force (3,) in N along x, y and z
+    history: History  #: its factor over time
+    head: Head | None = None  #: the head, if the force acts where the payload hangs
+
+    def loads(self) -> Iterator[Load]:
+        """Yield the loads across the boom, and the moments and the torque about its end."""
+        axes: tuple[Direction, ...] = ("y", "z")
+        for axis, part in zip(axes, self.vector[1:].tolist(), strict=True):
+            if abs(part) > SAME_PLACE * np.linalg.norm(self.vector):
+                yield Load(self.segment, axis, part, self.x, self.history)
+        if self.head is not None:
+            yield from self.head.moments(self.segment, self.x, self.vector, self.history)
+
+
+def oblique_forces(case: Case, segments: Sequence[Segment]) -> Iterator[ObliqueForce]:
+    """Yield the forces of oblique loads, and of the lead of the rope at t = 0.
+
+    Raises:
+        BoomError: a segment is unknown, a place is outside its segment, or a history is invalid.
+    """
+    for number, table in case.oblique_loads:
+        where = f"load[{number}]"
+        if isinstance(table.direction, str):
+            unit = np.eye(3)[COMPONENT[table.direction]]
+        else:
+            unit = wind_direction(radians(table.direction), _luffing(case))
+        force = table.magnitude * unit, build_history(where, table)
+        if table.segment is None:
+            yield _where_payload_hangs(case, segments, *force)
+        else:
+            at = _place_on(where, table.segment, table.x, segments)
+            yield ObliqueForce(at.segment, at.x, *force)
     for lead in leads(case, segments):
-        yield Thrust(last, end, lead.force)
+        along, up = lead.components
+        yield ObliqueForce(lead.segment, lead.x, np.array([along, 0.0, up]), Step())
+
+
+def wind_on_load(case: Case, table: WindPressureTable, segments: Sequence[Segment]) -> ObliqueForce:
+    """Return the force of the wind on the load at the tip."""
+    force = table.dynamic_pressure * table.load_area * table.load_shape_factor
+    unit = wind_direction(radians(table.direction), _luffing(case))
+    return _where_payload_hangs(case, segments, force * unit, build_history("wind", table))
+
+
+def _where_payload_hangs(
+    case: Case, segments: Sequence[Segment], force: Array, history: History
+) -> ObliqueForce:
+    head = None if case.head is None else case.head.in_boom_axes(segments[-1], _luffing(case))
+    return ObliqueForce(len(segments) - 1, segments[-1].end, force, history, head)
 
 
 def leads(case: Case, segments: Sequence[Segment]) -> Iterator[Lead]:
@@ -185,6 +246,7 @@ def lead_of(case: Case, segments: Sequence[Segment], weight: float) -> Iterator[
         BoomError: as in :func:`leads`.
     """
     rope, hoist, foot = case.rope, case.hoist, segments[0].foot
+    last, end = len(segments) - 1, segments[-1].end
     if rope is None:
         return
     if foot is None:
@@ -194,7 +256,14 @@ def lead_of(case: Case, segments: Sequence[Segment], weight: float) -> Iterator[
     if rope.falls is not None and hoist is not None and hoist.falls != 1:
         raise BoomError("rope.falls", "hoist.falls is given; leave one of them out")
     falls = rope.falls or (1 if hoist is None else hoist.falls)
-    yield Lead(len(segments) - 1, segments[-1].end, weight / falls, foot.x - rope.winch)
+    if rope.ground is None:
+        yield Lead(last, end, weight / falls, foot.x - rope.winch)
+        return
+    if case.luff is not None or (hoist is not None and (hoist.dropped or not hoist.hanging)):
+        what = "the rope's lead across the boom is that at t = 0; leave luff or hoist out"
+        raise BoomError("rope.ground", what)
+    along, up = rope.ground.turned(_luffing(case))
+    yield Lead(last, end, weight / falls, foot.x + along, foot.depth - up)
 
 
 def payload_weight(case: Case) -> float:
@@ -220,21 +289,25 @@ def _luffing(case: Case) -> float:
     return 0.0 if case.gravity is None else radians(case.gravity.angle)
 
 
-def head_moments(case: Case, head: Head, last: int, end: float) -> Iterator[Load]:
+def head_moments(case: Case, segments: Sequence[Segment]) -> Iterator[Load]:
     """Yield the moments of the weights of payload and head about the end of the last segment.
 
     Raises:
         BoomError: the head weighs nothing, or a hoisted load hangs beside the end.
     """
-    if case.hoist is not None and (head.ahead or head.below or head.beside):
+    if (head := case.head) is None:
+        return
+    if case.hoist is not None and (head.ahead or head.below or head.beside or head.level):
         what = "the load of hoist hangs at the end of the boom; leave ahead, below and beside out"
         raise BoomError("head", what)
     if case.gravity is None and head.mass:
         raise BoomError("head.mass", "nothing weighs without the table gravity; give it")
     own = 0.0 if case.gravity is None else case.gravity.acceleration * head.mass
     down = -np.array([sin(_luffing(case)), 0.0, cos(_luffing(case))])
+    hung = _where_payload_hangs(case, segments, down, Step())
+    assert hung.head is not None
     for weight, part in ((payload_weight(case), 1.0), (own, 0.5)):
-        yield from head.moments(last, end, weight * down, Step(), part)
+        yield from hung.head.moments(hung.segment, hung.x, weight * down, Step(), part)
 
 
 def wind(
@@ -256,18 +329,13 @@ def wind(
         raise BoomError("wind.shape_factor", f"{what}, got {len(factors)}")
     history = build_history("wind", table)
     direction = wind_direction(radians(table.direction), _luffing(case))
-    pressure, last = table.dynamic_pressure, len(segments) - 1
+    pressure = table.dynamic_pressure
     yield from wind_loads(segments, joints, pressure, direction, factors, history)
-    force = pressure * table.load_area * direction
-    axes: tuple[Direction, ...] = ("y", "z")
-    for axis, component in zip(axes, force[1:].tolist(), strict=True):
-        if abs(component) > SAME_PLACE * pressure * table.load_area:
-            yield Load(last, axis, component, segments[last].end, history)
-    if case.head is not None:
-        yield from case.head.moments(last, segments[last].end, force, history)
+    yield from wind_on_load(case, table, segments).loads()
 
 
 def _load(where: str, table: LoadTable) -> Load:
+    """Return the load of a table that is across its segment."""
     history: History | ReleasedLoad = build_history(where, table)
     if table.released and not isinstance(history, Step):
         raise BoomError(
@@ -275,7 +343,8 @@ def _load(where: str, table: LoadTable) -> Load:
             "a load that is let go has acted for ever, without a history; leave one of them out",
         )
     history = ReleasedLoad() if table.released else history
-    arguments = table.segment, table.direction, table.magnitude, table.x, history
+    direction: Any = table.direction
+    arguments = table.segment, direction, table.magnitude, table.x, history
     if table.moment and table.x is None:
         raise BoomError(f"{where}.x", "missing; it is the x in m at which the moment acts")
     for key, bound in (("from", table.start), ("to", table.end)):

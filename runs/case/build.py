@@ -12,11 +12,11 @@ from protractile.dynamics.excitation import InitialImpulse, ReleasedLoad
 from protractile.dynamics.stick_slip import ELASTIC_DRIVE_VARIABLES
 from protractile.dynamics.trajectory import DRIVE_VARIABLES, STATION_VARIABLES
 from protractile.geometry.axial import with_compression
-from protractile.geometry.boom import Boom, BoomError, Joint
+from protractile.geometry.boom import Boom, BoomError, Joint, Segment
 from protractile.geometry.boom_checks import check_order
 from protractile.geometry.cylinder import Cylinder, EarthPoint
 from protractile.geometry.joint import BareJoint
-from protractile.geometry.place import resolve_distances
+from protractile.geometry.place import resolve_distances, resolve_segments
 from protractile.geometry.support import Support
 from protractile.geometry.support_check import check_contacts_at_rest
 from protractile.runs.case import actions, motions
@@ -33,15 +33,8 @@ def build_boom(case: Case) -> Boom:
     Raises:
         BoomError: the boom is invalid.
     """
-    check_names("segment", [segment.name for segment in case.segments])
-    _check_joint_segments(case)
     _check_observations(case)
-    ends = _spans(case.segments, telescoped_joints(case))
-    joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
-    sections = infer_sections(case, joints)
-    segments = tuple(
-        segment_of(case, number, section, ends[number]) for number, section in enumerate(sections)
-    )
+    segments, joints = _segments_and_joints(case)
     along = 0.0 if case.gravity is None else case.gravity.along
     hoist = case.hoist
     hanging = hoist.mass if hoist and hoist.hanging else 0.0
@@ -57,7 +50,7 @@ def build_boom(case: Case) -> Boom:
         (*actions.loads(case, segments, joints), *motions.turning_loads(frame, segments, joints)),
         tuple(actions.stops(case)),
         case.observe,
-        _cylinders(case),
+        _cylinders(case, segments),
         (
             *motions.hoist_changes(case, segments, joints),
             *motions.turning_changes(
@@ -71,6 +64,16 @@ def build_boom(case: Case) -> Boom:
     return boom
 
 
+def _segments_and_joints(case: Case) -> tuple[tuple[Segment, ...], tuple[Joint, ...]]:
+    """Return the segments of a case without axial forces, and its joints."""
+    check_names("segment", [segment.name for segment in case.segments])
+    _check_joint_segments(case)
+    ends = _spans(case.segments, telescoped_joints(case))
+    joints = tuple(_joint(case, number, ends) for number in range(len(case.joints)))
+    sections = enumerate(infer_sections(case, joints))
+    return tuple(segment_of(case, number, one, ends[number]) for number, one in sections), joints
+
+
 def hold_ground(changed: Case, original: Case) -> Case:
     """Return a changed case whose cylinders stand where they stand in the original case.
 
@@ -79,24 +82,31 @@ def hold_ground(changed: Case, original: Case) -> Case:
     """
     if changed.gravity is None or original.gravity is None:
         return changed
-    foot, angle = _foot(changed), original.gravity.angle
-    if foot is None or changed.gravity.angle == angle or not changed.cylinders:
+    angle = original.gravity.angle
+    luffing = [one for one in changed.cylinders if not isinstance(one.ground, EarthPoint)]
+    if changed.gravity.angle == angle or not luffing:
+        return changed
+    foot = _foot(_segments_and_joints(changed)[0])
+    if foot is None:
         return changed
     on_earth = tuple(cylinder.on_earth(radians(angle), foot) for cylinder in changed.cylinders)
     return changed.model_copy(update={"cylinders": on_earth})
 
 
-def _cylinders(case: Case) -> tuple[Cylinder, ...]:
+def _cylinders(case: Case, segments: Sequence[Segment]) -> tuple[Cylinder, ...]:
     """Return the cylinders with their ground in the axes of the boom."""
     angle = radians(0.0 if case.gravity is None else case.gravity.angle)
-    foot = _foot(case)
-    for number, cylinder in enumerate(case.cylinders, start=1):
-        if foot is None and isinstance(cylinder.ground, EarthPoint):
-            what = "no segment has a support, from whose pin front and below are measured; give one"
-            raise BoomError(f"cylinder[{number}].ground", what)
-    if foot is None:
-        return case.cylinders
-    cylinders = tuple(cylinder.in_boom_axes(angle, foot) for cylinder in case.cylinders)
+    cylinders = tuple(
+        resolve_segments(cylinder, f"cylinders[{number}]", segments)
+        for number, cylinder in enumerate(case.cylinders)
+    )
+    if (foot := _foot(segments)) is None:
+        for number, cylinder in enumerate(cylinders, start=1):
+            if isinstance(cylinder.ground, EarthPoint):
+                what = "no segment has a support, from whose pin front and below are measured; "
+                raise BoomError(f"cylinder[{number}].ground", f"{what}give one")
+        return cylinders
+    cylinders = tuple(cylinder.in_boom_axes(angle, foot) for cylinder in cylinders)
     if case.luff is not None and case.luff.travel:
         for number, cylinder in enumerate(cylinders):
             luffed = cylinder.luffed(radians(case.luff.travel), foot)
@@ -104,15 +114,9 @@ def _cylinders(case: Case) -> tuple[Cylinder, ...]:
     return cylinders
 
 
-def _foot(case: Case) -> Support | None:
+def _foot(segments: Sequence[Segment]) -> Support | None:
     """Return the foot of the first segment that has one, about whose pin the boom luffs."""
-    for table, ends in zip(
-        case.segments, _spans(case.segments, telescoped_joints(case)), strict=True
-    ):
-        if table.supports:
-            supports = [resolve_distances(support, *ends) for support in table.supports]
-            return min(supports, key=lambda support: support.x)
-    return None
+    return next((segment.foot for segment in segments if segment.foot is not None), None)
 
 
 def check_ensemble_data(case: Case, boom: Boom) -> None:
@@ -232,6 +236,11 @@ def _check_planar(case: Case) -> None:
     lateral_actions = {
         "slew": case.slew,
         "limits.tip_lateral": case.limits and case.limits.tip_lateral,
+        **{
+            f"load[{number}].direction": not isinstance(load.direction, str)
+            and load.direction % 180.0
+            for number, load in enumerate(case.loads, start=1)
+        },
         "head.beside": case.head and case.head.beside,
         "wind.direction": case.wind and case.wind.dynamic_pressure and case.wind.direction % 180.0,
         **{

@@ -10,6 +10,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from protractile.dynamics.excitation import History, PiecewiseLinear, Ramp, Sine, Step
+from protractile.geometry.cylinder import EarthPoint
 from protractile.geometry.fields import (
     BoomError,
     Few,
@@ -20,6 +21,7 @@ from protractile.geometry.fields import (
     Number,
     Positive,
     is_number,
+    names_of,
     rising,
 )
 from protractile.geometry.place import Place
@@ -33,6 +35,7 @@ from protractile.runs.case.limits import (
     error_at,
     superfluous_error,
     unsuitable,
+    validation_error,
 )
 
 # Groups of loads with a common factor in a combination.
@@ -102,13 +105,33 @@ def build_history(where: str, table: HistoryTable) -> History:
     return Step()
 
 
-class LoadTable(HistoryTable):
-    """A load on one segment."""
+# Angles in degrees of the names of horizontal directions.
+HORIZONTAL = {"behind": 0.0, "side": 90.0, "front": 180.0}
 
-    segment: str
-    """the name of the segment"""
-    direction: Literal["z", "y"] = "z"
-    """up, or lateral"""
+
+def _direction(*others: str) -> BeforeValidator:
+    """Return the check of a horizontal direction, which becomes an angle, or of another one."""
+    names = [*others, *HORIZONTAL]
+
+    def check(value: Any) -> Any:
+        text = isinstance(value, str) and value not in names
+        if text or not (isinstance(value, str) or (is_number(value) and abs(value) <= 360.0)):
+            what = f"must be {choices(names)}, or an angle in degrees, got {value!r}"
+            raise unsuitable(what)
+        return HORIZONTAL.get(value, value)
+
+    texts: Any = Literal[tuple(names)]
+    return BeforeValidator(check, json_schema_input_type=texts | float)
+
+
+class LoadTable(HistoryTable):
+    """A load on one segment, or where the payload hangs."""
+
+    segment: str | None = None
+    """the name of the segment; unless given, a force of a direction acts where the payload hangs"""
+    direction: Annotated[float | Literal["z", "y"], _direction("z", "y"), In("deg")] = "z"
+    """z (up) or y (lateral), across the boom; or horizontal at one place, at each luffing angle:
+    behind (from there), side (towards +y), front, or an angle in degrees from behind towards +y"""
     x: Place | None = None
     """the x in m of a point load; along the whole segment unless given"""
     start: Place | None = Field(None, alias="from")
@@ -131,20 +154,32 @@ class LoadTable(HistoryTable):
     def declared_units(self, key: str) -> tuple[str, ...]:
         if key == "magnitude" and self.moment:
             return ("N m",)
-        if key == "magnitude" and self.x is not None:
+        if key == "magnitude" and (self.x is not None or self.segment is None):
             return ("N",)
         return super().declared_units(key)
 
+    @model_validator(mode="after")
+    def _is_a_force(self) -> Self:
+        if self.segment is None and "direction" not in self.model_fields_set:
+            raise error_at(self, "missing", "segment")
+        spread = ("from", "to", "moment", "released", *([] if self.segment else ["x"]))
+        for key, name in names_of(LoadTable).items():
+            if self.oblique and key in spread and getattr(self, name) not in (None, False):
+                what = "the load is a force at one place that stays; leave it out, or give segment"
+                raise validation_error(self, unsuitable(what), ((key,), getattr(self, name)))
+        if self.oblique and self.segment is not None and self.x is None:
+            raise error_at(self, "missing", "x")
+        return self
 
-# Angles of the names of directions in degrees.
-_BLOWS = {"behind": 0.0, "side": 90.0, "front": 180.0}
+    @property
+    def heading(self) -> str:
+        """The direction in words."""
+        return self.direction if isinstance(self.direction, str) else f"at {self.direction:g}°"
 
-
-def _blow(value: Any) -> Any:
-    """Return the angle of a direction; other text than its name is an error."""
-    if isinstance(value, str) and value not in _BLOWS:
-        raise unsuitable(f"must be {choices([*_BLOWS])}, or an angle in degrees, got {value!r}")
-    return _BLOWS[value] if isinstance(value, str) else value
+    @property
+    def oblique(self) -> bool:
+        """True if the load has parts along or beside the axis of a segment."""
+        return self.segment is None or not isinstance(self.direction, str)
 
 
 class WindPressureTable(HistoryTable):
@@ -159,12 +194,7 @@ class WindPressureTable(HistoryTable):
     unit"""
     speed: Annotated[NotNegative, In("m/s")] | None = None
     """the wind speed in m/s, instead of the pressure: 0.5 x 1.25 kg/m^3 x speed^2 (EN 13001-2)"""
-    direction: Annotated[
-        float,
-        Field(strict=True, ge=-360.0, le=360.0),
-        In("deg"),
-        BeforeValidator(_blow, json_schema_input_type=Literal["behind", "side", "front"] | float),
-    ] = 0.0
+    direction: Annotated[float, _direction(), In("deg")] = 0.0
     """the direction: behind, side (towards +y), front, or an angle in degrees from behind towards
     +y"""
     shape_factor: Annotated[
@@ -178,7 +208,9 @@ class WindPressureTable(HistoryTable):
     ]
     """the shape factor (force coefficient) of all segments, or one for each segment"""
     load_area: Annotated[NotNegative, In("m^2")] = 0.0
-    """the area in m^2 of the load at the tip in the wind, times its shape factor"""
+    """the area in m^2 of the load at the tip in the wind"""
+    load_shape_factor: Annotated[Positive, In("1")] = 1.0
+    """the shape factor of the load, 1 unless given, as for an area that has it already"""
 
     amount: ClassVar[str] = "pressure"
 
@@ -189,10 +221,10 @@ class WindPressureTable(HistoryTable):
 
     @model_validator(mode="after")
     def _has_an_amount(self) -> Self:
-        given = "pressure" in self.model_fields_set
-        if self.speed is None and self.file is None and not given:
+        if (self.speed, self.file) == (None, None) and "pressure" not in self.model_fields_set:
             raise error_at(self, "missing", "pressure")
-        if self.speed is not None and given:
+        # A saved case has the defaults too.
+        if self.speed is not None and self.pressure != 1.0:
             raise superfluous_error(self, "pressure", "speed")
         return self
 
@@ -209,6 +241,15 @@ class RopeTable(CaseTable):
     winch: Annotated[NotNegative, In("m")] = 0.0
     """the distance in m of the winch behind the boom's foot, on its axis, which goes through the
     centroid"""
+    ground: EarthPoint | None = None
+    """the place { front, below } of a winch that does not luff, from the foot pin in earth axes;
+    then leave winch out"""
+
+    @model_validator(mode="after")
+    def _one_winch(self) -> Self:
+        if self.ground is not None and self.winch:
+            raise superfluous_error(self, "ground", "winch")
+        return self
 
 
 class AxialTable(CaseTable):

@@ -392,6 +392,17 @@ class Case(ClientKeys, CaseHeading):
         return System(self.shown_units or self.units)
 
     @property
+    def loads_of_segments(self) -> list[tuple[int, LoadTable]]:
+        """The loads across segments, with their numbers in the case; each is one of the boom."""
+        numbered = enumerate(self.loads, start=1)
+        return [(number, load) for number, load in numbered if not load.oblique]
+
+    @property
+    def oblique_loads(self) -> list[tuple[int, LoadTable]]:
+        """The other loads, with parts along or beside the axis."""
+        return [(n, load) for n, load in enumerate(self.loads, start=1) if load.oblique]
+
+    @property
     def first_shell(self) -> int:
         """The number of the first model that needs a shell; 0 without one."""
         numbered = enumerate(self.models, start=1)

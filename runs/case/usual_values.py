@@ -9,18 +9,19 @@ from typing import Any, NamedTuple
 
 from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import Chassis
-from protractile.geometry.cylinder import Cylinder
+from protractile.geometry.cylinder import Cylinder, EarthPoint
 from protractile.geometry.fields import names_of
 from protractile.geometry.head import Head
 from protractile.geometry.joint import BareStop, Pad, SlidePad
 from protractile.geometry.material import Material
+from protractile.geometry.place import Level
 from protractile.geometry.segment import PointMass
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Pin, Support
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.contact import ContactTable, JointTable, RestitutionTable
 from protractile.runs.case.kinds.model import ModelTable
-from protractile.runs.case.limits import units_of, walk_tables
+from protractile.runs.case.limits import is_table, units_of, walk_tables
 from protractile.runs.case.load_tables import (
     AxialTable,
     FactorsTable,
@@ -92,7 +93,7 @@ def key_values(case: Case, boom: Boom) -> Iterator[KeyValue]:
                 continue
             for key, usual in usual_of_keys.items():
                 value = getattr(table, names_of(type(table))[key])
-                if not value and value != 0.0:
+                if is_table(value) or (not value and value != 0.0):
                     continue
                 expected = usual(table, key) if callable(usual) else usual
                 columns = [expected] if isinstance(expected, Usual) else expected
@@ -353,12 +354,16 @@ def _of_actions(sizes: _Sizes) -> Ranges:
             "pressure": Usual("the wind pressure", 0.0, 3.0e3, 50.0),
             "speed": Usual("the wind speed", 0.0, 70.0, 20.0),
             "load_area": Usual("the area of the load in the wind", 0.0, 500.0, 100.0),
-            "shape_factor": Usual("the shape factor", 0.3, 3.0, 10.0),
+            **dict.fromkeys(
+                ("shape_factor", "load_shape_factor"), Usual("the shape factor", 0.3, 3.0, 10.0)
+            ),
         },
         TelescopingTable: {
             "retracted": Usual("the extension of a retracted joint", 0.0, length, 50.0)
         },
         RopeTable: {"winch": Usual("the distance of the winch behind the foot", 0.0, 20.0, 50.0)},
+        Level: dict.fromkeys(("bottom", "top"), Usual("the distance", 0.0, 0.3 * length, 20.0)),
+        EarthPoint: dict.fromkeys(("front", "below"), Usual("the distance", 0.0, length, 50.0)),
         Head: {
             **dict.fromkeys(
                 ("ahead", "below", "beside"), Usual("the distance of the load", 0.0, 10.0, 100.0)

@@ -124,7 +124,7 @@ def _constant_loads(boom: Boom) -> Iterator[tuple[float, float]]:
 def repeated_loads(context: Context) -> Iterator[str]:
     """Yield cautions on loads that repeat a load or weight, and on masses given as forces."""
     case, boom = context.case, context.boom
-    loads_of_case = boom.loads[: len(case.loads)]
+    loads_of_case = boom.loads[: len(case.loads_of_segments)]
     for name, tables in (("load", loads_of_case), ("axial", case.axial)):
         for number, table in enumerate(tables):
             if table in tables[:number]:
@@ -150,7 +150,7 @@ def repeated_loads(context: Context) -> Iterator[str]:
                 f"segment[{len(boom.segments)}].masses: the {payload.mass:g} kg of the payload "
                 "are repeated at the tip; leave one of them out"
             )
-    for number, (table, load) in enumerate(zip(case.loads, loads_of_case, strict=True), start=1):
+    for (number, table), load in zip(case.loads_of_segments, loads_of_case, strict=True):
         if load.direction == "y" or table.moment or not isinstance(load.history, Step | Ramp):
             continue
         segment, where = boom.segments[load.segment], f"load[{number}].magnitude"
@@ -259,7 +259,7 @@ def load_cases(context: Context) -> Iterator[str]:
     segments = {segment.name: segment for segment in boom.segments}
     for number, load_case in enumerate(case.load_cases, start=1):
         for i, load in enumerate(load_case.loads or (), start=1):
-            segment = segments.get(load.segment)
+            segment = segments.get(load.segment or "")
             if segment is None or load.x is not None or load.moment:
                 continue
             ratio = abs(load.magnitude) / (STANDARD_GRAVITY * segment.mass_per_length)

@@ -9,8 +9,8 @@ the governing utilisation = 1.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
-from functools import cache
+from dataclasses import dataclass, field, replace
+from functools import cache, cached_property
 from math import acos, atan2, cos, degrees, hypot, radians
 from typing import Any, NamedTuple
 
@@ -21,7 +21,7 @@ from protractile.analysis.quantities import PROVED
 from protractile.analysis.rows import COMBINATION, Row, Rows
 from protractile.analysis.states import States
 from protractile.dynamics.failure import NUMERICAL_ERRORS
-from protractile.geometry.boom import Boom, BoomError
+from protractile.geometry.boom import Boom, BoomError, Segment
 from protractile.geometry.ground import force_name
 from protractile.geometry.typography import percent
 from protractile.runs.case.build import build_boom, telescoped_joints
@@ -118,6 +118,11 @@ class Search:
     tips: dict[float, float] = field(default_factory=dict)
     #: change of the tip deflection less its guess, over the change of the guess
     slope: float = -1.0
+
+    @cached_property
+    def last_segment(self) -> Segment:
+        """The last segment of the boom, with the head."""
+        return build_boom(self.case).segments[-1]
 
     def cell(self, near: Cell | None = None) -> Cell:
         """Return the cell; the search begins at the capacity of a cell ``near``, if it is given."""
@@ -282,9 +287,12 @@ class Search:
         if self.angle is not None:
             return self.angle
         chassis, head, length = self.case.chassis, self.case.head, self.configuration.length
+        ahead = chassis.foot_ahead if chassis else 0.0
         if head is not None:
+            ahead += head.level.front if head.level else 0.0
+            head = replace(head, level=None).in_boom_axes(self.last_segment, 0.0)
             length, tip = length + head.ahead, tip - head.below
-        ratio = (self.radius - (chassis.foot_ahead if chassis else 0.0)) / hypot(length, tip)
+        ratio = (self.radius - ahead) / hypot(length, tip)
         angle = degrees(acos(ratio) - atan2(tip, length)) if abs(ratio) <= 1.0 else -1.0
         least, most = chart_of(self.case).angles
         if not least <= angle <= most:

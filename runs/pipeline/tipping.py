@@ -34,7 +34,8 @@ def hook_place(case: Case, boom: Boom, angle: float, tip: float) -> tuple[float,
     chassis, turn = case.chassis, radians(angle)
     length = boom.tip - foot_of(boom)
     if case.head is not None:
-        length, tip = length + case.head.ahead, tip - case.head.below
+        head = case.head.in_boom_axes(boom.segments[-1], turn)
+        length, tip = length + head.ahead, tip - head.below
     ahead, above = (0.0, 0.0) if chassis is None else (chassis.foot_ahead, chassis.foot_above)
     return (
         ahead + length * cos(turn) - tip * sin(turn),
@@ -102,8 +103,10 @@ def _forces(combined: CombinedCase, states: States) -> Iterator[CraneForce]:
     for group, hanging in masses:
         yield CraneForce(factors[group] * gravity * hanging, radius)
     acting = combined.case.gravity.model_copy(update={"acceleration": 0.0})
-    without = {**dict.fromkeys(("payload", "head", "hoist")), "gravity": acting, "base": ()}
+    without = {**dict.fromkeys(("payload", "hoist")), "gravity": acting, "base": ()}
     others = combined.case.model_copy(update=without)
+    # The moment of a force on the load about the end of the boom is among the loads.
+    radius, above = hook_place(case.model_copy(update={"head": None}), boom, angle, tip)
     for thrust in tip_thrusts(others, boom.segments):
         yield CraneForce(thrust.force * up, radius, -thrust.force * along, above)
     for load in loads(others, boom.segments, boom.joints):

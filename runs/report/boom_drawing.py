@@ -87,7 +87,11 @@ class Panel:
 
     def draw_symbol(self, symbol: Symbol) -> None:
         """Draw the symbol of a support or load at its places."""
-        places = [(x, symbol.z(self.boom, x)) for x in symbol.places]
+        along, _, up = symbol.arm
+        places = [(x + along, symbol.z(self.boom, x) + up) for x in symbol.places]
+        if any(symbol.arm):
+            foot = places[0][0] - along, places[0][1] - up
+            self.line([foot, places[0]], clip_on=False, color=symbol.color, linewidth=1.6)
         size = SIGN if len(places) == 1 else SMALL
         self.line(places, clip_on=False, zorder=5, **marker_style(symbol.path, symbol.color, size))
         corners = np.asarray(symbol.path.vertices)
@@ -203,7 +207,8 @@ def _draw_along(panel: Panel, symbols: Sequence[Symbol]) -> None:
         )
     margin = MARGIN * boom.length
     travel = max(0.0, farthest_travel(boom, len(boom.segments) - 1))
-    reach = boom.segments[0].start - margin, boom.tip + travel + margin
+    ahead = max((symbol.arm[0] for symbol in symbols), default=0.0)
+    reach = boom.segments[0].start - margin, boom.tip + max(travel, ahead) + margin
     tallest = factor * max(abs(z) for s in boom.segments for x in s.ends for z in edges(boom, s, x))
     axes.set(xlim=reach, ylim=(-2.9 * tallest, 2.6 * tallest), yticks=[])
     axes.grid(False)

@@ -11,7 +11,7 @@ from protractile.geometry.boom import Boom, Direction, Joint
 from protractile.geometry.fit import room
 from protractile.geometry.section import Section
 from protractile.geometry.units import System
-from protractile.geometry.walls import trapezoids
+from protractile.geometry.walls import outer_surfaces
 from protractile.runs.case.schema import Case
 from protractile.runs.report.tables import Cell, Column, Table
 
@@ -28,9 +28,7 @@ def segment_table(case: Case, boom: Boom) -> Table:
         boxes.append(f"{box}, inferred" if inferred else box)
         ends = [each for each in (segment.section, segment.head_section) if each is not None]
         if any("z" not in each.mirrors for each in ends):
-            # Corners of the outer surface are the first two of each plate.
-            lowest = [float(trapezoids(each.plates)[:, :2, 1].min()) for each in ends]
-            heights = " to ".join(case.system.text(-z, "m") for z in lowest)
+            heights = " to ".join(case.system.text(-outer_surfaces(one)[0], "m") for one in ends)
             axes.append(f"{segment.name} {heights}")
     columns = [
         Column("segment", [segment.name for segment in segments]),

@@ -13,7 +13,13 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.load import Load, Moment, PartialLoad, Torque
 from protractile.geometry.typography import SHOWN, in_shown_unit
 from protractile.geometry.units import System
-from protractile.runs.case.actions import head_moments, thrusts, wind
+from protractile.runs.case.actions import (
+    head_moments,
+    oblique_forces,
+    payload_weight,
+    thrusts,
+    wind,
+)
 from protractile.runs.case.load_tables import HistoryTable, LoadTable, build_history
 from protractile.runs.case.schema import Case
 from protractile.runs.report.tables import Amount, Cell, Table
@@ -73,17 +79,20 @@ def _rows(case: Case, boom: Boom) -> Iterator[_LoadRow]:
             if load := getattr(segment, key):
                 key = f"segment[{i}].{key}"
                 yield _LoadRow(key, segment.name, direction, _CONSTANT, load, "N/m")
-    for i, (table, of) in enumerate(zip(case.loads, boom.loads, strict=False), start=1):
+    for (i, table), of in zip(case.loads_of_segments, boom.loads, strict=False):
         place = _place_of(boom, of, case.system)
         yield _history_row(f"load[{i}]", place, _direction(of), table, case.time.duration)
+    for (i, table), force in zip(
+        case.oblique_loads, oblique_forces(case, boom.segments), strict=False
+    ):
+        place = _place(boom, force.segment, force.x, case.system)
+        yield _history_row(f"load[{i}]", place, table.heading, table, case.time.duration)
     if case.payload is not None and gravity is None and case.payload.gravity != 0.0:
-        weight = boom.loads[len(case.loads)].magnitude
-        yield _LoadRow("payload", tip, "z", _CONSTANT, weight, "N")
+        yield _LoadRow("payload", tip, "z", _CONSTANT, -payload_weight(case), "N")
     for i, base in enumerate(case.base, start=1):
         yield _history_row(f"base[{i}]", _ALL, base.direction, base, case.time.duration)
-    if case.head is not None:
-        for of in head_moments(case, case.head, len(boom.segments) - 1, boom.tip):
-            yield _LoadRow("head", tip, _direction(of), _CONSTANT, of.magnitude, "N m")
+    for of in head_moments(case, boom.segments):
+        yield _LoadRow("head", tip, _direction(of), _CONSTANT, of.magnitude, "N m")
     if case.wind is not None:
         for of in wind(case, case.wind, boom.segments, boom.joints):
             unit = {PartialLoad: "N/m", Load: "N"}.get(type(of), "N m")

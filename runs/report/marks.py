@@ -62,6 +62,10 @@ def marks_of(
                 # The symbol lies in front of the wall, which would hide it otherwise.
                 place[1] = 1.02 * rest[scene.owner == symbol.segment, 1].min()
             fixed = np.zeros(3) if symbol.grounded else rest[near]
+            if any(symbol.arm):
+                offsets += [np.array([place, place + symbol.arm]) - fixed, gap]
+                anchors += [near] * 3
+                place = place + symbol.arm
             for outline in polygons:
                 corners = np.insert(length / FINE * np.asarray(outline), 1, 0.0, axis=1)
                 offsets += [corners + place - fixed, gap]

@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from math import cos, radians, sin
 from typing import Any, Literal
 
 import numpy as np
@@ -72,6 +74,7 @@ REST_BELOW = _rotated(REST_ABOVE, 180.0)
 PAYLOAD = Path.make_compound_path(
     _strokes([(0.0, 0.0), (0.0, -0.45)]), Path.circle((0.0, -0.72), 0.27)
 )
+PIN = Path.circle((0.0, 0.0), 0.12)
 HUNG = _strokes(
     [(0.0, 0.0), (0.0, -1.3)],
     [(-0.3, -1.3), (0.3, -1.3), (0.3, -1.9), (-0.3, -1.9), (-0.3, -1.3)],
@@ -106,6 +109,8 @@ class Symbol:
     turns: bool = True  #: True if the symbol rotates with the boom
     clearance: float = 0.0  #: distance between edge and symbol in m
     grounded: bool = False  #: True if the symbol does not move with the boom
+    #: x, y and z in m of the symbol from its place, at the end of a line
+    arm: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     def on_boom(self, angle: float) -> Path:
         """Return the path of the symbol in the axes of a boom at an angle in degrees."""
@@ -155,15 +160,35 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
                 yield _spread(boom, index, segment.ends, load, direction, "")
         for mass in segment_table.masses:
             yield _mass(index, at(mass.x, *segment.ends), f"mass, {number(mass.mass, 4)} kg")
+    hung = partial(replace)
+    if case.head is not None:
+        angle = 0.0 if case.gravity is None else radians(case.gravity.angle)
+        head = case.head.in_boom_axes(boom.segments[-1], angle)
+        hung = partial(replace, edge=0.0, arm=(head.ahead, head.beside, -head.below))
+        pin = _mass(len(boom.segments) - 1, boom.tip, f"head, {number(head.mass, 4)} kg")
+        yield hung(pin, path=PIN)
     if case.payload is not None:
         payload = f"mass at the tip, {number(case.payload.mass, 4)} kg"
-        yield _mass(len(boom.segments) - 1, boom.tip, payload)
+        yield hung(_mass(len(boom.segments) - 1, boom.tip, payload))
     if case.hoist is not None:
-        hung = f"load on the rope, {number(case.hoist.mass, 4)} kg"
-        yield replace(_mass(len(boom.segments) - 1, boom.tip, hung), path=HUNG)
+        on_rope = f"load on the rope, {number(case.hoist.mass, 4)} kg"
+        yield replace(_mass(len(boom.segments) - 1, boom.tip, on_rope), path=HUNG)
     names = [segment.name for segment in boom.segments]
-    for table in case.loads:
-        yield _load(table, boom, names.index(table.segment))
+    for _, table in case.loads_of_segments:
+        yield _load(table, boom, names.index(table.segment or ""))
+    forces = actions.oblique_forces(case, boom.segments)
+    for (_, table), acting in zip(case.oblique_loads, forces, strict=False):
+        size, place = table.magnitude * acting.history.peak, hung if acting.head else replace
+        if isinstance(table.direction, str):
+            yield place(_force(acting.segment, (acting.x,), size, table.direction, "N", ""))
+            continue
+        forwards = size * cos(radians(table.direction))
+        sign = FORCE_ON if forwards > 0.0 else FORCE_BACK
+        if abs(forwards) < 0.5 * abs(size):
+            sign = AWAY if size * sin(radians(table.direction)) > 0.0 else TOWARDS
+        meaning = f"{abbreviate(abs(size), 'N')} horizontal, {table.heading}"
+        flat = Symbol("loads", acting.segment, (acting.x,), 0.0, sign, meaning, turns=False)
+        yield place(flat)
     if case.wind is not None:
         for blow in actions.wind(case, case.wind, boom.segments, boom.joints):
             if isinstance(blow, PartialLoad):
@@ -215,14 +240,14 @@ def _load(table: LoadTable, boom: Boom, index: int) -> Symbol:
     if table.x is None:
         start = ends[0] if table.start is None else at(table.start, *ends)
         end = ends[1] if table.end is None else at(table.end, *ends)
-        return _spread(boom, index, (start, end), largest, table.direction, how)
+        return _spread(boom, index, (start, end), largest, table.heading, how)
     place = (at(table.x, *ends),)
     if table.moment:
         sign = MOMENT if largest > 0.0 else CLOCKWISE
         return Symbol(
             "loads", index, place, 0.0, sign, f"moment {abbreviate(abs(largest), 'N m')}{how}"
         )
-    return _force(index, place, largest, table.direction, "N", how)
+    return _force(index, place, largest, table.heading, "N", how)
 
 
 def _spread(

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Keys of a drawing: wind, rope, head, outer sizes, and cylinders with their lower ends."""
 
+import re
 import tomllib
 from collections.abc import Callable
 from dataclasses import asdict
-from math import cos, pi, radians, sin
+from math import cos, hypot, pi, radians, sin
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,8 @@ from protractile.analysis.rows import Rows
 from protractile.cases import run_case
 from protractile.geometry.boom import Boom
 from protractile.geometry.cylinder import EarthPoint
-from protractile.geometry.load import Moment
+from protractile.geometry.load import Load, Moment, Torque
+from protractile.geometry.place import Level
 from protractile.geometry.polygon import PolygonSection
 from protractile.geometry.section import SectionError
 from protractile.geometry.typography import amount
@@ -32,6 +34,7 @@ from tests.runs.case_texts import (
     HINGED,
     REST,
     STEEL,
+    as_toml,
     box,
     elements,
     joint,
@@ -260,6 +263,31 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
         (table("[head]", ahead=0.2) + table("[hoist]", mass=200.0, stiffness=1e6, hanging=True),
          "head: the load of hoist hangs at the end of the boom; leave ahead, below and beside "
          "out"),
+        (table("[[load]]", magnitude=1.0, direction="left"),
+         "load[1].direction: must be 'z', 'y', 'behind', 'side' or 'front', or an angle in "
+         "degrees, got 'left'"),
+        (table("[[load]]", magnitude=1.0, direction="side"),
+         "load[1].direction: the boom is flat, and nothing moves along 'y'; give the joints "
+         "lateral_play"),
+        (table("[[load]]", magnitude=1.0, direction="front", segment="fly"),
+         "load[1].x: missing; it is the x in m of a point load; along the whole segment unless "
+         "given"),
+        (table("[[load]]", magnitude=1.0),
+         "load[1].segment: missing; it is the name of the segment; unless given, a force of a "
+         "direction acts where the payload hangs"),
+        (table("[[load]]", magnitude=1.0, direction="z", moment=True),
+         "load[1].moment: the load is a force at one place that stays; leave it out, or give "
+         "segment"),
+        (table("[rope]", falls=2, winch=1.0, ground={"front": -1.0, "below": 0.0}),
+         "rope.winch: ground is given; leave one of them out"),
+        (table("[rope]", falls=2, ground={"front": -1.0}),
+         "rope.ground.below: missing; it is the vertical distance in m below the pin"),
+        (table("[rope]", falls=2, ground={"front": -1.0, "below": 0.0})
+         + table("[luff]", travel=5.0, time=9.0),
+         "rope.ground: the rope's lead across the boom is that at t = 0; leave luff or hoist out"),
+        (table("[head]", below={"left": 0.1}),
+         "head.below: must be a number of m below the axis, or a distance in m from an outer "
+         "surface such as { bottom = 0.2 }, got {'left': 0.1}"),
         (table("[rope]", falls=2)
          + table("[hoist]", mass=200.0, stiffness=1e6, falls=2, hanging=True),
          "rope.falls: hoist.falls is given; leave one of them out"),
@@ -267,6 +295,116 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
 )  # fmt: skip
 def test_contradictions_are_refused(tmp_path: Path, text: str, line: str) -> None:
     assert refusal(tmp_path, DRAWN + JACK + text) == line
+
+
+ACROSS, ALONG = sin(radians(50.0)), cos(radians(50.0))
+SIZES = 'shape = "unequal box", height = 0.3, width = 0.22, top = 0.006, bottom = 0.014'
+UNEQUAL = DRAWN.replace("height = 0.3, width = 0.22, flange = 0.006", SIZES)
+# First moments of the outer and the inner rectangle of the box about its bottom.
+_OUTER, _INNER = 0.226 * 0.31, 0.214 * 0.29
+AXIS = (_OUTER * 0.155 - _INNER * (0.014 + 0.145)) / (_OUTER - _INNER)
+HEAD = table("[head]", ahead=0.8, below=0.5)
+AT_TIP = {"segment": "fly", "x": "head", "group": "payload"}
+HAND = table("[[load]]", magnitude=400.0, direction="behind", group="payload")
+HAND_BY_HAND = (
+    table("[[load]]", **AT_TIP, magnitude=-400.0 * ACROSS)
+    + table("[[axial]]", force=-400.0 * ALONG, group="payload")
+    + table("[[load]]", **AT_TIP, moment=True, magnitude=400.0 * (0.5 * ALONG - 0.8 * ACROSS))
+)
+
+
+def foot(depth: object) -> str:
+    """Return the boom with the pin of its foot at a depth."""
+    return UNEQUAL.replace('kind = "hinged"', f'kind = "hinged", depth = {as_toml(depth)}')
+
+
+def at_angle(angle: float) -> str:
+    """Return a head by hand, 0.2 m along and 0.1 m below, with a cage at (0.8, 0.5) m in front."""
+    up, along = sin(radians(angle)), cos(radians(angle))
+    ahead, below = 0.8 * along - 0.5 * up, 0.8 * up + 0.5 * along
+    return table("[head]", ahead=0.2 + ahead, below=0.1 + below, mass=60.0)
+
+
+WIND = {"speed": 20.0, "shape_factor": 1.4}
+CAGE = table("[head]", ahead=0.2, below=0.1, mass=60.0, level={"front": 0.8, "below": 0.5})
+LOW = table("[[load_case]]", name="low", angle=10.0, payload=230.0)
+LEADS = {"front": -1.5 * ALONG, "below": 1.5 * ACROSS}
+
+
+@pytest.mark.parametrize(
+    ("drawn", "by_hand"),
+    [
+        (foot({"bottom": 0.1}) + JACK + LOW, foot(AXIS - 0.1) + JACK + LOW),
+        (foot({"top": 0.08}) + JACK, foot(0.08 - (0.31 - AXIS)) + JACK),
+        (UNEQUAL + JACK.replace("0.25", "{ bottom = -0.12 }"),
+         UNEQUAL + JACK.replace("0.25", f"{AXIS + 0.12}")),
+        (DRAWN + JACK + table("[head]", ahead=0.2, below={"bottom": 0.03}),
+         DRAWN + JACK + table("[head]", ahead=0.2, below=0.128 - 0.03)),
+        (DRAWN + JACK + table("[wind]", **WIND, load_area=0.8, load_shape_factor=1.2),
+         DRAWN + JACK + table("[wind]", **WIND, load_area=0.96)),
+        (DRAWN + JACK + HEAD + HAND, DRAWN + JACK + HEAD + HAND_BY_HAND),
+        (DRAWN + JACK + HEAD + table("[[load]]", magnitude=-90.0, direction="z", group="payload"),
+         DRAWN + JACK + HEAD + table("[[load]]", **AT_TIP, magnitude=-90.0)
+         + table("[[load]]", **AT_TIP, moment=True, magnitude=-72.0)),
+        (DRAWN + JACK + CAGE, DRAWN + JACK + at_angle(50.0)),
+        (DRAWN + JACK + CAGE + LOW, DRAWN + JACK + at_angle(10.0) + LOW),
+        (DRAWN + JACK + table("[rope]", falls=2, ground=LEADS),
+         DRAWN + JACK + table("[rope]", falls=2, winch=1.5)),
+    ],
+)  # fmt: skip
+def test_a_drawing_says_what_was_computed_by_hand(tmp_path: Path, drawn: str, by_hand: str) -> None:
+    """Reference: other input, the same boom with the numbers that were computed by hand."""
+    more = ("" if LOW in drawn else PEOPLE) + FACTORS
+    case = read_case(tmp_path, drawn + more)
+    assert read_case(tmp_path, toml.dumps(case)) == case
+    same(combination_rows(case), combination_rows(read_case(tmp_path, by_hand + more)))
+
+
+def test_a_hand_force_in_space_bends_and_twists(tmp_path: Path) -> None:
+    """Reference: analytic, moment and torque of a force towards +y about the end of the boom."""
+    text = DRAWN.replace("play = 0.003", "play = 0.003\nlateral_play = 0.003") + JACK + HEAD
+    force = table("[[load]]", magnitude=400.0, direction="side", ramp=0.5)
+    loads = build_boom(read_case(tmp_path, text + force)).loads[:3]
+    assert [load.magnitude for load in loads] == pytest.approx([400.0, 320.0, 200.0], rel=1e-12)
+    assert [type(load) for load in loads] == [Load, Moment, Torque]
+
+
+def test_depths_need_a_section_in_the_units_of_the_case(tmp_path: Path) -> None:
+    """Reference: by hand, a box 260 mm high; exact words."""
+    bare = "mass_per_length = 60.0\nsecond_moment_of_area = 1e-4"
+    text = re.sub("section = .*", bare, DRAWN).replace('theory = "timoshenko"', "")
+    message = "cylinder[1].depth: the segment has no section to measure it from; give it, or a"
+    low = JACK.replace("0.25", "{ bottom = -0.12 }")
+    assert refusal(tmp_path, text + low) == f"{message} depth in m"
+    in_mm = Case.model_validate(
+        tomllib.loads(DRAWN.replace("title", 'units = "mm-t-s"\ntitle', 1) + low)
+    )
+    level = convert_to_si(in_mm).cylinders[0].depth
+    assert level == Level(bottom=-0.12e-3)
+
+
+@pytest.mark.parametrize(("angle", "mass"), [(50.0, 150.0), (10.0, 380.0)])
+def test_the_lead_to_a_winch_that_does_not_luff(tmp_path: Path, angle: float, mass: float) -> None:
+    """Reference: analytic, the force towards a fixed point at each angle, and its change with the
+    deflection of the head by central differences."""
+    rope = table("[rope]", falls=2, ground={"front": -1.2, "below": 0.3})
+    case = read_case(tmp_path, DRAWN + JACK + rope + LOW)
+    up, along = sin(radians(angle)), cos(radians(angle))
+    behind, high, step = 10.0 + 1.2 * along + 0.3 * up, 1.2 * up - 0.3 * along, 1e-4
+
+    def pull(y: float, z: float) -> list[float]:
+        line = -behind, -y, high - z
+        return [0.5 * mass * G * part / hypot(*line) for part in line]
+
+    boom = build_boom(case if angle == 50.0 else combine(case, case.load_cases[0]))
+    (lead,), force = boom.leads, pull(0.0, 0.0)
+    assert lead.components == pytest.approx((force[0], force[2]), rel=1e-12)
+    assert boom.loads[0].magnitude == pytest.approx(force[2], rel=1e-12)
+    weight = mass * G * up
+    assert boom.segments[-1].compression.ends[-1][1] == pytest.approx(weight - force[0], rel=1e-12)
+    slope = (pull(0.0, -step)[2] - pull(0.0, step)[2]) / (2.0 * step)
+    assert lead.stiffness("z") == pytest.approx(slope, rel=1e-8)
+    assert lead.stiffness("y") == pytest.approx(-pull(step, 0.0)[1] / step, rel=1e-8)
 
 
 LEVEL = table("[[load_case]]", name="level", angle=10.0)
