@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Stresses of walls from section forces, and buckling of walls by formulas for long panels.
 
-Each wall is a long plate, simply supported at its folds. Across its width the axial stress is
-linear and the shear stress constant. Restraint by adjacent walls and pad forces are neglected.
+Each wall is a long plate, simply supported at its folds; a weld on a straight line is none. Across
+its width the axial stress is linear and the shear stress constant. Restraint by adjacent walls and
+pad forces are neglected.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.material import Material
 from protractile.geometry.section import Plate, Section
 from protractile.geometry.segment import Segment
+from protractile.geometry.walls import in_line
 
 # Coefficient k of a long plate in shear (Southwell and Skan 1924).
 SHEAR = 5.34
@@ -39,6 +41,7 @@ class PlateStresses(NamedTuple):
     #: (2, num_plates, num_states, num_places) axial stress at the ends of mid-lines in Pa, in
     #: tension
     edges: Array
+    panel: Array  #: the same at the folds, between which welds may join a plate to others
     fibres: Array  #: (2, num_plates, num_states, num_places) axial stress at outer corners in Pa
     shear: Array  #: (num_plates, num_states, num_places) mean shear stress in Pa, not negative
     slenderness: Array  #: (num_plates, 1, 1) width for buckling over thickness
@@ -152,11 +155,13 @@ def _of_section(
     along_y = lateral / section.lateral_second_moment_of_area
     along_z = moment / section.second_moment_of_area
     data = _plate_data(section)
-    edges, fibres = (mean + along_y * y + along_z * z for y, z in (data.edges, data.fibres))
+    edges, panel, fibres = (
+        mean + along_y * y + along_z * z for y, z in (data.edges, data.panel, data.fibres)
+    )
     along = np.abs(shear * data.shares_z) + np.abs(lateral_shear * data.shares_y)
     flow = along / data.lengths + np.abs(torque) / (2.0 * section.enclosed_area)
     return PlateStresses(
-        segment, section.plates, x, edges, fibres, flow / data.thicknesses, data.slenderness
+        segment, section.plates, x, edges, panel, fibres, flow / data.thicknesses, data.slenderness
     )
 
 
@@ -164,6 +169,7 @@ class _PlateData(NamedTuple):
     """Data of the plates of a section; numbers of plates are (num_plates, 1, 1)."""
 
     edges: Array  #: (2, 2, num_plates, 1, 1) y and z in m of the start and the end of mid-lines
+    panel: Array  #: the same at the folds
     fibres: Array  #: (2, 2, num_plates, 1, 1) y and z in m of the outer corners
     shares_z: Array  #: parts of plates of a shear force along z
     shares_y: Array  #: parts of plates of a shear force along y
@@ -178,7 +184,10 @@ def _plate_data(section: Section) -> _PlateData:
     plates = section.plates
     corners = np.array(outer_corners(section))
     ends = np.transpose([[plate.start for plate in plates], [plate.end for plate in plates]])
-    edges = ends.transpose(0, 2, 1)
+    edges, lines = ends.transpose(0, 2, 1), in_line(plates)
+    first, last = np.transpose([(line[0], line[-1]) for line in lines])
+    panel = np.stack([edges[:, 0, first], edges[:, 1, last]], axis=1)
+    widths = [sum(section.buckling_widths[number] for number in line) for line in lines]
     fibres = np.stack([corners, np.roll(corners, -1, axis=1)], axis=1)
     shares_z, shares_y = np.zeros((2, len(plates)))
     for k, share in section.shear_plates("z"):
@@ -186,8 +195,8 @@ def _plate_data(section: Section) -> _PlateData:
     for k, share in section.shear_plates("y"):
         shares_y[k] = share
     lengths, walls = np.transpose([(plate.length, plate.thickness) for plate in plates])
-    slenderness = np.array(section.buckling_widths) / walls
-    data = edges, fibres, shares_z, shares_y, lengths, walls, slenderness
+    slenderness = np.array(widths) / walls
+    data = edges, panel, fibres, shares_z, shares_y, lengths, walls, slenderness
     return _PlateData(*(np.asarray(each)[..., None, None] for each in data))
 
 
@@ -204,13 +213,13 @@ def reduced_stress(stresses: PlateStresses, curve: Sequence[tuple[float, float]]
     """
     largest_compression = np.maximum(-stresses.edges.min(axis=0), 0.0)
     slenderness = relative_slenderness(stresses)
-    along, across = reduction_factors(slenderness, stress_ratio(stresses.edges), curve)
+    along, across = reduction_factors(slenderness, stress_ratio(stresses.panel), curve)
     return np.asarray(np.hypot(largest_compression / along, np.sqrt(3.0) * stresses.shear / across))
 
 
 def relative_slenderness(stresses: PlateStresses) -> Array:
     """Return the slenderness λ̄ (num_plates, num_states, num_places); NaN without strength."""
-    largest_compression = np.maximum(-stresses.edges.min(axis=0), 0.0)
+    largest_compression = np.maximum(-stresses.panel.min(axis=0), 0.0)
     equivalent = np.sqrt(largest_compression**2 + 3.0 * stresses.shear**2)
     with np.errstate(divide="ignore"):
         # Without stress the factor is infinite, and the slenderness zero.
@@ -221,7 +230,7 @@ def relative_slenderness(stresses: PlateStresses) -> Array:
 def _elastic_factor(stresses: PlateStresses) -> Array:
     """Return the factors (num_plates, num_states, num_places) at which plates buckle."""
     material, slenderness = stresses.segment.material, stresses.slenderness
-    return panel_factor(material, slenderness, stresses.edges, stresses.shear)
+    return panel_factor(material, slenderness, stresses.panel, stresses.shear)
 
 
 def reduction_factors(

@@ -29,7 +29,7 @@ from protractile.geometry.section import (
     Section,
     SectionError,
 )
-from protractile.geometry.walls import half_turns, moments, trapezoids
+from protractile.geometry.walls import half_turns, in_line, moments, trapezoids
 
 # Fraction of a section's size below which two places are the same.
 _SAME = 1.0e-9
@@ -103,8 +103,8 @@ class PolygonSection(Section):
     @cached_property
     def area(self) -> float:
         """The cross-sectional area in m²."""
-        whole = sum(plate.length * plate.thickness for plate in self.plates)
-        return float(whole - 2.0 * self._cut @ self.upwards[1])
+        lengths = np.array([plate.length for plate in self.plates])
+        return float((lengths - 2.0 * self._cut) @ self.upwards[1])
 
     @cached_property
     def second_moment_of_area(self) -> float:
@@ -198,7 +198,8 @@ class PolygonSection(Section):
 
     def within_outline(self) -> PolygonSection:
         corners, walls, radii = self.upwards
-        inner = trapezoids(_plates(corners, walls))[:, 3]
+        thickest = np.array([walls[line].max() for line in in_line(self.plates)])
+        inner = trapezoids(_plates(corners, thickest))[:, 3]
         return _of_arrays(inner, walls, np.where(radii > 0.0, radii - 0.5 * walls, 0.0))
 
     @cached_property
@@ -298,9 +299,8 @@ def _check(corners: Sequence[Offset], thicknesses: Sequence[float], radii: Seque
     if _double_enclosed_area(places) < 0.0:
         places = places * [-1.0, 1.0]
     plates = _plates(places, np.array(thicknesses))
-    around = sum(plate.length for plate in plates)
     for number, plate in enumerate(plates, start=1):
-        if plate.length <= _SAME * around:
+        if plate.length <= _SAME * sum(plate.length for plate in plates):
             raise SectionError(
                 f"corners {number} and {number % len(corners) + 1} are one; give each once"
             )

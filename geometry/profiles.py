@@ -69,7 +69,14 @@ def octagon(
 
 
 def u_section(
-    height: float, width: float, radius: float, facets: int, top: float, bottom: float, web: float
+    height: float,
+    width: float,
+    radius: float,
+    facets: int,
+    top: float,
+    bottom: float,
+    web: float,
+    weld: float | None = None,
 ) -> PolygonSection:
     """Return a U-section with a flat top; each bend consists of plates tangent to its circle.
 
@@ -85,9 +92,12 @@ def u_section(
         facets: number of flat plates in each bend between the level bottom and the web, at least
             one.
         top, bottom, web: thicknesses of the top, of the bottom with its bends, and of the webs.
+        weld: height of the welds of two half shells above the bottom; below them the webs are as
+            thick as the bottom.
 
     Raises:
-        SectionError: the bends are larger than the section or have no facet, or as in
+        SectionError: the bends are larger than the section or have no facet, the welds are not
+            between bends and top, or as in
             :class:`PolygonSection`.
     """
     check_numbers("u_section", height=height, width=width, radius=radius, facets=facets)
@@ -99,13 +109,19 @@ def u_section(
             f"radius must be above 0 and not above half the width and the height, {most:g} m, got "
             f"{radius:g}"
         )
+    if weld is not None and not radius < weld < height:
+        raise SectionError(
+            f"weld must be above the bends, {radius:g} m, and below the height of {height:g} m, "
+            f"got {weld:g}"
+        )
+    welds = [] if weld is None else [[width, 2.0 * weld - height]]
     fold = 0.5 * np.pi / (facets + 1)
     angles = (np.arange(facets + 1) + 0.5) * fold
     corner = radius / np.cos(0.5 * fold)
     y = 0.5 * width - radius + corner * np.sin(angles)
     z = -0.5 * height + radius - corner * np.cos(angles)
-    right = np.vstack([2.0 * np.column_stack([y, z]), [width, height]])
-    sharp = _mirror_right_half(right, [bottom, *[bottom] * facets, web, top])
+    right = np.vstack([2.0 * np.column_stack([y, z]), *welds, [width, height]])
+    sharp = _mirror_right_half(right, [bottom, *[bottom] * (facets + len(welds)), web, top])
     return bent(sharp, radius, below=0.5 * height)
 
 

@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 # would be long between different thicknesses.
 _STRAIGHT = 0.1
 
+# Half of the angle between plates in rad below which they are in one straight line.
+_IN_LINE = 1.0e-6
+
 # Gauss points and weights along a bend, exact to round-off.
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(12)
 
@@ -64,6 +67,20 @@ def trapezoids(plates: Sequence[Plate], radii: Array | float = 0.0) -> Array:
     cut, tangent = radii * np.tan(half_turns(plates)), normal[:, ::-1] * [-1.0, 1.0]
     start, end = start + cut[:, None] * tangent, end - np.roll(cut, -1)[:, None] * tangent
     return np.stack([start + first, end + last, end - last, start - first], axis=1)
+
+
+def in_line(plates: Sequence[Plate]) -> list[list[int]]:
+    """Return, for each plate, the plates that welds join to it in one straight line, in order."""
+    welded = np.abs(half_turns(plates)) < _IN_LINE
+    lines = []
+    for first in range(len(plates)):
+        last = first
+        while welded[first % len(plates)]:
+            first -= 1
+        while welded[(last + 1) % len(plates)]:
+            last += 1
+        lines.append([number % len(plates) for number in range(first, last + 1)])
+    return lines
 
 
 def outer_surfaces(section: Section) -> tuple[float, float]:

@@ -170,6 +170,9 @@ class UTable(_FoldedTable):
     """the radius of the bottom's two bends in m"""
     facets: Annotated[int, Field(strict=True, ge=1, le=MOST_FACETS)] = 3
     """the number of flat plates in each bend, which touch its circle, in shells"""
+    weld: Length | None = None
+    """the height in m of the welds of two half shells above the bottom; below them the webs are as
+    thick as the bottom; no welds unless given"""
 
 
 def _shape(value: Any) -> str:

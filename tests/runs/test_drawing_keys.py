@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 import protractile as pt
+from protractile.analysis.plate_buckling import measure_plates, plate_stresses, reduced_stress
 from protractile.analysis.rows import Rows
 from protractile.cases import run_case
 from protractile.geometry.boom import Boom
@@ -27,7 +28,7 @@ from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import UTable
 from protractile.runs.live.controls import Draft
-from protractile.runs.pipeline.combinations import combination_rows
+from protractile.runs.pipeline.combinations import combination_rows, combination_states
 from protractile.runs.pipeline.statics import boom_with_play, cylinder_force, state_at_rest
 from protractile.runs.sweep import points
 from tests.runs.case_texts import (
@@ -207,6 +208,48 @@ def test_bends_of_a_drawing_have_the_radius_of_the_tool() -> None:
     large = UTable.model_validate(sizes | keys | {"bend_radius": 0.3})
     with pytest.raises(SectionError, match=r"^bends take 0\.6 m of a plate of 0\.47 m;"):
         large.section()
+
+
+SHELLS = {"shape": "U", "top": 0.006, "bottom": 0.008, "web": 0.006, "facets": 2}
+
+
+def test_half_shells_of_two_thicknesses() -> None:
+    """Reference: analytic, plates and quarter rings; by outer sizes, the mid-lines by hand."""
+    h, b, r, weld, lower, upper = 0.6, 0.4, 0.15, 0.28, 0.008, 0.006
+    sizes = {"height": h, "width": b, "radius": r, "weld": weld}
+    made = UTable.model_validate(SHELLS | sizes).section()
+    below, above = b - 2.0 * r + pi * r + 2.0 * (weld - r), b + 2.0 * (h - weld)
+    assert made.area == pytest.approx(lower * below + upper * above, rel=1e-12)
+    around = below / lower + above / upper
+    cell = b * h - (2.0 - 0.5 * pi) * r**2
+    assert made.torsion_constant == pytest.approx(4.0 * cell**2 / around, rel=1e-12)
+    assert made.mirrors == ("y",)
+    outer = {"height": h + 0.007, "width": b + lower, "radius": r + 0.004, "weld": weld + 0.004}
+    drawn = UTable.model_validate(SHELLS | outer | {"outside": True}).section()
+    for name in ("area", "second_moment_of_area", "lateral_second_moment_of_area", "shear_area"):
+        assert getattr(drawn, name) == pytest.approx(getattr(made, name), rel=1e-12)
+    with pytest.raises(SectionError, match=r"^weld must be above the bends, 0.15 m, and below "):
+        UTable.model_validate(SHELLS | sizes | {"weld": 0.1}).section()
+
+
+def test_a_weld_within_a_plate_holds_no_buckle(tmp_path: Path) -> None:
+    """Reference: other input, the same box whose webs have no welds; each half would be stiffer."""
+    corners = [[-0.11, 0.0], [0.11, 0.0], [0.11, 0.3], [-0.11, 0.3]]
+    of_webs = [corners[0], corners[1], [0.11, 0.15], corners[2], corners[3], [-0.11, 0.15]]
+    box = "height = 0.3, width = 0.22, flange = 0.006, web = 0.006"
+    found = []
+    for places in (corners, of_webs):
+        keys = f'shape = "polygon", corners = {places}, thicknesses = {[0.006] * len(places)}'
+        text = DRAWN.replace(box, keys).replace("7850.0", "7850.0\nyield_strength = 3.55e8")
+        case = read_case(tmp_path, text + JACK + PEOPLE + FACTORS)
+        (state,) = combination_states(case)
+        (base,) = (each for each in plate_stresses(state.states) if each.segment.name == "base")
+        webs = [plate.name.startswith("right") for plate in base.plates]
+        found.append(float(reduced_stress(base)[webs].max()))
+        factors = [each for each in measure_plates(state.states) if each.part == "base"]
+        found.append(min(each.values.min() for each in factors if each.place.startswith("right")))
+    # The mean shear stresses of both halves are not quite that of the web.
+    assert found[2:] == pytest.approx(found[:2], rel=1e-3)
 
 
 def test_check_prints_the_height_of_the_axis(tmp_path: Path) -> None:

@@ -101,7 +101,7 @@ def test_reduced_stress_of_a_wall() -> None:
     arm = Segment.of_section("arm", 0.0, 5.0, steel, box)
     edges, shear = np.full((2, 1, 1, 1), -150e6), np.array([[[40e6]]])
     slenderness = np.array([[[60.0]]])
-    wall = PlateStresses(arm, box.plates[:1], np.zeros(1), edges, edges, shear, slenderness)
+    wall = PlateStresses(arm, box.plates[:1], np.zeros(1), edges, edges, edges, shear, slenderness)
     unit = pi**2 * 2.1e11 / (12.0 * 0.91 * 60.0**2)
     pressed, sheared = 150e6 / (4.0 * unit), 40e6 / (5.34 * unit)
     # For uniform compression (10.6) is 1/α = 1/2α_x + √(1/4α_x² + 1/α_τ²).
