@@ -107,6 +107,7 @@ def build_history(where: str, table: HistoryTable) -> History:
 
 # Angles in degrees of the names of horizontal directions.
 HORIZONTAL = {"behind": 0.0, "side": 90.0, "front": 180.0}
+_Angle = Annotated[float, Field(ge=-360.0, le=360.0)]
 
 
 def _direction(*others: str) -> BeforeValidator:
@@ -129,7 +130,7 @@ class LoadTable(HistoryTable):
 
     segment: str | None = None
     """the name of the segment; unless given, a force of a direction acts where the payload hangs"""
-    direction: Annotated[float | Literal["z", "y"], _direction("z", "y"), In("deg")] = "z"
+    direction: Annotated[_Angle | Literal["z", "y"], _direction("z", "y"), In("deg")] = "z"
     """z (up) or y (lateral), across the boom; or horizontal at one place, at each luffing angle:
     behind (from there), side (towards +y), front, or an angle in degrees from behind towards +y"""
     x: Place | None = None
@@ -194,7 +195,7 @@ class WindPressureTable(HistoryTable):
     unit"""
     speed: Annotated[NotNegative, In("m/s")] | None = None
     """the wind speed in m/s, instead of the pressure: 0.5 x 1.25 kg/m^3 x speed^2 (EN 13001-2)"""
-    direction: Annotated[float, _direction(), In("deg")] = 0.0
+    direction: Annotated[_Angle, _direction(), In("deg")] = 0.0
     """the direction: behind, side (towards +y), front, or an angle in degrees from behind towards
     +y"""
     shape_factor: Annotated[

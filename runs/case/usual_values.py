@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import Chassis
-from protractile.geometry.cylinder import Cylinder, EarthPoint
+from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import names_of
 from protractile.geometry.head import Head
 from protractile.geometry.joint import BareStop, Pad, SlidePad
@@ -363,7 +363,6 @@ def _of_actions(sizes: _Sizes) -> Ranges:
         },
         RopeTable: {"winch": Usual("the distance of the winch behind the foot", 0.0, 20.0, 50.0)},
         Level: dict.fromkeys(("bottom", "top"), Usual("the distance", 0.0, 0.3 * length, 20.0)),
-        EarthPoint: dict.fromkeys(("front", "below"), Usual("the distance", 0.0, length, 50.0)),
         Head: {
             **dict.fromkeys(
                 ("ahead", "below", "beside"), Usual("the distance of the load", 0.0, 10.0, 100.0)

@@ -16,11 +16,48 @@ import numpy as np
 
 from protractile.geometry.arrays import Array, Indices
 from protractile.geometry.contact_places import ContactInterval
-from protractile.geometry.section import COMPONENT, Direction
-from protractile.geometry.walls import WallsAlong
+from protractile.geometry.section import COMPONENT, Direction, distance_from_line
+from protractile.geometry.segment import Segment
 from protractile.shell_model import compat
 from protractile.shell_model.segment.cross_section import Row, quadratic
 from protractile.shell_model.segment.segment_shell import SegmentShell
+
+# Tolerance as a fraction of the height. It exceeds the distance between a tapered section and the
+# mesh, whose walls are flat between mesh lines.
+_OFF_TAPER = 1.0e-4
+
+
+class WallsAlong:
+    """Mid-lines of the sections of a segment at several x.
+
+    Args:
+        segment: segment with a section.
+        x: (num_places,) in m.
+
+    Attributes:
+        near: distance in m below which a point is on a mid-line.
+    """
+
+    def __init__(self, segment: Segment, x: Array) -> None:
+        self.near, sections, at = segment.widest.near, [segment.widest], np.zeros(x.size, dtype=int)
+        if segment.head_section is not None:
+            self.near = _OFF_TAPER * min(segment.section_at(e).size("z") for e in segment.ends)
+            places, at = np.unique(x, return_inverse=True)
+            sections = [segment.section_at(place) for place in places.tolist()]
+        self._at = at
+        self._starts = np.array([[plate.start for plate in section.plates] for section in sections])
+
+    def starts(self, plate: int) -> Array:
+        """Return the points (y, z) (num_places, 2) in m at which a plate starts."""
+        return np.asarray(self._starts[self._at, plate])
+
+    def distance(self, plate: int, places: Array) -> Array:
+        """Return distances (num_places,) in m of points (num_places, 2) from a plate.
+
+        Point i is at the x of index i.
+        """
+        start, end = self.starts(plate), self.starts((plate + 1) % self._starts.shape[1])
+        return distance_from_line(start, end, places)
 
 
 class _CornerLine(NamedTuple):
