@@ -21,6 +21,7 @@ class Kind(StrEnum):
 
     CRANE = "crane"
     LIFT = "lift"
+    ARM = "arm"
 
 
 CaseFile = Annotated[str, typer.Argument(metavar="CASE.toml", help="The case file.")]
