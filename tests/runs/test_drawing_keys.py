@@ -29,6 +29,7 @@ from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import UTable
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_rows, combination_states
+from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.pipeline.statics import boom_with_play, cylinder_force, state_at_rest
 from protractile.runs.sweep import points
 from tests.runs.case_texts import (
@@ -401,6 +402,23 @@ def test_a_drawing_says_what_was_computed_by_hand(tmp_path: Path, drawn: str, by
     case = read_case(tmp_path, drawn + more)
     assert read_case(tmp_path, toml.dumps(case)) == case
     same(combination_rows(case), combination_rows(read_case(tmp_path, by_hand + more)))
+
+
+def test_a_hand_force_tips_at_the_height_of_the_head(tmp_path: Path) -> None:
+    """Reference: analytic, force times height above the ground, but for the deflection of 2 ‰; the
+    moment about the end of the boom is 3 % of it."""
+    chassis = table(
+        "[chassis]", mass=6e3, centre=0.0, front=1.5, rear=1.5, side=1.5, foot_ahead=0.5,
+        foot_above=1.0,
+    )  # fmt: skip
+    factors = table("[[combination]]", name="A", factors={"dead": 1.0, "payload": 1.0})
+    overturning = []
+    for load in ("", HAND):
+        case = read_case(tmp_path, DRAWN + JACK + HEAD + chassis + load + factors)
+        (state,) = combination_states(case)
+        overturning.append(next(iter(proofs_of(state, case, ["tipping"]))).value)
+    height = 1.0 + 10.8 * ACROSS - 0.5 * ALONG
+    assert overturning[1] - overturning[0] == pytest.approx(400.0 * height, rel=4e-3)
 
 
 def test_a_hand_force_in_space_bends_and_twists(tmp_path: Path) -> None:
