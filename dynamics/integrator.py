@@ -176,8 +176,8 @@ class AdaptiveStep:
     def __call__(self, motion: Motion, progress: Progress | None = None) -> Trajectory:
         report = progress or (lambda part: None)
         error = _Error(motion)
-        schedule = self._distribute(motion, error, lambda part: report(0.5 * part))
-        coarse, fine = schedule.run(motion), schedule.finer().run(motion)
+        schedule, fine = self._distribute(motion, error, lambda part: report(0.5 * part))
+        coarse = schedule.run(motion)
         differences = [error.between(coarse, schedule.coarser().run(motion))]
         most = _MOST_REFINED * MOST_STEPS * max(1.0, TOLERANCE / self.tolerance)
         independent = max(_INDEPENDENT, 10.0 * self.tolerance)
@@ -201,8 +201,13 @@ class AdaptiveStep:
         report(1.0)
         return fine.trajectory(schedule.substeps, schedule.window, estimate)
 
-    def _distribute(self, motion: Motion, error: _Error, progress: Progress) -> StepSchedule:
-        """Return the steps with which the windows have equal errors, for a first comparison."""
+    def _distribute(
+        self, motion: Motion, error: _Error, progress: Progress
+    ) -> tuple[StepSchedule, Integration]:
+        """Return the steps with which the windows have equal errors, for a first comparison.
+
+        The motion with half the steps follows.
+        """
         run = Integration.begin(motion)
         outputs, output_step = motion.outputs, motion.output_step
         window = _power_of_two(error.period / output_step, 1, _LONGEST)
@@ -232,14 +237,16 @@ class AdaptiveStep:
                 substeps *= 2
             for kept, reached in zip(run.state, state, strict=True):
                 kept[...] = reached
-            steps_of_windows.append(max(fewest, substeps // 2))
+            steps_of_windows.append(substeps)
             if errors[-1] > limit:
                 # The next window may need fewer halvings than this one.
                 substeps = max(fewest, substeps // 8)
             elif errors[-1] < _COARSEN_BELOW * limit:
                 substeps = max(fewest, substeps // 2)
             progress(last / outputs)
-        return StepSchedule(tuple(steps_of_windows), window)
+        schedule = StepSchedule(tuple(max(fewest, n // 2) for n in steps_of_windows), window)
+        finer = schedule.finer()
+        return schedule, run if finer.substeps == tuple(steps_of_windows) else finer.run(motion)
 
     def like(self, trajectory: Trajectory) -> StepSchedule:
         """Return the integrator with the steps of a trajectory."""

@@ -30,6 +30,9 @@ from protractile.shell_model.segment.shell import ON_LINE
 from protractile.shell_model.segment.solver import times
 from protractile.shell_model.stress.stresses import COMPONENTS, Modes, triangle_areas
 
+# Number of triangles whose stresses are computed together, which fit in the cache of the processor.
+_TOGETHER = 64
+
 
 def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     """Return stresses (num_modes, num_triangles, 6) in Pa on rank 0, None elsewhere. Collective.
@@ -37,24 +40,24 @@ def gather_stress_modes(shell: SegmentShell, shapes: Array) -> Modes | None:
     ``shapes`` (num_owned, num_modes) are this rank's rows of the shapes.
     """
     form, component = _stress_form(shell.space, shell.segment)
-    columns, of_cells = [], None
+    matrices = []
     for unit in np.eye(len(COMPONENTS)):
         component.value[:] = unit
-        matrix = compat.assemble_matrix(form, [], diagonal=0.0)
-        if of_cells is None:
-            of_cells = _CellShapes.gather(shell.space, matrix, shapes)
-        columns.append(of_cells.times(matrix).astype(np.float32))
+        matrices.append(compat.assemble_matrix(form, [], diagonal=0.0))
+    of_cells = _CellShapes.gather(shell.space, matrices[0], shapes)
+    products = of_cells.times(np.array([matrix.getValuesCSR()[2] for matrix in matrices]))
+    for matrix in matrices:
         matrix.destroy()
     domain = shell.space.mesh
-    places = np.asarray(domain.topology.original_cell_index)[: len(columns[0])]
-    gathered = shell.comm.gather((places, np.array(columns)))
+    places = np.asarray(domain.topology.original_cell_index)[: len(products)]
+    gathered = shell.comm.gather((places, products))
     if gathered is None:
         return None
     mesh = shell.mesh
     assert mesh is not None
     modes = np.zeros((shapes.shape[1], len(mesh.triangles), len(COMPONENTS)), dtype=np.float32)
-    for triangles, values in gathered:
-        modes[:, triangles, :] = values.transpose(2, 1, 0)
+    for triangles, product in gathered:
+        modes[:, triangles, :] = product.transpose(2, 0, 1)
     modes /= triangle_areas(mesh.points, mesh.triangles)[:, None].astype(np.float32)
     # The form gives bending stress per distance from the mid-surface.
     modes[:, :, 3:] *= 0.5 * mesh.thickness[:, None].astype(np.float32)
@@ -95,13 +98,18 @@ class _CellShapes(NamedTuple):
         places = np.take_along_axis(place.reshape(cells.shape), order, axis=1)
         return cls(selected, places, order)
 
-    def times(self, matrix: PETSc.Mat) -> Array:
-        """Return the product (num_triangles, num_modes) of a matrix and the shapes."""
-        _, _, values = matrix.getValuesCSR()
-        weights = np.take_along_axis(values.reshape(self.order.shape), self.order, axis=1)
-        product = np.zeros((len(self.order), self.shapes.shape[1]))
-        for weight, place in zip(weights.T, self.places.T, strict=True):
-            product += weight[:, None] * self.shapes[place]
+    def times(self, values: Array) -> Modes:
+        """Return the products (num_triangles, num_matrices, num_modes) of matrices and the shapes.
+
+        ``values`` (num_matrices, num_entries) are those of the matrices.
+        """
+        order = self.order[:, None]
+        weights = values.reshape(len(values), *self.order.shape).swapaxes(0, 1)
+        weights = np.take_along_axis(weights, order, axis=2)
+        product = np.empty((*weights.shape[:2], self.shapes.shape[1]), dtype=np.float32)
+        for begin in range(0, len(order), _TOGETHER):
+            some = slice(begin, begin + _TOGETHER)
+            product[some] = weights[some] @ self.shapes[self.places[some]]
         return product
 
 
