@@ -2,8 +2,6 @@
 """Ensembles of changed systems, and horizons of predictability."""
 
 import os
-import subprocess
-from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -27,6 +25,7 @@ from protractile.dynamics.predictability import (
     perturbations,
     vary_motion,
 )
+from tests.at_once import AtOnce
 from tests.dynamics.reference import CHAOTIC, LINEAR
 
 THROWN = np.array([0.5, -1.0])
@@ -71,35 +70,6 @@ def test_unequal_plays_vary_by_equal_fractions(above: float, expected: float) ->
     assert found.below == pytest.approx(0.012012, rel=1e-12)
 
 
-OTHER_RANK = """
-import os
-from mpi4py import MPI
-from mpi4py.futures import MPICommExecutor
-from protractile.dynamics.integrator import AdaptiveStep, FixedStep, Integrator
-from protractile.dynamics.motion import Motion
-from protractile.dynamics.predictability import integrate_ensemble
-from tests.dynamics.reference import CHAOTIC
-
-with MPICommExecutor(MPI.COMM_WORLD, root=0) as ranks:
-    if ranks is not None:
-        assert ranks.submit(os.getpid).result() != os.getpid()
-        one, two = (
-            integrate_ensemble(Motion(CHAOTIC, 10.0, 1e-2), 3, 1e-6, 3, "load", executor=executor)
-            for executor in (None, ranks)
-        )
-        print("identical" if one.identical(two) else "different")
-"""
-
-
-def test_another_rank_gives_the_same(
-    two_ranks: Callable[..., subprocess.CompletedProcess[str]],
-) -> None:
-    """Reference: other code path. Chaos would amplify any difference of bits."""
-    pytest.importorskip("mpi4py", reason="ranks need mpi4py")
-    answer = two_ranks(OTHER_RANK)
-    assert (answer.returncode, answer.stdout.split()) == (0, ["identical"]), answer.stderr
-
-
 def test_changes_are_uniform_and_spare_member_0() -> None:
     """Reference: analytic. Uniform within ±ε: the mean is 0, the deviation ε/√3."""
     changes = perturbations(10_001, 1e-3, 5)
@@ -116,6 +86,9 @@ def test_the_same_seed_gives_same_on_any_number_of_cores(monkeypatch: pytest.Mon
         monkeypatch.setattr(os, "sched_getaffinity", lambda _, cores=cores: cores)
         found.append(integrate_ensemble(Motion(CHAOTIC, 10.0, 1e-2), 6, 1e-6, 3, "load"))
     xr.testing.assert_identical(*found)
+    executor = AtOnce()  # as of several ranks
+    apart = integrate_ensemble(Motion(CHAOTIC, 10.0, 1e-2), 6, 1e-6, 3, "load", executor=executor)
+    xr.testing.assert_identical(apart, found[0])
     other = integrate_ensemble(Motion(CHAOTIC, 10.0, 1e-2), 6, 1e-6, 4, "load")
     assert not np.array_equal(other["tip"], found[0]["tip"])
 
