@@ -23,16 +23,14 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
 from protractile.geometry.axial import with_compression
-from protractile.geometry.boom import Boom, BoomError, Joint, Material, PointMass, Segment, Support
+from protractile.geometry.boom import Boom, BoomError, Material, PointMass, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from protractile.geometry.observation import Observation
-from protractile.geometry.profiles import octagon
 from protractile.runs.case.kinds.finite_element import BeamElements
 from studies import taper
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import (
-    FREE_FREE,
     PINNED_FREE,
     PINNED_PINNED,
     OverhangingBeam,
@@ -58,35 +56,23 @@ def shear_stiffness(segment: Segment, theory: Theory) -> float:
     return 2.0 * segment.section.height * segment.section.web * 2.1e11 / 2.6
 
 
-def test_mass_beside_a_node_costs_no_digits() -> None:
-    """Reference: other mesh, without the node at 1 mm from the mass. Rigid modes have ω = 0."""
+def test_frequencies_converge_at_order_four() -> None:
+    """Reference: analytic βL, and another mesh without the node at 1 mm from a mass. Rigid modes
+    have ω = 0.
+    """
+    segment = beam(supports=(3.0,))
+    expected = angular_frequencies(segment, PINNED_FREE)
+    errors = np.array([
+        frequencies(bending(segment, 5.0 / count, (), "euler-bernoulli", False))[:3] / expected - 1
+        for count in (8, 16, 32)
+    ])  # fmt: skip
+    assert np.log2(errors[1] / errors[2]) == pytest.approx(4.0, abs=0.1)
+    assert 0.0 < errors[-1].max() < 1.0e-5
     segment = beam(masses=(PointMass(5.001, 20.0),))
     alone, beside = (bending(segment, 0.3, x, "euler-bernoulli", False) for x in ((), (5.0,)))
     np.testing.assert_allclose(frequencies(beside)[:4], frequencies(alone)[:4], rtol=1e-5)
     squares = eigh(beside.stiffness, beside.mass, eigvals_only=True)
     np.testing.assert_allclose(squares[:2], 0.0, atol=1e-9 * squares[2])
-
-
-@pytest.mark.parametrize(
-    ("supports", "numbers"),
-    [((), FREE_FREE), ((3.0, 8.0), PINNED_PINNED), ((3.0,), PINNED_FREE)],
-    ids=["free-free", "pinned-pinned", "pinned-free"],
-)
-def test_frequencies_converge_at_order_four(
-    supports: tuple[float, ...], numbers: tuple[float, ...]
-) -> None:
-    """Reference: analytic βL. Order of convergence and error."""
-    segment = beam(supports=supports)
-    expected = angular_frequencies(segment, numbers)
-    errors = []
-    for count in (8, 16, 32):
-        model = bending(segment, 5.0 / count, (), "euler-bernoulli", False)
-        assert model.rigid_modes == 2 - len(supports)
-        errors.append(frequencies(model)[:3] / expected - 1.0)
-    slopes = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
-    assert slopes[1] == pytest.approx(4.0, abs=0.1)
-    assert 0.0 < errors[-1].max() < 1.0e-5
-    assert errors[-1][0] < 5.0e-7
 
 
 @pytest.mark.parametrize("rotary_inertia", [False, True])
@@ -115,7 +101,7 @@ def test_shear_flexible_frequencies_of_two_pinned_ends(rotary_inertia: bool) -> 
 
 
 @pytest.mark.parametrize("theory", THEORIES)
-@pytest.mark.parametrize("length", [20.0, 1.3, 0.4])
+@pytest.mark.parametrize("length", [20.0, 0.4])
 def test_statics_are_exact_at_nodes_of_any_mesh(theory: Theory, length: float) -> None:
     """Reference: analytic, an overhanging beam under its load, and forces at breaks and tip."""
     segment = beam(supports=(3.0, 4.2), load=-4000.0)
@@ -131,8 +117,7 @@ def test_statics_are_exact_at_nodes_of_any_mesh(theory: Theory, length: float) -
 
 
 @pytest.mark.parametrize("theory", THEORIES)
-@pytest.mark.parametrize("length", [4.5, 0.5])
-@pytest.mark.parametrize("clamped", [True, False])
+@pytest.mark.parametrize(("clamped", "length"), [(True, 4.5), (False, 0.5)])
 def test_requested_outputs_are_exact_under_a_uniform_load(
     clamped: bool, length: float, theory: Theory
 ) -> None:
@@ -166,7 +151,7 @@ def test_requested_outputs_are_exact_under_a_uniform_load(
 
 
 @pytest.mark.parametrize("theory", THEORIES)
-@pytest.mark.parametrize("apart", [1.0e-4, 1.0e-5, 1.0e-7])
+@pytest.mark.parametrize("apart", [1.0e-4, 1.0e-7])
 def test_places_too_near_for_element_share_node(theory: Theory, apart: float) -> None:
     """Reference: analytic, an overhanging beam under a force at one of two close positions."""
     segment = beam(supports=(3.0, 4.2), masses=(PointMass(8.0 - apart, 1.0),))
@@ -177,8 +162,7 @@ def test_places_too_near_for_element_share_node(theory: Theory, apart: float) ->
         assert model.at(x) @ rest == pytest.approx(exact.deflection(x), rel=2e-5, abs=0.0)
 
 
-@pytest.mark.parametrize("theory", THEORIES)
-@pytest.mark.parametrize("rotary_inertia", [False, True])
+@pytest.mark.parametrize(("theory", "rotary_inertia"), [(THEORIES[0], True), (THEORIES[1], False)])
 def test_rigid_motions(theory: Theory, rotary_inertia: bool) -> None:
     """Reference: analytic. Rigid motions have no strain, the mass m̄ L and the inertia
     m̄ L³/12 + I_p L about the midpoint.
@@ -199,24 +183,6 @@ def test_rigid_motions(theory: Theory, rotary_inertia: bool) -> None:
     assert lift @ model.load == pytest.approx(35.0, rel=1e-12)
     assert abs(turn @ model.load) < 1e-9
     assert model.at(4.321) @ turn == pytest.approx(4.321 - 5.5, rel=1e-12)
-
-
-@pytest.mark.parametrize(
-    ("length", "breaks", "nodes"),
-    [
-        (10.0, (), 3),  # 3, 4, 8
-        (1.0, (), 6),
-        (0.3, (), 4 + 14 + 1),
-        (0.1, (), 51),
-        (10.0, (4.0, 8.0, 5.0 + 1e-12, 5.0), 4),
-        (10.0, (2.9, 8.1), 3),  # places off the segment are not its own
-    ],
-)
-def test_elements_are_no_longer_than_asked(
-    length: float, breaks: tuple[float, ...], nodes: int
-) -> None:
-    model = bending(beam(supports=(4.0,)), length, breaks, "euler-bernoulli", True)
-    assert len(model.load) == 2 * nodes - 1
 
 
 def test_shear_needs_a_section() -> None:
@@ -244,7 +210,7 @@ def elements(boom: Boom, theory: Theory) -> list[SegmentModel]:
     return finite_element_segments(boom, LENGTH, theory, rotary_inertia=False)
 
 
-@pytest.mark.parametrize("theory", ["euler-bernoulli", "timoshenko"])
+@pytest.mark.parametrize("theory", THEORIES)
 def test_default_elements_are_near_the_cone(theory: Theory) -> None:
     """Reference: analytic, a cone's tip, frequency, buckling (Kirchhoff 1879, Dinnik 1929)."""
     boom = taper.arm(0.1 * taper.critical())
@@ -333,18 +299,6 @@ def test_section_forces_are_those_of_statics(kind: str) -> None:
     np.testing.assert_allclose(found["shear"], -1000.0, rtol=5e-3)
 
 
-def test_it_lies_on_its_side() -> None:
-    """Reference: other code path, the turned sections. Frequencies agree to round-off."""
-    rolled = Segment.of_section(
-        "arm", 0.0, 8.0, STEEL, ROOT.turned(), head_section=HEAD.turned(), supports=(CLAMP,)
-    )
-    found, reference = (
-        gap_system(boom, elements(boom, "timoshenko")).frequencies[:3]
-        for boom in (Boom((arm().turned(),), ()), Boom((rolled,), ()))
-    )
-    np.testing.assert_allclose(found, reference, rtol=1e-9)
-
-
 def test_twist_follows_the_local_constant() -> None:
     """Reference: analytic, ∫ dx/(G J_t) under 1 N m at the free end, in series and elements."""
     soft, _ = quad(lambda x: 1.0 / (STEEL.shear_modulus * local(x).torsion_constant), 0.0, 8.0)
@@ -357,27 +311,3 @@ def test_twist_follows_the_local_constant() -> None:
         row = twist.at(8.0)
         # A linear element has the stiffness of its middle: 1e-4 of the whole.
         assert row @ np.linalg.solve(twist.stiffness, row) == pytest.approx(soft, rel=1e-5)
-
-
-def test_tapered_sections_fit_at_the_overlap() -> None:
-    """Reference: by hand, 0.62 m in 0.6 m less 20 and 10 mm walls: clearance −0.05 m."""
-    outer = replace(arm(), head_section=replace(ROOT, height=0.6))
-    inner = BoxSection(height=0.5, width=0.4, flange=0.01, web=0.01)
-    fly = Segment.of_section(
-        "fly", 6.0, 14.0, STEEL, inner, head_section=replace(inner, height=0.98), masses=()
-    )
-    joint = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01)
-    with pytest.raises(ValueError, match=r"joints\[0\].play: 'fly' does not fit in 'arm': -0.05 m"):
-        Boom((outer, fly), (joint,))
-    slender = replace(fly, head_section=replace(inner, height=0.3))
-    assert [one.x for one in Boom((outer, slender), (joint,)).stations] == [6.0, 8.0]
-
-
-def test_ends_have_equal_shapes() -> None:
-    """Reference: exact messages."""
-    other = octagon(0.3, 0.35, 0.05, 0.01, 0.01, 0.008)
-    with pytest.raises(ValueError, match=r"segments\[0\].head_section: has other shapes than the"):
-        Boom((replace(arm(), head_section=other),), ())
-    loaded = replace(arm(), masses=(PointMass(8.0, 10.0),), section=None)
-    with pytest.raises(ValueError, match="a segment tapers from a section; give section"):
-        Boom((loaded,), ())

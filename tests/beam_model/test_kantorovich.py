@@ -8,7 +8,7 @@ import pytest
 from scipy.signal import find_peaks
 
 from protractile.beam_model.boom_modes import BoomModes
-from protractile.beam_model.component import Component, natural_modes
+from protractile.beam_model.component import Component
 from protractile.beam_model.finite_element import finite_element_segment
 from protractile.beam_model.kantorovich import Base, kantorovich_bending, rigid_segment
 from protractile.beam_model.segment_model import gap_system
@@ -27,7 +27,6 @@ from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, PointMass, Support
 from tests.beam_model.exact import (
     CLAMPED_FREE,
-    FREE_FREE,
     PINNED_FREE,
     PINNED_PINNED,
     angular_frequencies,
@@ -48,46 +47,25 @@ def outside_of_span(model: Component, function: Array, x: Array) -> float:
     return float(np.linalg.norm(functions @ coefficients - function) / np.linalg.norm(function))
 
 
-@pytest.mark.parametrize(("base", "first"), [("as printed", 1), ("pinned", 0), ("complete", 0)])
-@pytest.mark.parametrize("terms", [2, 5])
-def test_outer_functions_are_those_of_the_paper(
-    paper_boom: Boom, base: Base, first: int, terms: int
-) -> None:
-    """Reference: external source, (29). The functions span x^i (x − x0)(x − x1) alone."""
-    outer = paper_boom.segments[0]
-    model = kantorovich_bending(outer, terms, base, rotary_inertia=False)
-    x = np.linspace(0.0, 10.0, 61)
-    printed = [x**i * x * (x - 2.0) for i in range(first, first + terms)]
-    assert model.load.shape == (terms,)
-    assert max(outside_of_span(model, function, x) for function in printed) < 1e-10
-    assert outside_of_span(model, x ** (first + terms) * x * (x - 2.0), x) > 1e-5
-
-
 @pytest.mark.parametrize("base", ["as printed", "pinned", "complete"])
-@pytest.mark.parametrize("terms", [1, 2, 3, 5])
-def test_inner_functions_are_those_of_the_paper(paper_boom: Boom, base: Base, terms: int) -> None:
-    """Reference: external source. The functions span (30) and (31), i = 1, 2, 3, …, alone; the
-    complete ones span all powers of x below the number of terms.
+@pytest.mark.parametrize("terms", [2, 5])
+def test_functions_are_those_of_the_paper(paper_boom: Boom, base: Base, terms: int) -> None:
+    """Reference: external source. The outer functions span (29), x^i (x − x0)(x − x1), alone, the
+    inner ones (30) and (31); the complete ones span all powers of x below the number of terms.
     """
-    inner = paper_boom.segments[1]
-    model = kantorovich_bending(inner, terms, base, rotary_inertia=False)
-    x = np.linspace(9.0, 19.0, 61)
-    printed = [(x - 9.0) ** i for i in range(terms + 1)]
-    if base != "complete":
-        printed[2:] = [power * (x - 19.0) for power in printed[2:]]
-    assert model.load.shape == (terms,)
-    assert max(outside_of_span(model, function, x) for function in printed[:terms]) < 1e-10
-    assert outside_of_span(model, printed[terms], x) > 1e-5
+    first = int(base == "as printed")
+    x, y = np.linspace(0.0, 10.0, 61), np.linspace(0.0, 10.0, 61) - 10.0
+    outer = [x**i * x * (x - 2.0) for i in range(first, first + terms + 1)]
+    inner = [x**i * (y if i > 1 and base != "complete" else 1.0) for i in range(terms + 1)]
+    for segment, printed in zip(paper_boom.segments, (outer, inner), strict=True):
+        model = kantorovich_bending(segment, terms, base, rotary_inertia=False)
+        places = segment.start + x
+        assert model.load.shape == (terms,)
+        assert max(outside_of_span(model, each, places) for each in printed[:-1]) < 1e-10
+        assert outside_of_span(model, printed[-1], places) > 1e-5
 
 
-def test_printed_inner_functions_keep_the_tip_on_the_tangent_at_the_tail(paper_boom: Boom) -> None:
-    """Reference: analytic, u(x4) = u(x2) + u'(x2) (x4 − x2) of each of (30), (31)."""
-    model = kantorovich_bending(paper_boom.segments[1], 9, "as printed", rotary_inertia=False)
-    tangent = model.at(9.0) + 10.0 * model.at(9.0, 1)
-    assert np.abs(model.at(19.0) - tangent).max() < 1e-8
-
-
-@pytest.mark.parametrize("terms", [3, 24, 60])
+@pytest.mark.parametrize("terms", [3, 60])
 def test_complete_and_pinned_are_one_space_on_pinned_supports(paper_boom: Boom, terms: int) -> None:
     """Reference: analytic. Roots and supports give the same polynomials, by ascending degree."""
     outer = paper_boom.segments[0]
@@ -102,8 +80,6 @@ def test_complete_and_pinned_are_one_space_on_pinned_supports(paper_boom: Boom, 
     ("base", "supports", "numbers"),
     [
         ("pinned", (3.0, 8.0), PINNED_PINNED),
-        # The printed inner functions lack one (see above); the complete ones do not.
-        ("complete", (), FREE_FREE),
         ("pinned", (3.0,), PINNED_FREE),
         # As printed the base has no slope: a cantilever, without rigid mode.
         ("as printed", (3.0,), CLAMPED_FREE),
@@ -117,39 +93,6 @@ def test_frequencies_of_plain_beams(
     model = kantorovich_bending(segment, 14, base, rotary_inertia=False)
     expected = angular_frequencies(segment, numbers)
     np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-6)
-
-
-@pytest.mark.parametrize("base", ["as printed", "pinned", "complete"])
-@pytest.mark.parametrize("number", [0, 1], ids=["outer", "inner"])
-def test_modes_stay_orthonormal_with_many_terms(paper_boom: Boom, base: Base, number: int) -> None:
-    """Reference: analytic. With twelve functions per segment, powers of x would lose all digits."""
-    segment = paper_boom.segments[number]
-    model = kantorovich_bending(segment, 12, base, rotary_inertia=False)
-    modes = natural_modes(model.stiffness, model.mass, model.rigid_modes)
-    unit = modes.shapes.T @ model.mass @ modes.shapes
-    np.testing.assert_allclose(unit, np.eye(12), atol=1e-8)
-    strain = modes.shapes.T @ model.stiffness @ modes.shapes
-    # Relative to the modes of each entry: relative to the highest ω², the lowest would be free.
-    omega = np.sqrt(modes.omega2)
-    omega[: segment.rigid_modes] = omega[segment.rigid_modes]
-    unit_strain = strain / np.outer(omega, omega)
-    np.testing.assert_allclose(unit_strain, np.diag(modes.omega2 / omega**2), rtol=0.0, atol=1e-8)
-    assert (modes.omega2[: segment.rigid_modes] == 0.0).all()
-    assert (np.diff(modes.omega2[segment.rigid_modes :]) > 0.0).all()
-
-
-@pytest.mark.parametrize("base", ["as printed", "pinned", "complete"])
-@pytest.mark.parametrize("number", [0, 1], ids=["outer", "inner"])
-def test_frequencies_fall_with_every_term(paper_boom: Boom, base: Base, number: int) -> None:
-    """Reference: analytic, Rayleigh-Ritz in growing spaces."""
-    segment = paper_boom.segments[number]
-    before = np.zeros(0)
-    for terms in range(3, 19):
-        model = kantorovich_bending(segment, terms, base, rotary_inertia=False)
-        now = frequencies(model)
-        assert (now[: before.size] <= before * (1.0 + 1e-9)).all()
-        assert (now[1 : 1 + before.size] >= before[: now.size - 1] * (1.0 - 1e-9)).all()
-        before = now
 
 
 def test_pinned_outer_series_converges_to_the_beam(paper_boom: Boom) -> None:
@@ -249,19 +192,6 @@ def test_a_body_swings_on_springs(paper_boom: Boom) -> None:
     assert np.sqrt(np.sort(modes.omega2)) == pytest.approx(np.sort(expected), rel=1e-12)
 
 
-def test_supports_leave_unheld_rigid_motions_free(paper_boom: Boom, spatial_boom: Boom) -> None:
-    outer, inner = spatial_boom.segments
-    sizes = {
-        name: component.load.size for name, component in rigid_segment(inner).components.items()
-    }
-    assert sizes == {"z": 2, "y": 2, "twist": 1}
-    clamped = rigid_segment(replace(outer, supports=(Support(0.0, "clamped"),)))
-    assert [component.load.size for component in clamped.components.values()] == [0, 0, 0]
-    hinged = rigid_segment(replace(paper_boom.segments[0], supports=(Support(2.0),)))
-    row = hinged.components["z"].at(7.0) / hinged.components["z"].at(3.0)
-    assert row == pytest.approx([5.0], rel=1e-12)
-
-
 @pytest.fixture
 def five_terms(paper_boom: Boom, paper_law: PowerContact) -> GapSystem:
     return gap_system(touching(paper_boom, paper_law), beam_series(paper_boom, (2, 3)))
@@ -334,17 +264,16 @@ def test_with_friction_a_small_change_stays_small(five_terms: GapSystem) -> None
         frictions=[DryFriction(0.2, 0, 4500.0), DryFriction(0.2, 1, 5000.0)],
     )
 
-    def change(system: GapSystem) -> tuple[Trajectory, Trajectory]:
+    def change(system: GapSystem, step: float) -> list[Trajectory]:
         changed = replace(system, load=system.load * (1.0 + 1e-9))
-        run = FixedStep(4.0e-6)
-        return run(Motion(system, 5.0)), run(Motion(changed, 5.0))
+        return [FixedStep(step)(Motion(each, 5.0)) for each in (system, changed)]
 
-    one, other = change(rubbing)
+    one, other = change(rubbing, 4.0e-6)
     tip = one.data["tip"].values
     assert np.abs(tip - other.data["tip"].values).max() < 1e-7 * np.ptp(tip)
     assert one.data.attrs["contact_changes"] > 20
     # Without friction the same change grows to the size of the motion.
-    free = change(five_terms)
+    free = change(five_terms, 2.0e-5)
     apart = np.abs(free[0].data["tip"].values - free[1].data["tip"].values)
     assert apart.max() > 0.1 * np.ptp(tip)
 
@@ -359,9 +288,11 @@ def heavy(paper_boom: Boom) -> GapSystem:
     return replace(system, load=9.81 * system.load)
 
 
-@pytest.mark.parametrize("ratio", [0.005, 0.02, 0.05])
-def test_pressed_modes_have_the_ratio(heavy: GapSystem, ratio: float) -> None:
-    """Reference: analytic, Φᵀ C Φ = 2ζω with a positive semidefinite C."""
+def test_pressed_modes_have_the_ratio(heavy: GapSystem) -> None:
+    """Reference: analytic, Φᵀ C Φ = 2ζω with a positive semidefinite C. The amplitude of an
+    oscillator decays at the rate ζω; rigid motions lose speed no faster than the first mode.
+    """
+    ratio = 0.02
     damped = with_modal_damping(heavy, ratio)
     omega, shapes = closed_contact_modes(heavy)
     found = shapes[:, :8].T @ damping_matrix(damped) @ shapes[:, :8]
@@ -370,21 +301,14 @@ def test_pressed_modes_have_the_ratio(heavy: GapSystem, ratio: float) -> None:
     hertz, ratios = closed_contact_damping(damped)
     np.testing.assert_allclose(ratios[:8], ratio, rtol=1e-9)
     np.testing.assert_allclose(hertz, omega / (2.0 * np.pi))
-
-
-def test_rigid_motions_lose_speed_no_faster_than_the_first_mode(heavy: GapSystem) -> None:
-    """Reference: analytic. The amplitude of an oscillator decays at the rate ζω."""
-    damped = with_modal_damping(heavy, 0.02)
-    first = closed_contact_modes(heavy)[0][0]
     rigid = heavy.omega2 == 0.0
     assert rigid.sum() == 2
     expected = np.zeros((2, heavy.num_modes))
-    expected[:, rigid] = 0.02 * first * np.eye(2)
+    expected[:, rigid] = ratio * omega[0] * np.eye(2)
     np.testing.assert_allclose(damping_matrix(damped)[rigid], expected, atol=1e-12)
 
 
-@pytest.mark.parametrize("ratio", [0.005, 0.02, 0.05])
-@pytest.mark.parametrize("mode", [0, 1, 2])
+@pytest.mark.parametrize(("mode", "ratio"), [(0, 0.05), (2, 0.005)])
 def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio: float) -> None:
     """Reference: analytic, the logarithmic decrement 2πζ/√(1 − ζ²)."""
     omega, shapes = closed_contact_modes(heavy)

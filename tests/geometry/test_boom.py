@@ -283,6 +283,8 @@ FLAT: dict[str, dict[str, Any]] = {
          "inner": {"section": u_section(0.30, 0.20, 0.02, 1, 0.005, 0.005, 0.005)}},
     "segments[0].head_section: has other shapes than the one at the tail; a segment tapers "
     "between sections of one kind": {"outer": {"head_section": OCTAGONS[0]["section"]}},
+    "segments[0].head_section: a segment tapers from a section; give section, at its tail":
+        {"outer": {"head_section": BoxSection(0.4, 0.3, 0.01, 0.01), "section": None}},
     f"segments[0]: {LOOSE.format('outer')}":
         {"outer": on(replace(HINGE, stiffness=1e6)), "stops": (replace(BOTH, x=0.0),)},
     f"segments[0]: {LOOSE.format('outer')} ": # by a cylinder through its hinge
