@@ -28,7 +28,6 @@ from protractile.dynamics.motion import MOST_STEPS, Motion
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.kantorovich import Kantorovich
 from protractile.runs.pipeline.models import MotionPlan, build
-from tests import rubbing
 from tests.dynamics.reference import CHAOTIC, LINEAR, RATTLING, two_modes
 from tests.dynamics.test_time_step import driven, lossy_press, pressed, sliding, telescoping
 from tests.modal import one_mass, oscillator
@@ -245,72 +244,48 @@ def test_large_first_differences_are_no_chaos() -> None:
 ROOT = Path(__file__).parents[2]
 
 
-def answer(*program: str, folder: Path = ROOT, **environment: str) -> str:
-    """Return the output of Python in a process of its own."""
-    run = subprocess.run(
-        [sys.executable, "-B", *program],
-        cwd=folder,
-        env=os.environ | environment,
-        capture_output=True,
-        check=True,
-        text=True,
-    )
-    assert not run.stderr
-    return run.stdout
+def cache_of(folder: Path, more: str = "", locked: bool = False, **environment: str) -> Path:
+    """Return where dynamics that are installed in a folder keep their loops, by another process.
 
-
-def installed(folder: Path, more: str = "") -> Path:
-    """Copy the dynamics into a package in a folder, with more text in a module of formulas."""
+    ``more`` is text in a module of formulas. Nothing can be written to a ``locked`` installation.
+    """
     place = folder / "protractile"
     no_cache = shutil.ignore_patterns("__pycache__")
     shutil.copytree(ROOT / "dynamics", place / "dynamics", ignore=no_cache)
     (place / "__init__.py").touch()
     with (place / "dynamics" / "contact.py").open("a", encoding="utf-8") as source:
         source.write(more)
-    return place
-
-
-def test_installations_with_equal_sources_share_their_loops(tmp_path: Path) -> None:
-    """Reference: by construction; one installation differs in a formula that loops inline."""
-    program = "from protractile.dynamics.kernels.march import march; print(march.stats.cache_path)"
-    folders = [
-        Path(answer("-c", program, folder=tmp_path, PYTHONPATH=str(place.parent),
-                    NUMBA_CACHE_DIR=str(tmp_path)).strip())
-        for place in (installed(tmp_path / "same"), installed(tmp_path / "other", "# changed\n"))
-    ]  # fmt: skip
-    own = Path(march.march.stats.cache_path).name
-    assert [folder.parent for folder in folders] == [tmp_path, tmp_path]
-    assert folders[0].name == own != folders[1].name
-
-
-def test_a_read_only_home_and_installation(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A file in place of a folder prevents writing, also for root."""
-    for package in installed(tmp_path).glob("**/__init__.py"):
+    for package in place.glob("**/__init__.py") if locked else ():
         (package.parent / "__pycache__").touch()
+    run = subprocess.run(
+        [sys.executable, "-B", "-c", "from protractile.dynamics.kernels.march import march; "
+         "print(march.stats.cache_path)"],
+        cwd=folder, env=os.environ | environment | {"PYTHONPATH": str(folder)},
+        capture_output=True, check=True, text=True,
+    )  # fmt: skip
+    assert not run.stderr
+    return Path(run.stdout.strip())
+
+
+def test_installations_with_equal_sources_share_their_loops(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Reference: by construction; one installation differs in a formula that loops inline. A file
+    in place of a folder prevents writing, also for root.
+    """
+    cache = tmp_path / "cache"
+    one, other = (
+        cache_of(tmp_path / name, more, NUMBA_CACHE_DIR=str(cache))
+        for name, more in (("same", ""), ("other", "# changed\n"))
+    )
+    own = Path(march.march.stats.cache_path).name
+    assert one.parent == other.parent == cache
+    assert one.name == own != other.name
     (tmp_path / "tmp").mkdir()
     home = tmp_path / "home"
     home.touch()
-    program = (
-        "from numba import config; import protractile.dynamics.kernels.modal_flow; "
-        "print(config.CACHE_DIR)"
-    )
     monkeypatch.delenv("NUMBA_CACHE_DIR", raising=False)
-    found = answer("-c", program, folder=tmp_path, HOME=str(home), XDG_CACHE_HOME=str(home),
-                   TMPDIR=str(tmp_path / "tmp"), PYTHONPATH=str(tmp_path))  # fmt: skip
-    assert Path(found.strip()).parent == tmp_path / "tmp"
+    nowhere = {"HOME": str(home), "XDG_CACHE_HOME": str(home), "TMPDIR": str(tmp_path / "tmp")}
+    found = cache_of(tmp_path / "locked", locked=True, **nowhere)
+    assert found.is_relative_to(tmp_path / "tmp")
     assert list((tmp_path / "tmp").iterdir()) == []
-
-
-@pytest.mark.slow
-def test_compiled_and_cached_loops_give_equal_bits(
-    tmp_path_factory: pytest.TempPathFactory,
-) -> None:
-    """Reference: the same motion in the worker that compiled the loops.
-
-    Where loops were cached, they were compared when they were compiled: their folder bears the
-    hash of their sources.
-    """
-    compiled = rubbing.compiled_in(tmp_path_factory)
-    numbers = compiled.read_text("utf-8") if compiled.exists() else rubbing.motion_numbers()
-    assert len(numbers) > 1000
-    assert numbers == answer("-m", "tests.rubbing")

@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
-from scipy.optimize import brentq
 
 from protractile.dynamics.arrays import Array
 from protractile.dynamics.contact import DryFriction, PowerContact
@@ -328,80 +327,6 @@ def test_other_drives_push() -> None:
         found = move_segment(pulled, SCurve(1e-9, 1.0, start=5.0), time, np.zeros(time.size))
         behind = 0.4 / OMEGA * np.sin(OMEGA * np.maximum(time - start, 0.0))
         assert found.series["drive_lag"] == pytest.approx(behind, abs=0.01 * behind.max())
-
-
-Friction = Callable[[Array | float], Array]
-
-
-def stops(_: float, y: Array, sign: float) -> float:
-    """Return the event at the end of a slip."""
-    return float(sign * y[1] + (1e-14 if y[1] == 0.0 else 0.0))
-
-
-stops.terminal, stops.direction = True, -1
-
-
-def by_runge_kutta(
-    pulled: ElasticDrive, way: SCurve, end: float, friction: Friction
-) -> tuple[float, int]:
-    """Return s in m at the end in s, and the number of times it sticks, from event to event."""
-
-    def force(t: Array | float, s: Array | float, v: Array | float) -> Array:
-        angle = 2.0 * np.pi * np.asarray(t) / way.duration
-        rate = way.travel / way.duration * (1.0 - np.cos(angle))
-        return np.asarray(pulled.stiffness * (way(np.asarray(t)) - s) + pulled.dashpot * (rate - v))
-
-    def slides(t: float, y: Array, sign: float) -> list[float]:
-        return [y[1], float(force(t, *y) - sign * friction(t)) / pulled.mass]
-
-    time, place, sticks = 0.0, 0.0, 0
-    while time < end:
-
-        def spare(t: Array | float, place: float = place) -> Array:
-            return pulled.sticking * friction(t) - np.abs(force(t, place, 0.0))
-
-        ticks = np.linspace(time, end, 2001)
-        beyond = np.flatnonzero(spare(ticks[1:]) < 0.0)
-        if beyond.size == 0:
-            break
-        time = brentq(spare, ticks[beyond[0]], ticks[beyond[0] + 1], xtol=1e-15)
-        sign = float(np.sign(force(time, place, 0.0)))
-        run = solve_ivp(
-            slides, (time, end), [place, 0.0],
-            args=(sign,), events=stops, rtol=1e-11, atol=1e-13, max_step=0.01,
-        )  # fmt: skip
-        time, place = float(run.t[-1]), float(run.y[0, -1])
-        sticks += run.t_events[0].size
-    return place, sticks
-
-
-@pytest.mark.parametrize(
-    ("ratio", "swell", "counts", "order", "bound"),
-    [(0.0, 0.0, [1000, 2200, 8000, 20_000], 2, 0.15), (0.05, 0.6, [1000, 2200, 14_000], 1, 0.1)],
-    ids=["constant friction", "variable friction"],
-)
-def test_order_in_the_step(
-    ratio: float, swell: float, counts: list[int], order: int, bound: float
-) -> None:
-    """Reference: other code, Runge and Kutta's method from event to event: the order is 2. Variable
-    friction is constant within an output interval, so that slip begins with an error of an
-    interval, and the order is 1.
-    """
-    pulled, way = replace(damped(ratio), sticking=1.3), SCurve(travel=0.1, duration=8.0)
-
-    def friction(time: Array | float) -> Array:
-        return FRICTION * (1.0 + swell * np.sin(2.1 * np.asarray(time)))
-
-    place, sticks = by_runge_kutta(pulled, way, 7.0, friction)
-    for count in counts:
-        time = np.linspace(0.0, 7.0, count + 1)
-        within = time[1:, None] - (0.5 + np.arange(20)) / 20.0 * time[1]
-        means = friction(within).mean(axis=1)
-        found = move_segment(pulled, way, time, np.concatenate([means[:1], means]))
-        assert found.results.sticks == sticks > 5
-        assert found.results.energy_residual < 1e-12
-        off = abs(float(way(time[-1])) - found.series["drive_lag"][-1] - place)
-        assert off * count**order < bound
 
 
 def test_reversing_drive() -> None:

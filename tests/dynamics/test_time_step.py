@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.linalg import eigh, expm
-from scipy.special import gamma
 
 from protractile.dynamics import time_step
 from protractile.dynamics.contact import ContactLaw, DryFriction, PowerContact
@@ -332,20 +331,6 @@ def test_mass_between_two_stops_of_unlike_stiffness() -> None:
     assert impulse == pytest.approx(3 * 4.0, rel=1e-6)
 
 
-def test_quadratic_stop_at_its_deepest() -> None:
-    """Reference: analytic. A mass m with the speed v penetrates by p = (3 m v² / 2 k)^⅓ under
-    F = k p², by energy, after the time Γ(⅓) Γ(½) / (3 Γ(⅚)) p/v, by a Beta integral.
-    """
-    stop = PowerContact(stiffness=1.0e6, exponent=2.0).upper()
-    depth = (3.0 * 100.0 * 2.0**2 / (2.0 * 1.0e6)) ** (1.0 / 3.0)
-    half = gamma(1.0 / 3.0) * gamma(0.5) / (3.0 * gamma(5.0 / 6.0)) * depth / 2.0
-    motion = Motion(one_mass(100.0, stop), 2.0 * half, half, velocity=np.array([20.0]))
-    run = FixedStep(half / 1000.0)(motion)
-    assert run.data["tip"].values[1:] == pytest.approx([depth, 0.0], abs=1e-5 * depth)
-    assert float(run.data["contact_force_peak"][1, 0]) == pytest.approx(1.0e6 * depth**2, rel=1e-5)
-    np.testing.assert_allclose(half * run.data["contact_force"][1:, 0], 200.0, rtol=1e-5)
-
-
 @pytest.mark.parametrize(
     ("stiffness", "exponent", "step"), [(1e8, 1.0, 1e-2), (1e10, 1.5, 1e-5), (1e13, 2.0, 1e-3)]
 )
@@ -397,16 +382,6 @@ def test_energy_residual_gives_a_warning() -> None:
     message = "the motion is not finite; check the loads and the stiffnesses"
     with pytest.raises(NumericsError, match=f"^{re.escape(message)}$"):
         check_energy(energies + np.inf)
-
-
-def test_blows_of_a_coarse_cantilever() -> None:
-    """Reference: other code, scipy's DOP853 with the same contact, through its blows."""
-    motion = falling(2, PowerContact(1.0e6, 1.0).lower().with_clearance(HEIGHT), 0.03)
-    expected = runge_kutta(motion, 2e-5)
-    errors = errors_in_the_step(motion, expected, 4e-5 * 0.5 ** np.arange(4))
-    assert FixedStep(5e-6)(motion).data.attrs["contact_changes"] >= 6
-    assert slopes(errors)[1:] == pytest.approx(2.0, abs=0.2)
-    assert errors[-1] < 2e-5
 
 
 def test_a_ball_rides_on_a_cantilever() -> None:
