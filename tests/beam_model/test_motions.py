@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
-"""Kantorovich series, rigid segments, and motion of the paper's boom with friction and damping."""
+"""Rigid segments, the paper's boom with friction, and damping by modes and dashpots, in motion."""
 
 from dataclasses import replace
 
@@ -8,9 +8,10 @@ import pytest
 from scipy.signal import find_peaks
 
 from protractile.beam_model.boom_modes import BoomModes
-from protractile.beam_model.component import Component
-from protractile.beam_model.finite_element import finite_element_segment
-from protractile.beam_model.kantorovich import Base, kantorovich_bending, rigid_segment
+from protractile.beam_model.finite_element import finite_element_segments
+from protractile.beam_model.kantorovich import (
+    rigid_segment,
+)
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.damping import (
@@ -24,108 +25,20 @@ from protractile.dynamics.integrator import AdaptiveStep, FixedStep
 from protractile.dynamics.motion import Motion
 from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, PointMass, Support
+from protractile.geometry.boom import (
+    Boom,
+    Cylinder,
+    Joint,
+    PointMass,
+    Support,
+)
 from tests.beam_model.exact import (
-    CLAMPED_FREE,
-    PINNED_FREE,
-    PINNED_PINNED,
-    angular_frequencies,
     beam,
     beam_elements,
     beam_series,
-    frequencies,
 )
 from tests.modal import damping_matrix, modal_system
 from tests.touching import touching
-
-
-def outside_of_span(model: Component, function: Array, x: Array) -> float:
-    """Return the part of a function, sampled at x, outside the space of the model's functions."""
-    functions = np.array([model.at(place) for place in x])
-    functions /= np.abs(functions).max(axis=0)
-    coefficients, *_ = np.linalg.lstsq(functions, function, rcond=None)
-    return float(np.linalg.norm(functions @ coefficients - function) / np.linalg.norm(function))
-
-
-@pytest.mark.parametrize("base", ["as printed", "pinned", "complete"])
-@pytest.mark.parametrize("terms", [2, 5])
-def test_functions_are_those_of_the_paper(paper_boom: Boom, base: Base, terms: int) -> None:
-    """Reference: external source. The outer functions span (29), x^i (x − x0)(x − x1), alone, the
-    inner ones (30) and (31); the complete ones span all powers of x below the number of terms.
-    """
-    first = int(base == "as printed")
-    x, y = np.linspace(0.0, 10.0, 61), np.linspace(0.0, 10.0, 61) - 10.0
-    outer = [x**i * x * (x - 2.0) for i in range(first, first + terms + 1)]
-    inner = [x**i * (y if i > 1 and base != "complete" else 1.0) for i in range(terms + 1)]
-    for segment, printed in zip(paper_boom.segments, (outer, inner), strict=True):
-        model = kantorovich_bending(segment, terms, base, rotary_inertia=False)
-        places = segment.start + x
-        assert model.load.shape == (terms,)
-        assert max(outside_of_span(model, each, places) for each in printed[:-1]) < 1e-10
-        assert outside_of_span(model, printed[-1], places) > 1e-5
-
-
-@pytest.mark.parametrize("terms", [3, 60])
-def test_complete_and_pinned_are_one_space_on_pinned_supports(paper_boom: Boom, terms: int) -> None:
-    """Reference: analytic. Roots and supports give the same polynomials, by ascending degree."""
-    outer = paper_boom.segments[0]
-    pinned, complete = (
-        frequencies(kantorovich_bending(outer, terms, base, rotary_inertia=False))[:3]
-        for base in ("pinned", "complete")
-    )
-    np.testing.assert_allclose(complete, pinned, rtol=1e-7)
-
-
-@pytest.mark.parametrize(
-    ("base", "supports", "numbers"),
-    [
-        ("pinned", (3.0, 8.0), PINNED_PINNED),
-        ("pinned", (3.0,), PINNED_FREE),
-        # As printed the base has no slope: a cantilever, without rigid mode.
-        ("as printed", (3.0,), CLAMPED_FREE),
-    ],
-)
-def test_frequencies_of_plain_beams(
-    base: Base, supports: tuple[float, ...], numbers: tuple[float, ...]
-) -> None:
-    """Reference: analytic βL."""
-    segment = beam(supports=supports)
-    model = kantorovich_bending(segment, 14, base, rotary_inertia=False)
-    expected = angular_frequencies(segment, numbers)
-    np.testing.assert_allclose(frequencies(model)[:3], expected, rtol=1e-6)
-
-
-def test_pinned_outer_series_converges_to_the_beam(paper_boom: Boom) -> None:
-    """Reference: other code, Hermite elements, and E J w = P a² (l + a)/3 under a force P at x3.
-    With 12 and 24 terms, frequencies are within 1e-3 and 1.5e-4, the compliance within 4e-4 and
-    6e-5. With the functions as printed, errors are 2 to 5 %.
-    """
-    outer = paper_boom.segments[0]
-    beam = finite_element_segment(outer, 0.125, (), "euler-bernoulli", False)
-    fine = frequencies(beam.components["z"])[:4]
-    compliance = 8.0**2 * (2.0 + 8.0) / (3.0 * outer.bending_stiffness)
-    for terms, frequency_error, compliance_error in ((12, 1.0e-3, 4.5e-4), (24, 2.0e-4, 7.0e-5)):
-        model = kantorovich_bending(outer, terms, "pinned", rotary_inertia=False)
-        too_high = frequencies(model)[:4] / fine - 1.0
-        assert (too_high > 0.0).all()
-        assert too_high.max() < frequency_error
-        row = model.at(10.0)
-        too_stiff = 1.0 - row @ np.linalg.solve(model.stiffness, row) / compliance
-        assert 0.0 < too_stiff < compliance_error
-
-
-def test_load_is_the_work_of_a_uniform_force() -> None:
-    """Reference: analytic, the work on x² (x − 2), and on 1 and x − x2 of the paper's spaces."""
-    inner = kantorovich_bending(beam(load=11.0), 2, "as printed", rotary_inertia=False)
-    for function, work in ((np.ones(2), 55.0), (np.array([0.0, 5.0]), 11.0 * 12.5)):
-        ends = np.array([inner.at(x) for x in (3.0, 8.0)])
-        assert np.linalg.solve(ends, function) @ inner.load == pytest.approx(work, rel=1e-12)
-    segment = beam(load=11.0, supports=(3.0, 5.0))
-    outer = kantorovich_bending(segment, 1, "as printed", rotary_inertia=False)
-    # ∫₀⁵ x² (x − 2) dx = 5⁴/4 − 2·5³/3, and the function is 75 at x = 5.
-    work = 11.0 * (5.0**4 / 4.0 - 2.0 * 5.0**3 / 3.0) / 75.0
-    assert outer.load / outer.at(8.0) == pytest.approx(work, rel=1e-12)
-
 
 LAW = PowerContact(stiffness=2.0e6, exponent=1.0).with_clearance(7.0e-3)
 
@@ -166,18 +79,6 @@ def test_a_segment_falls_on_its_contacts_and_bounces(inside: Boom) -> None:
     assert tip[::40] == pytest.approx(np.zeros(5), abs=1e-6 * LAW.above)
     assert found.data["tail"].values == pytest.approx(tip, abs=1e-12)
     assert found.data.attrs["energy_residual"] < 1e-7
-
-
-def test_the_boom_rests_as_a_lever(paper_boom: Boom) -> None:
-    """Reference: analytic, moments of the inner segment's weight about both stations."""
-    outer, inner = paper_boom.segments
-    held = replace(outer, supports=(Support(0.0), Support(2.0)))
-    system = rigid(replace(paper_boom, segments=(held, inner)), [LAW])
-    rest = equilibrium(system, system.load)
-    forces = [law.force(row @ rest) for law, row in zip(system.laws, system.rows, strict=True)]
-    weight, arm = inner.load * inner.length, 0.5 * (inner.start + inner.end)
-    assert forces == pytest.approx([weight * (10.0 - arm), weight * (arm - 9.0)], rel=1e-9)
-    assert system.observers["head"].row @ rest == 0.0
 
 
 def test_a_body_swings_on_springs(paper_boom: Boom) -> None:
@@ -328,20 +229,6 @@ def test_a_pressed_boom_swings_with_the_ratio(heavy: GapSystem, mode: int, ratio
     assert run.energy_residual < 1e-6
 
 
-def test_free_segment_decays_at_the_ratio_of_the_first_mode(heavy: GapSystem) -> None:
-    """Reference: analytic, exp(−ζω₁t)."""
-    wide = replace(
-        heavy, load=0.0 * heavy.load, laws=[LINEAR.law.with_clearance(10.0)] * len(heavy.laws)
-    )
-    damped = with_modal_damping(wide, 0.05)
-    bonded = closed_contact_modes(wide)[0][0]
-    thrown = np.where(np.arange(wide.num_modes) == np.flatnonzero(wide.omega2 == 0.0)[0], 1.0, 0.0)
-    run = AdaptiveStep()(Motion(damped, 1.0, 0.1, velocity=thrown))
-    way = (1.0 - np.exp(-0.05 * bonded * run.time)) / (0.05 * bonded)
-    np.testing.assert_allclose(run.states @ thrown, way, rtol=1e-9, atol=1e-12)
-    assert run.energy_residual < 1e-12
-
-
 @pytest.mark.parametrize("gap", [0.0, 1.0e-3])
 def test_contact_force_of_round_off_does_not_close_a_contact(gap: float) -> None:
     """Reference: analytic. With a penetration of 1e-17 m, the mass still has 20 rad/s.
@@ -365,3 +252,89 @@ def test_a_bonded_boom_keeps_its_exact_flow(
     damped = with_modal_damping(bonded, 0.02)
     np.testing.assert_allclose(damped.damping, 0.04 * np.sqrt(bonded.omega2))
     assert not damped.dashpots.size
+
+
+SPRING, DASHPOT = 2.0e6, 900.0
+
+
+# A spring both ways, since no play is between its sides.
+BOTH_WAYS = PowerContact(SPRING, exponent=1.0).with_clearance(0.0)
+
+
+def decrements(system: GapSystem, position: Array, duration: float, name: str) -> Array:
+    """Return the logarithmic decrements of successive maxima of an output about 0."""
+    run = AdaptiveStep()(Motion(system, duration, 1e-4, position))
+    swing = run.data[name].values
+    peaks, _ = find_peaks(swing)
+    # The parabola through three points finds the maximum between two outputs.
+    before, at, after = (swing[peaks + shift] for shift in (-1, 0, 1))
+    heights = at + 0.125 * (after - before) ** 2 / (2.0 * at - before - after)
+    return -np.diff(np.log(heights))
+
+
+def test_a_rigid_segment_on_two_stations_loses_its_swing() -> None:
+    """Reference: analytic. On two springs and two dashpots ζ = c/√(2km), δ = 2πζ/√(1 − ζ²)."""
+    outer = beam(name="outer", start=0.0, end=4.0, supports=(Support(0.0, "clamped"),))
+    inner = beam(name="inner", start=3.0, end=4.0, section=None)
+    joint = Joint(0, 1, stations=(3.25, 3.75), play=0.0, dashpot=DASHPOT)
+    boom = Boom((outer, inner), (joint,))
+    system = gap_system(touching(boom, BOTH_WAYS), [rigid_segment(one) for one in boom.segments])
+    mass = inner.mass_per_length * inner.length
+    ratio = DASHPOT / np.sqrt(2.0 * SPRING * mass)
+    assert 0.01 < ratio < 0.1
+    raised = np.linalg.lstsq(system.rows, np.full(2, 1e-3), rcond=None)[0]
+    expected = 2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2)
+    found = decrements(system, raised, 0.5, "tip")
+    assert found.size > 5
+    assert found == pytest.approx(expected, rel=1e-4)
+
+
+@pytest.mark.parametrize("held", ["support", "cylinder"])
+def test_a_rigid_segment_on_its_hinge_loses_its_swing(held: str) -> None:
+    """Reference: analytic, ζ = c r / 2√(k I) and δ = 2πζ/√(1 − ζ²) with the lever arm r about the
+    hinge at (3, −0.25) m. The cylinder is between (1.4, −2) and (6, −0.5) m.
+    """
+    supports, cylinders = [Support(3.0, depth=0.25 if held == "cylinder" else 0.0)], []
+    if held == "support":
+        arm, damping = 2.5, 4.0e3
+        supports.append(Support(5.5, stiffness=SPRING, dashpot=damping))
+    else:
+        line = np.array([4.6, 1.5]) / np.hypot(4.6, 1.5)
+        # (6 − 3, −0.5 + 0.25) × line
+        arm, damping = 3.0 * line[1] + 0.25 * line[0], 8.0e3
+        cylinders.append(
+            Cylinder(0, 6.0, depth=0.5, ground=(1.4, -2.0), stiffness=SPRING, dashpot=damping)
+        )
+    segment = beam(supports=supports)
+    boom = Boom((segment,), (), cylinders=tuple(cylinders))
+    system = gap_system(boom, [rigid_segment(segment)])
+    mass = segment.mass_per_length * segment.length
+    inertia = mass * segment.length**2 / 3.0 + segment.rotary_inertia * segment.length
+    omega = arm * np.sqrt(SPRING / inertia)
+    assert np.sqrt(system.omega2) == pytest.approx([omega], rel=1e-9)
+    ratio = 0.5 * damping * arm / np.sqrt(SPRING * inertia)
+    assert 0.005 < ratio < 0.1
+    found = decrements(system, np.ones(1), 12.5 * 2.0 * np.pi / omega, "tip")
+    assert found.size > 8
+    assert found == pytest.approx(2.0 * np.pi * ratio / np.sqrt(1.0 - ratio**2), rel=1e-4)
+    hertz, ratios = closed_contact_damping(system)
+    assert (hertz, ratios) == (pytest.approx([omega / (2.0 * np.pi)]), pytest.approx([ratio]))
+
+
+@pytest.mark.parametrize("spatial", [False, True], ids=["flat", "in space"])
+def test_a_dashpot_reads_the_axis(
+    paper_boom: Boom, spatial_boom: Boom, paper_law: PowerContact, spatial: bool
+) -> None:
+    """Reference: analytic, √c (u − w) at each station along each direction."""
+    boom = spatial_boom if spatial else paper_boom
+    (joint,) = boom.joints
+    boom = replace(boom, joints=(replace(joint, dashpot=DASHPOT),))
+    models = finite_element_segments(boom, 2.0, "euler-bernoulli", rotary_inertia=False)
+    system = gap_system(touching(boom, paper_law, paper_law), models)
+    modes = BoomModes(boom, models)
+    expected = [
+        np.sqrt(DASHPOT) * (modes.displacement(1, x, along) - modes.displacement(0, x, along))
+        for along in boom.directions
+        for x in joint.stations
+    ]
+    np.testing.assert_allclose(system.dashpots, expected, atol=1e-12)
