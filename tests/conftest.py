@@ -43,18 +43,17 @@ def _cache(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 @pytest.fixture(autouse=True, scope="session")
-def _loops(tmp_path_factory: pytest.TempPathFactory) -> None:
-    """Compile the time step, recorded in a file, and the schemes of 1997 in the first of several
-    workers.
-    """
+def _loops() -> None:
+    """Compile the time step and the schemes of 1997 in the first of several workers."""
     if os.environ.get("PYTEST_XDIST_WORKER") == "gw0":
+        from protractile.dynamics.integrator import FixedStep
         from protractile.dynamics.motion import Motion
         from studies.numerics_1997.schemes import NEWMARK, integrate
         from tests.modal import oscillator
-        from tests.rubbing import compile_loop, compiled_in
 
-        compile_loop(compiled_in(tmp_path_factory))
-        integrate(Motion(oscillator(), 1.0, 0.1), NEWMARK, iterated=False)
+        motion = Motion(oscillator(), 1.0, 0.1)
+        FixedStep(0.1)(motion)
+        integrate(motion, NEWMARK, iterated=False)
 
 
 def pytest_collection() -> None:

@@ -77,33 +77,36 @@ def test_a_damaged_file_is_an_error(damage: Callable[[str], str], tmp_path: Path
         Rows.load(path)
 
 
-def test_the_table_has_units_and_utilisations() -> None:
-    """Reference: by hand, 50 of 200 MPa."""
+def test_rows_are_selected_and_compared() -> None:
+    """Reference: by hand, 50 of 200 MPa. The largest utilisation governs, without limits the
+    largest magnitude. Static values are those of the same place and model.
+    """
     row = Row("beam", MOTION, True, "stress", "fly", "", -50e6, 1.0, limit=200e6)
     frame = Rows([row]).frame
     assert frame.loc[0, ["unit", "value", "utilisation"]].tolist() == ["Pa", -50e6, 0.25]
     assert Rows().frame.empty
-
-
-def test_a_selection_takes_one_value_or_several() -> None:
-    rows = Rows(
+    tips = Rows(
         Row(model, state, True, "tip", "tip", "", value)
         for model, state, value in (("a", REST, 1.0), ("a", MOTION, -3.0), ("b", REST, 2.0))
     )
-    assert [row.value for row in rows.where(model="a")] == [1.0, -3.0]
-    assert [row.value for row in rows.where(state=[REST, MOTION])] == [1.0, -3.0, 2.0]
-    assert rows.where(model="c") == ()
-    assert (rows.largest, Rows().largest) == (rows[1], None)
-
-
-def test_the_largest_utilisation_governs() -> None:
-    """Reference: by hand. Without limits the largest magnitude governs."""
-    rows = [
-        Row("beam", MOTION, True, "stress", part, "", value, limit=limit)
-        for part, value, limit in (("a", 90e6, 300e6), ("b", -80e6, 100e6), ("c", 95e6, None))
+    assert [row.value for row in tips.where(model="a")] == [1.0, -3.0]
+    assert [row.value for row in tips.where(state=[REST, MOTION])] == [1.0, -3.0, 2.0]
+    assert tips.where(model="c") == ()
+    assert (tips.largest, Rows().largest) == (tips[1], None)
+    each = [
+        row._replace(value=value, limit=limit)
+        for value, limit in ((90e6, 300e6), (-80e6, 100e6), (95e6, None))
     ]
-    assert Rows(rows).governing == rows[1]
-    assert Rows(row._replace(limit=None) for row in rows).governing == rows[2]._replace(limit=None)
+    assert Rows(each).governing == each[1]
+    assert Rows(one._replace(limit=None) for one in each).governing == each[2]
+    moved = Row("a", MOTION, True, "reaction", "base", "at 0 m", -6.0)
+    static = moved._replace(state=REST, value=2.0)
+    others = ({"play": False}, {"place": "at 1 m"}, {"model": "b"}, {"state": "initial"})
+    rows = Rows(
+        [moved, static, static._replace(state=EXTENDED, value=-3.0),
+         *(static._replace(value=9.0, **other) for other in others)]
+    )  # fmt: skip
+    assert (rows.at_rest(moved), rows.dynamic_factor(moved)) == (3.0, 2.0)
 
 
 @pytest.mark.parametrize(
@@ -118,7 +121,7 @@ def test_the_largest_utilisation_governs() -> None:
 def test_an_extreme_is_the_first_largest_magnitude(
     values: list[list[float]], value: float, time: float
 ) -> None:
-    """Reference: by hand."""
+    """Reference: by hand. Fibres of a segment are one row; the smallest buckling factor governs."""
     places = np.array([4.0, 5.0]), None, None
     measured = Measured(
         "stress", "arm", "", np.array(values), np.array([0.0, 1.0]), places, limit=10.0
@@ -126,37 +129,14 @@ def test_an_extreme_is_the_first_largest_magnitude(
     (row,) = extremes([measured], "beam", REST)
     assert (row.value, row.time, row.y) == (value, time, None)
     assert row.utilisation == abs(value) / 10.0
-
-
-def test_fibres_of_a_segment_are_one_row() -> None:
-    """Reference: by hand. Of a buckling factor the smallest governs."""
     for quantity, expected in (("stress", -7.0), ("plate_buckling", 3.0)):
-        measured = [
-            Measured(quantity, "arm", "", np.array([[value]]), np.zeros(1))
-            for value in (5.0, -7.0, 3.0)
+        fibres = [
+            Measured(quantity, "arm", "", np.array([[stress]]), np.zeros(1))
+            for stress in (5.0, -7.0, 3.0)
         ]
-        (row,) = extremes(measured, "beam", REST)
+        (row,) = extremes(fibres, "beam", REST)
         assert row.value == expected
     assert [*extremes([Measured("tip", "tip", "", np.zeros((0, 1)), None)], "beam", REST)] == []
-
-
-def test_static_values_of_other_places_and_models_are_not_its_own() -> None:
-    """Reference: by hand."""
-    moved = Row("a", MOTION, True, "reaction", "base", "at 0 m", -6.0)
-    static = moved._replace(state=REST, value=2.0)
-    rows = Rows(
-        [
-            moved,
-            static,
-            static._replace(state=EXTENDED, value=-3.0),
-            static._replace(play=False, value=9.0),
-            static._replace(place="at 1 m", value=9.0),
-            static._replace(model="b", value=9.0),
-            static._replace(state="initial", value=9.0),
-        ]
-    )
-    assert rows.at_rest(moved) == 3.0
-    assert rows.dynamic_factor(moved) == 2.0
 
 
 def test_curves_of_any_length_are_one_dataset(tmp_path: Path) -> None:
@@ -205,9 +185,6 @@ def test_a_history_has_the_largest_stress_of_each_interval() -> None:
     assert read.place == 2.0
 
 
-ARM = cantilever(force("arm", 8.0, -5.0e3))
-
-
 def test_a_motion_is_evaluated_as_a_run_of_a_case() -> None:
     """Reference: other code path, the tip of the trajectory and the deflection at rest."""
     gust = force("fly", 14.0, -500.0, history=pt.Ramp(0.1))
@@ -234,14 +211,12 @@ def test_a_motion_is_evaluated_as_a_run_of_a_case() -> None:
     ],
 )
 def test_a_wrong_request_is_an_error(wrong: dict[str, Any], message: str) -> None:
+    """An axial force is about 50 times the buckling force of a cantilever (Euler 1744)."""
+    push = force("arm", 8.0, -5.0e3)
     with pytest.raises(pt.BoomError, match=message):
-        pt.prove(ARM, {"own": []}, **wrong)
-
-
-def test_the_combination_without_an_equilibrium_is_named() -> None:
-    """Reference: analytic, about 50 times the buckling force of a cantilever (Euler 1744)."""
+        pt.prove(cantilever(push), {"own": []}, **wrong)
     with pytest.raises(pt.NumericsError, match="far: the boom has no static equilibrium"):
-        pt.prove(cantilever(*ARM.loads, thrust=1e8), {"far": []})
+        pt.prove(cantilever(push, thrust=1e8), {"far": []})
 
 
 def test_plates_that_bend_leave_the_force_to_pads_at_corners() -> None:

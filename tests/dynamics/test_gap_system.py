@@ -26,7 +26,6 @@ from protractile.dynamics.predictability import integrate_ensemble
 from protractile.dynamics.stick_slip import ElasticDrive
 from protractile.dynamics.trajectory import Trajectory, prominent_peaks
 from protractile.dynamics.travel import RowTable, Travel
-from studies.reference_models.statics import static_response
 from tests.dynamics.reference import CHAOTIC, LINEAR
 from tests.dynamics.test_telescoping import lossy
 from tests.modal import modal_system, one_mass
@@ -47,103 +46,47 @@ def parts() -> dict[str, Any]:
     }
 
 
-def test_numbers_of_a_system() -> None:
-    """Reference: analytic, by hand."""
-    system = GapSystem(**parts())
-    assert system.num_modes == 3
-    assert system.frequencies == pytest.approx([0.0, 1.0, 1.5], rel=1e-14)
-    assert system.row_masses == pytest.approx([1.0 / 25.0, 4.0], rel=1e-14)
-    assert system.damping.tolist() == [0.0, 0.0, 0.0]
-
-
-def test_friction_and_directions_are_optional_and_loads_add_up() -> None:
-    system = GapSystem(**parts())
-    assert system.friction_rows.shape == (0, 3)
-    assert tuple(system.station_directions) == ("z", "z")
-    push = Excitation(np.array([0.0, -1.0, 2.0]), PiecewiseLinear([0.0], [-3.0]))
-    excited = replace(system, excitations=[push])
-    assert excited.largest_load.tolist() == [1.0, 5.0, 9.0]
-
-
-def test_rest_under_a_force() -> None:
-    system = GapSystem(**parts() | {"omega2": np.array([4.0, 1.0, 2.0])})
-    assert static_response(system, np.array([1.0, 2.0, 3.0])) == pytest.approx([0.25, 2.0, 1.5])
-    softer = replace(system, geometric_stiffness=np.diag([2.0, 0.5, 0.0]))
-    assert static_response(softer, np.array([1.0, 2.0, 3.0])) == pytest.approx([0.5, 4.0, 1.5])
-
-
-def test_no_rest_with_a_rigid_mode() -> None:
-    with pytest.raises(ValueError, match=r"^a system with rigid modes has no static response$"):
-        static_response(GapSystem(**parts()), np.ones(3))
-
-
 STOP = PowerContact(stiffness=1.0e4, exponent=1.0).with_clearance(1.0e-2)
 
 
-def deflections(tip: Array, end: float) -> Trajectory:
-    time = np.linspace(0.0, end, tip.size)
-    data = xr.Dataset({"tip": ("time", tip)}, coords={"time": time})
-    return Trajectory(data, np.zeros((tip.size, 0)))
-
-
-def test_observers_are_read_at_output_times() -> None:
-    system = one_mass(2.0, STOP, force=3.0)
-    system = replace(
-        system, observers={**system.observers, "stress": Observer(np.array([5.0]), "Pa")}
-    )
-    run = AdaptiveStep()(Motion(system, 0.2, output_step=1.0e-2))
-    assert run.states.shape == (21, 1)
-    np.testing.assert_allclose(run.time, 0.01 * np.arange(21), rtol=1e-15)
-    np.testing.assert_allclose(run.data["stress"], 5.0 * run.states[:, 0], rtol=1e-15)
-    assert 20 <= run.data.attrs["steps"] <= 1.001 * 0.2 / run.data.attrs["step"]
-    assert run.data["stress"].attrs["units"] == "Pa"
-
-
-def test_rows_are_gathered_by_station() -> None:
-    """Reference: other code path. Three rows at two stops give the forces of two rows."""
-    row = np.array([[0.8], [-0.5]])
-    laws = [STOP, STOP.law.with_clearance(5.0e-3)]
-    whole = modal_system([10.0], [2.0], row, laws, stations=[9.0, 10.0])
+def test_outputs_of_stations() -> None:
+    """Reference: analytic and other code path. Frequencies and masses; three rows at two stops give
+    the forces of two rows; gaps are means; two friction rows equal one with both limits.
+    """
+    numbers = GapSystem(**parts())
+    assert numbers.frequencies == pytest.approx([0.0, 1.0, 1.5], rel=1e-14)
+    assert numbers.row_masses == pytest.approx([1.0 / 25.0, 4.0], rel=1e-14)
+    push = Excitation(np.array([0.0, -1.0, 2.0]), PiecewiseLinear([0.0], [-3.0]))
+    assert replace(numbers, excitations=[push]).largest_load.tolist() == [1.0, 5.0, 9.0]
+    row, stress = np.array([[0.8], [-0.5]]), {"stress": Observer(np.array([5.0]), "Pa")}
+    whole = modal_system(
+        [10.0], [2.0], row, [STOP, STOP.law.with_clearance(5.0e-3)], stations=[9.0, 10.0],
+        station_directions=["z", "y"], friction_rows=row[:1], observers=stress,
+        frictions=[DryFriction(0.1, 1, 10.0)],
+    )  # fmt: skip
     shared = replace(
         whole,
         rows=row[[0, 1, 0]],
         laws=[STOP.with_weight(0.25), whole.laws[1], STOP.with_weight(0.75)],
         station_of_row=np.array([0, 1, 0]),
+        friction_rows=row[[0, 0]],
+        frictions=[DryFriction(0.1, 1, 4.0), DryFriction(0.1, 1, 6.0)],
     )
     one, two = (FixedStep(1e-4)(Motion(s, 2.0, output_step=1.0e-2)) for s in (whole, shared))
     assert np.abs(one.data["contact_force"]).max("time").values.min() > 1.0
-    for name in ("contact_force", "contact_force_peak", "gap"):
+    for name in ("contact_force", "contact_force_peak", "gap", "friction_force"):
         assert two.data[name].shape == (201, 2)
-        np.testing.assert_allclose(two.data[name], one.data[name], rtol=1e-8, atol=1e-9)
+        np.testing.assert_allclose(two.data[name], one.data[name], rtol=1e-7, atol=1e-8)
+    force = np.abs(two.data["friction_force"].values)
+    assert force.max(axis=0) == pytest.approx([0.0, 1.0], rel=1e-12)
     np.testing.assert_array_equal(two.data["station"], [9.0, 10.0])
-
-
-def test_stations_have_directions_and_friction_forces() -> None:
-    """Reference: other code path. Two friction rows of a station equal one with both limits."""
-    system = modal_system(
-        [10.0],
-        [2.0],
-        [0.8],
-        [STOP.law.with_clearance(1.0)],
-        stations=[9.0, 9.0],
-        station_directions=["z", "y"],
-        friction_rows=np.array([[0.8], [0.8]]),
-        frictions=[DryFriction(0.1, 1, 4.0), DryFriction(0.1, 1, 6.0)],
-    )
-    whole = replace(system, friction_rows=system.rows, frictions=[DryFriction(0.1, 1, 10.0)])
-    one, two = (FixedStep(1e-3)(Motion(s, 1.0, output_step=0.01)) for s in (whole, system))
     assert two.data["direction"].values.tolist() == ["z", "y"]
-    assert not two.data["friction_force"].values[:, 0].any()
-    force = one.data["friction_force"].values[:, 1]
-    assert np.abs(force).max() == pytest.approx(1.0, rel=1e-12)
-    np.testing.assert_allclose(two.data["friction_force"].values[:, 1], force, atol=1e-9)
-
-
-def test_gap_of_a_station_is_the_mean_of_its_rows() -> None:
+    np.testing.assert_allclose(one.time, 0.01 * np.arange(201), rtol=1e-15)
+    np.testing.assert_allclose(one.data["stress"], 5.0 * one.states[:, 0], rtol=1e-15)
+    assert one.data["stress"].attrs["units"] == "Pa"
+    mean = {"station_of_row": np.array([1, 1, 0]), "stations": [9.0, 10.0]}
     rows, laws = [[1.0, 0.0], [0.0, 1.0], [1.0, 1.0]], [STOP.law.with_clearance(10.0)] * 3
-    shared = {"station_of_row": np.array([1, 1, 0]), "stations": [9.0, 10.0]}
-    system = modal_system([4.0, 9.0], [1.0, 1.0], rows, laws, **shared)
-    run = FixedStep(0.1)(Motion(system, 1.0, output_step=0.1))
+    run = FixedStep(0.1)(Motion(modal_system([4.0, 9.0], [1.0, 1.0], rows, laws, **mean), 1.0, 0.1))
     np.testing.assert_allclose(run.data["gap"][:, 0], run.states.sum(axis=1), rtol=1e-14)
     np.testing.assert_allclose(run.data["gap"][:, 1], run.states.mean(axis=1), rtol=1e-14)
 
@@ -182,7 +125,8 @@ def test_first_peak_of_a_slow_motion(
     side: float, tip: Array, time: float, height: float, within: tuple[float, float]
 ) -> None:
     """Reference: analytic. Downward motions have the peaks of their mirror images."""
-    found = deflections(side * tip, 6.0).first_peak()
+    data = xr.Dataset({"tip": ("time", side * tip)}, coords={"time": T})
+    found = Trajectory(data, np.zeros((T.size, 0))).first_peak()
     assert found[0] == pytest.approx(time, abs=within[0], nan_ok=True)
     assert found[1] == pytest.approx(side * height, abs=within[1], nan_ok=True)
 
@@ -217,7 +161,7 @@ def test_blows_from_both_sides_within_an_output_interval_do_not_cancel() -> None
         np.testing.assert_allclose(peaks, 5.0 * np.sqrt(1.0e4 * 2.0), rtol=1e-3)
 
 
-@pytest.mark.parametrize("count", [0, 1, 3, 50, 400])
+@pytest.mark.parametrize("count", [0, 3, 400])
 def test_prominent_peaks(count: int) -> None:
     """Reference: scipy.signal.find_peaks, for noise and for random walks."""
     noise = np.random.default_rng(count).standard_normal(count)
@@ -264,57 +208,32 @@ def load(name: str) -> HangingLoad:
 
 OF_LAWS: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
     ("stiffness must be a number of N/m^n, not negative, got -1.0", law, {"stiffness": -1.0}),
-    ("stiffness_below must be a number of N/m^n, not negative, got -1.0", law,
-     {"stiffness_below": -1.0}),
     ("stiffness must be a number of N/m^n, not negative, got inf", law, {"stiffness": INF}),
-    ("stiffness must be positive on one side at least, got 0.0 on both", law, {"stiffness": 0.0}),
     ("stiffness must be positive on one side at least, got 0.0 on both", law,
      {"stiffness": 0.0, "stiffness_below": 0.0}),
     ("exponent must be at least 1, got 0.5", law, {"exponent": 0.5}),
-    ("exponent must be at least 1, got nan", law, {"exponent": NAN}),
     ("damping must be finite and not negative, got -1.0 s/m", law, {"damping": -1.0}),
-    ("damping must be finite and not negative, got nan s/m", law, {"damping": NAN}),
     ("a law must be linear behind a negative clearance, got k 1e+06, 2e+09 below, n 2",
      SOFT_ABOVE.with_clearance, {"above": -1.0e-3}),
     ("clearance must be a finite number of m, got nan and nan", SOFT_ABOVE.with_clearance,
      {"above": NAN}),
     ("restitution must be above 0 and at most 1, got 0.0", restitution_damping,
      {"restitution": 0.0, "speed": 1.0}),
-    ("restitution must be above 0 and at most 1, got 1.1", restitution_damping,
-     {"restitution": 1.1, "speed": 1.0}),
     ("speed must be finite and positive, got 0.0 m/s", restitution_damping,
      {"restitution": 0.5, "speed": 0.0}),
-    ("speed must be finite and positive, got inf m/s", restitution_damping,
-     {"restitution": 0.5, "speed": INF}),
-    ("a table needs one force for each depth, and one at least", TableContact,
-     {"depths": (), "forces": ()}),
     ("a table needs one force for each depth, and one at least", TableContact,
      {"depths": (1e-3,), "forces": (1.0, 2.0)}),
     ("depths must be finite and rise from above 0", TableContact,
      {"depths": (1e-3, 1e-3), "forces": (1.0, 2.0)}),
-    ("depths must be finite and rise from above 0", TableContact,
-     {"depths": (0.0,), "forces": (1.0,)}),
-    ("forces must be positive, and must not fall at the end", TableContact,
-     {"depths": (1e-3,), "forces": (-1.0,)}),
     ("forces must be positive, and must not fall at the end", TableContact,
      {"depths": (1e-3, 2e-3), "forces": (2.0, 1.0)}),
     ("coefficient must be finite, not negative, got -0.1", DryFriction,
      {"coefficient": -0.1, "station": 0}),
-    ("coefficient must be finite, not negative, got nan", DryFriction,
-     {"coefficient": NAN, "station": 0}),
     ("normal_force must be finite, not negative, got -1.0 N", DryFriction,
      {"coefficient": 0.2, "station": 0, "normal_force": -1.0}),
-    ("normal_force must be finite, not negative, got inf N", DryFriction,
-     {"coefficient": 0.2, "station": 0, "normal_force": INF}),
 ]  # fmt: skip
 OF_SYSTEMS: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
-    ("load must have the shape (3,), got (2,)", system, {"load": np.ones(2)}),
-    ("omega2 must have the shape (3,), got (3, 1)", system, {"omega2": np.ones((3, 1))}),
     ("rows must have the shape (2, 3), got (2, 2)", system, {"rows": np.ones((2, 2))}),
-    ("station_of_row must have the shape (2,), got (1,)", system,
-     {"station_of_row": np.array([0])}),
-    ("damping must have the shape (3,), got (4,)", system, {"damping": np.ones(4)}),
-    ("dashpots must have the shape (2, 3), got (2, 2)", system, {"dashpots": np.ones((2, 2))}),
     ("observer 'tip' must have the shape (3,), got (2,)", system,
      {"observers": {"tip": Observer(np.ones(2))}}),
     ("load must be finite", system, {"load": np.array([0.0, NAN, 0.0])}),
@@ -328,17 +247,13 @@ OF_SYSTEMS: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
     ("station_directions must be one for each of 2 stations, got 1", system,
      {"station_directions": ("z",)}),
     ("the station of a friction must be a position in stations", rubbing, {"station": 2}),
-    ("the station of a friction must be a position in stations", rubbing, {"station": -1}),
     ("normal_rows must hold positions in rows", rubbing, {"normal_rows": (0, 2)}),
-    ("normal_rows must hold positions in rows", rubbing, {"normal_rows": (-1,)}),
 ]  # fmt: skip
 OF_MOTIONS: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
     ("duration must be finite and positive, got 0.0 s", motion, {"duration": 0.0}),
     ("output_step must be finite and positive, got -1.0 s", motion, {"output_step": -1.0}),
-    ("duration must be finite and positive, got '1' s", motion, {"duration": "1"}),
     ("1e+12 outputs are too many, at most 10000000 are stored; give a shorter duration or a "
      "longer output_step", motion, {"duration": 1.0e9}),
-    ("position must have the shape (2,), got (3,)", motion, {"position": np.ones(3)}),
     ("velocity must be finite", motion, {"velocity": np.array([0.0, NAN])}),
     *((f"tolerance must be between 0 and 1, got {value}", AdaptiveStep, {"tolerance": value})
       for value in (0.0, 1.0, NAN)),
@@ -346,8 +261,6 @@ OF_MOTIONS: list[tuple[str, Callable[..., object], dict[str, Any]]] = [
      {"members": 1, "relative": 1e-9, "vary": "load"}),
     ("relative must be between 0 and 1, got 0", ensemble,
      {"members": 8, "relative": 0.0, "vary": "load"}),
-    ("relative must be between 0 and 1, got nan", ensemble,
-     {"members": 8, "relative": NAN, "vary": "load"}),
     ("the velocity is zero, so that no relative change moves it", ensemble,
      {"members": 8, "relative": 1e-9, "vary": "velocity"}),
     ("the clearance is zero, so that no relative change moves it", ensemble,

@@ -71,25 +71,18 @@ def pressed_along(history: SCurve | PiecewiseLinear) -> GapSystem:
     )
 
 
-@pytest.mark.parametrize("s", [-1.0, -0.3, 0.0, 0.5, 1.7])
+@pytest.mark.parametrize("s", [-0.3, 1.7])
 def test_thrust_softens_the_passed_length(s: float) -> None:
-    """Reference: analytic, the integral over the extension by Gauss's rule."""
+    """Reference: analytic, the integral over the extension by Gauss's rule; 0 to the last bit for
+    any knots. Only passed pieces are integrated, or matrices would need 0.16 GB.
+    """
     assert thrust().geometric_stiffness(s) == pytest.approx(softer(s), rel=1e-6, abs=1e-6 * FORCE)
-
-
-@pytest.mark.parametrize("knots", [[-1.0, -0.4, 1.0], [-2.0, 0.0], [0.0, 1.0]])
-def test_thrust_without_travel_changes_no_stiffness(knots: list[float]) -> None:
-    """Reference: analytic, 0 to the last bit, for any knots."""
-    table = RowTable.interpolate(lambda s: np.sin(WAVES * (5.0 + s))[None], knots)
-    assert not MovingAxialForce(FORCE, table).geometric_stiffness(0.0).any()
-
-
-def test_only_passed_pieces_are_integrated() -> None:
-    """Reference: analytic, a polynomial in many pieces, whose matrices would need 0.16 GB."""
+    for ends in ([-1.0, -0.4, 1.0], [-2.0, 0.0], [0.0, 1.0]):
+        own = RowTable.interpolate(lambda s: np.sin(WAVES * (5.0 + s))[None], ends)
+        assert not MovingAxialForce(FORCE, own).geometric_stiffness(0.0).any()
     modes, knots = 200, np.linspace(-1.0, 1.0, 501)
-    table = RowTable(
-        knots, np.tile(np.diff(knots)[0] * np.eye(4)[1][:, None, None], (500, 1, 1, modes))
-    )
+    piece = np.diff(knots)[0] * np.eye(4)[1][:, None, None]
+    table = RowTable(knots, np.tile(piece, (500, 1, 1, modes)))
     tracemalloc.start()
     found = MovingAxialForce(2.0, table).geometric_stiffness(0.0105)
     most = tracemalloc.get_traced_memory()[1]
@@ -113,24 +106,21 @@ def test_as_it_stands_its_own_modes_are_those_of_the_softer_boom() -> None:
         Motion(stands, 1.0)
 
 
-@pytest.mark.parametrize("travel", [2.0, -0.9])
-def test_a_motion_by_an_integration_of_its_own(travel: float) -> None:
+def test_a_motion_by_an_integration_of_its_own() -> None:
     """Reference: other code, scipy's DOP853 with the matrix: order 2, error, and effect of the
     force. The energy balance verifies the work of the drive.
     """
-    drawn = pressed_along(SCurve(travel, 1.0))
+    drawn = pressed_along(SCurve(2.0, 1.0))
     motion = Motion(replace(drawn, damping=np.zeros(6)), 1.0, 1e-2)
-    expected = runge_kutta(motion, 2e-3)
-    errors = errors_in_the_step(motion, expected, np.array([1e-3, 5e-4, 2.5e-4]))
+    expected = runge_kutta(motion, 5e-3)
+    errors = errors_in_the_step(motion, expected, np.array([2e-3, 1e-3, 5e-4]))
     assert slopes(errors) == pytest.approx(2.0, abs=0.2)
-    assert errors[-1] < 1e-4
+    assert errors[-1] < 4e-4
     plain = replace(motion.system, travels=[replace(drawn.travels[0], axial_forces=())])
     (off,) = errors_in_the_step(replace(motion, system=plain), expected, np.array([5e-4]))
     assert off > 0.05
     assert FixedStep(5e-4)(motion).energy_residual < 1e-11
 
-
-Drawn = Callable[[History], GapSystem]
 
 # A simply supported beam: length in m, E J in N·m², mass per length in kg/m.
 LENGTH, STIFFNESS, MASS = 10.0, 1.0e7, 100.0
@@ -213,40 +203,15 @@ def test_a_moving_force_on_a_beam() -> None:
 
 
 @pytest.mark.parametrize("drawn", [lossy, pressed_along])
-def test_constant_travel_equals_no_travel_to_the_bit(drawn: Drawn) -> None:
+def test_constant_travel_equals_no_travel_to_the_bit(
+    drawn: Callable[[History], GapSystem],
+) -> None:
     """Reference: non-regression, the same system without a travel."""
     moving = drawn(PiecewiseLinear([0.0, 1.0], [0.0, 0.0]))
     resting = replace(moving, travels=())
     runs = [FixedStep(5.0e-5)(Motion(system, 0.3, 1.0e-3)) for system in (moving, resting)]
     assert np.array_equal(runs[0].states, runs[1].states)
     assert runs[0].data.identical(runs[1].data)
-
-
-@pytest.mark.parametrize("drawn", [lossy, pressed_along])
-def test_drive_has_no_effect_before_its_start(drawn: Drawn) -> None:
-    """Reference: other code path, the loop without a drive."""
-    later = drawn(SCurve(5.0, 0.4, start=1.0))
-    runs = [FixedStep(2e-4)(Motion(s, 0.3, 1e-3)) for s in (later, replace(later, travels=()))]
-    moving, rests = (run.data for run in runs)
-    assert rests.attrs["contact_changes"] > 0
-    for name in ("tip", "contact_force", "friction_loss", "damping_loss", "contact_loss"):
-        size = float(np.abs(rests[name]).max())
-        np.testing.assert_allclose(moving[name], rests[name], atol=1e-9 * size)
-    assert float(np.abs(moving["drive_work"]).max()) < 1e-12 * float(rests["work"].max())
-
-
-def test_a_slow_drive_passes_through_places_of_rest() -> None:
-    """Reference: analytic, statics at each position, and the work against the slope of the beam."""
-    law = PowerContact(1.0e6, 1.0).lower()
-    damping = np.append(0.2 * frequencies(8), 20.0)
-    slow = rider(SCurve(2.5, 20.0), law, mass=20.0, weight=2.0e3, start=2.5, damping=damping)
-    run = FixedStep(2e-3)(Motion(slow, 20.0, 0.1, equilibrium(slow, slow.load)))
-    rests = [slow.at_time(time) for time in run.time]
-    tips = [one.observers["tip"].row @ equilibrium(one, one.load) for one in rests]
-    assert np.abs(run.data["tip"] - tips).max() < 2e-3 * np.ptp(tips)
-    compliance = [(sines(x, 8) ** 2 / frequencies(8) ** 2).sum() for x in (2.5, 5.0)]
-    work = -0.5 * 2.0e3**2 * np.diff(compliance)[0]
-    assert float(run.data["drive_work"][-1]) == pytest.approx(work, rel=2e-3)
 
 
 def test_it_runs_back_as_it_came() -> None:
@@ -280,13 +245,12 @@ def test_drive_friction_force() -> None:
         (SCurve(4.0, 5.0, start=1.0), 4.0, 1.6),
         (SCurve(-4.0, 5.0), -4.0, -1.6),
         (Stroke(4.0, 1.0, ramp=0.5, start=1.0), 4.0, 1.0),
-        (Stroke(4.0, 1.0), 4.0, 1.0),
-        (Stroke(-1.0, 2.0, ramp=0.5), -1.0, -2.0),
+        (Stroke(-1.3, 0.3, ramp=0.37, start=0.1), -1.3, -0.3),
         (HistorySum((SCurve(4.0, 5.0), Stroke(1.0, 0.5))), 5.0, 1.947),
     ],
 )
 def test_histories_of_a_drive(history: History, way: float, speed: float) -> None:
-    """Reference: analytic, travel, largest speed, and rest before and after it."""
+    """Reference: analytic, travel, largest speed, and rest before and after it to the last bit."""
     time = np.linspace(0.0, 8.0, 80001)
     ways = history(time)
     rates = np.gradient(ways, time)
@@ -296,14 +260,7 @@ def test_histories_of_a_drive(history: History, way: float, speed: float) -> Non
     assert np.abs(ways).max() <= history.peak * (1.0 + 1e-12)
     assert history(np.array(history.kinks[-1])) == pytest.approx(way)
     assert not history(np.array([history.kinks[0]])).any()
-
-
-def test_completed_stroke_is_constant() -> None:
-    """Reference: analytic, to the last bit, for a length and a ramp with round-off."""
-    stroke = Stroke(-1.3, 0.3, ramp=0.37, start=0.1)
-    ways = stroke(np.linspace(stroke.kinks[-1], 20.0, 2000))
-    assert ways[-1] == pytest.approx(-1.3)
-    assert not np.diff(ways).any()
+    assert not np.diff(ways[time > history.kinks[-1]]).any()
 
 
 def test_tables_hold_cubics_and_come_near_to_the_rest() -> None:

@@ -5,11 +5,11 @@ import re
 import resource
 import signal
 from collections import Counter
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cache
 from itertools import pairwise, product
+from math import inf
 from pathlib import Path
 
 import meshio
@@ -32,12 +32,11 @@ from protractile.geometry.mesh import (
 from protractile.geometry.plating import add_thickness, plain_thickness
 from protractile.geometry.refinement import RefinementZone, refinement_zones
 from protractile.geometry.section import COMPONENT, Section
-from tests.geometry.test_polygon import ALL, regular
+from tests.geometry.test_section import ALL, regular
 from tests.shell_model.booms import box_segment
 
 WALLS = ("bottom", "right", "top", "left")
 BOX = BoxSection(height=0.4945, width=0.3027, flange=0.00664, web=0.00664)
-BREAKS = {"tail": 0.0, "support-2": 2.0, "station-9": 9.0, "station-10": 10.0, "head": 10.0}
 
 SECTIONS = ALL | {
     "regular": regular(6, 0.25, 0.006),
@@ -91,19 +90,6 @@ def line_length(mesh: SegmentMesh, edges: Indices) -> float:
     return float(np.linalg.norm(np.diff(mesh.points[edges], axis=1), axis=2).sum())
 
 
-def assert_alike(mesh: SegmentMesh, other: SegmentMesh, places: Array) -> None:
-    """Check that the other mesh, with its points at ``places``, has the points and triangles of a
-    mesh.
-    """
-    distance, image = cKDTree(mesh.points).query(places)
-    assert distance.max() < 1e-12
-    found, expected = (
-        set(map(tuple, np.sort(triangles, axis=1).tolist()))
-        for triangles in (image[other.triangles], mesh.triangles)
-    )
-    assert found == expected
-
-
 @MESHES
 def test_each_plate_has_its_place_area_and_thickness(name: str, kind: str) -> None:
     """Reference: analytic. Diaphragms fill the outline; points are used, and no two coincide."""
@@ -152,25 +138,15 @@ def test_meshes_mirror_themselves(name: str, kind: str) -> None:
     for axis in section.mirrors:
         mirror = np.ones(3)
         mirror[COMPONENT[axis]] = -1.0
-        assert_alike(mesh, mesh, mesh.points * mirror)
+        distance, image = cKDTree(mesh.points).query(mesh.points * mirror)
+        assert distance.max() < 1e-12
+        found, expected = (
+            set(map(tuple, np.sort(triangles, axis=1).tolist()))
+            for triangles in (image[mesh.triangles], mesh.triangles)
+        )
+        assert found == expected
         across = np.abs(mesh.points[:, COMPONENT[axis]])
         assert across[across < 1e-9].max() == 0.0
-
-
-def test_mesh_of_a_box_on_its_side_lies_on_its_side() -> None:
-    """With y and z exchanged the points are the same, and so are the triangles."""
-    lying = mesh_segment(BOX.turned(), PLATE_BREAKS, 0.06, closed=CLOSED)
-    assert_alike(made("box", "uniform")[1], lying, lying.points[:, [0, 2, 1]])
-
-
-def test_a_diaphragm_leaves_the_walls_as_they_are() -> None:
-    """Reference: the mesh without it, with 3 and 4 edges of some 0.06 m on half a wall."""
-    mesh, plain = made("box", "uniform")[1], mesh_segment(BOX, PLATE_BREAKS, 0.06)
-    assert sum(count == 3 for count in edge_counts(mesh.triangles).values()) == 4 * (3 + 4)
-    np.testing.assert_array_equal(
-        sorted_places(mesh.points[mesh.triangles[mesh.on_walls]].mean(axis=1)),
-        sorted_places(plain.points[plain.triangles].mean(axis=1)),
-    )
 
 
 def test_plates_have_their_thicknesses() -> None:
@@ -230,122 +206,79 @@ def test_lines_lie_at_the_breaks_for_awkward_lengths(
         assert steps == max(1, int((b - a) / size + 0.5))
 
 
-def test_gmsh_file_names_every_wall_and_line(tmp_path: Path) -> None:
-    """Reference: other code, meshio's reader of gmsh's own file."""
-    breaks = {"tail": 0.0, "support-2": 2.0, "station-3": 3.0, "head": 3.5}
+def test_files_hold_the_mesh(tmp_path: Path) -> None:
+    """Reference: other code, meshio's readers; of coincident lines both are in the file."""
+    breaks = {"tail": 0.0, "support-2": 2.0, "station-3": 3.0, "end": 3.5, "head": 3.5}
     mesh = mesh_segment(BOX, breaks, 0.25, closed=("station-3",))
-    mesh.write_gmsh(tmp_path / "outer.msh")
-    read = meshio.read(tmp_path / "outer.msh")
-    plates = (*WALLS, "diaphragm-1")
-    expected = {plate: 2 for plate in plates}
-    expected |= {f"{name}:{wall}": 1 for name in breaks for wall in WALLS}
-    assert {name: int(dim) for name, (_, dim) in read.field_data.items()} == expected
-    for number, plate in enumerate(plates):
-        corners = grouped(read, "triangle", plate)
-        assert len(corners) == (mesh.walls == number).sum()
-        np.testing.assert_allclose(
-            sorted_places(corners.mean(axis=1)),
-            sorted_places(mesh.points[mesh.triangles[mesh.walls == number]].mean(axis=1)),
-            atol=1e-12,
-        )
-    for name, edges in mesh.lines.items():
-        ends = grouped(read, "line", name)
-        np.testing.assert_allclose(
-            sorted_places(ends.mean(axis=1)),
-            sorted_places(mesh.points[edges].mean(axis=1)),
-            atol=1e-12,
-        )
-
-
-def test_coincident_lines_are_both_in_the_gmsh_file(tmp_path: Path) -> None:
-    mesh = mesh_segment(BOX, {"tail": 0.0, "station": 1.0, "head": 1.0}, 0.5)
-    mesh.write_gmsh(tmp_path / "m.msh")
-    text = (tmp_path / "m.msh").read_text()
-    for name in ("station", "head"):
-        for wall in WALLS:
-            assert f'"{name}:{wall}"' in text
-
-
-@contextmanager
-def files_of_at_most(size: int) -> Iterator[None]:
-    """Limit files to ``size`` bytes, as on a nearly full disk."""
-    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
-
-
-@pytest.mark.parametrize("room", [0, 4_000])
-def test_a_full_disk_is_noticed(tmp_path: Path, room: int) -> None:
-    mesh = mesh_segment(BOX, {"tail": 0.0, "head": 1.0}, 0.2)
-    path = tmp_path / "m.msh"
-    mesh.write_gmsh(path)
-    assert path.stat().st_size > room
-    with files_of_at_most(room), pytest.raises(OSError, match="File too large") as caught:
-        mesh.write_gmsh(path)
-    assert caught.value.filename == str(path)
-
-
-def grouped(read: meshio.Mesh, kind: str, name: str) -> Array:
-    """Return the corners (num_cells, nodes, 3) of the cells in a physical group."""
-    tag = read.field_data[name][0]
-    tags = read.cell_data_dict["gmsh:physical"][kind]
-    return read.points[read.cells_dict[kind][tags == tag]]
-
-
-def sorted_places(places: Array) -> Array:
-    return places[np.lexsort(np.round(places, 9).T)]
-
-
-def test_written_mesh_is_read_back(tmp_path: Path) -> None:
-    """Reference: other code, meshio's reader."""
-    mesh = mesh_segment(BOX, BREAKS, 0.2)
     mesh.write(tmp_path / "outer.vtu")
     read = meshio.read(tmp_path / "outer.vtu")
     np.testing.assert_allclose(read.points, mesh.points, atol=1e-15)
     np.testing.assert_array_equal(read.cells_dict["triangle"], mesh.triangles)
     np.testing.assert_array_equal(read.cell_data_dict["wall"]["triangle"], mesh.walls)
+    path = tmp_path / "outer.msh"
+    mesh.write_gmsh(path)
+    read = meshio.read(path)
+    plates = (*WALLS, "diaphragm-1")
+    lines = {f"{name}:{wall}": 1 for name in breaks for wall in WALLS}
+    assert {name: int(dim) for name, (_, dim) in read.field_data.items()} == lines | dict.fromkeys(
+        plates, 2
+    )
+
+    def centres(kind: str, name: str) -> Array:
+        tags = read.cell_data_dict["gmsh:physical"][kind]
+        cells = read.cells_dict[kind][tags == read.field_data[name][0]]
+        return np.sort(read.points[cells].mean(axis=1), axis=0)
+
+    for number, plate in enumerate(plates):
+        expected = mesh.points[mesh.triangles[mesh.walls == number]].mean(axis=1)
+        np.testing.assert_allclose(
+            centres("triangle", plate), np.sort(expected, axis=0), atol=1e-12
+        )
+    for name in ("tail:top", "support-2:left", "station-3:right"):
+        expected = np.sort(mesh.points[mesh.lines[name]].mean(axis=1), axis=0)
+        np.testing.assert_allclose(centres("line", name), expected, atol=1e-12)
+    # As on a nearly full disk.
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4_000, limits[1]))
+    try:
+        with pytest.raises(OSError, match="File too large") as caught:
+            mesh.write_gmsh(path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert caught.value.filename == str(path)
 
 
-def test_the_same_call_gives_the_same_mesh() -> None:
-    mesh, again = (mesh_segment(BOX, BREAKS, 0.2) for _ in range(2))
-    np.testing.assert_array_equal(again.points, mesh.points)
-    np.testing.assert_array_equal(again.triangles, mesh.triangles)
-
-
-@pytest.mark.parametrize("size", [0.0, -0.1, float("nan"), float("inf")])
-def test_bad_mesh_sizes_are_refused(size: float) -> None:
-    message = f"mesh size must be a positive number of m, got {size}"
+@pytest.mark.parametrize(
+    ("breaks", "size", "message"),
+    [
+        (PLATE_BREAKS, 0.0, "mesh size must be a positive number of m, got 0.0"),
+        (PLATE_BREAKS, inf, "mesh size must be a positive number of m, got inf"),
+        ({"tail": 1.0, "head": 1.0 + 1e-12}, 0.2,
+         "a segment needs breaks at two places at least, its ends"),
+    ],
+)  # fmt: skip
+def test_bad_meshes_are_refused(breaks: dict[str, float], size: float, message: str) -> None:
     with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        mesh_segment(BOX, BREAKS, size)
-
-
-@pytest.mark.parametrize("breaks", [{}, {"tail": 1.0}, {"tail": 1.0, "head": 1.0 + 1e-12}])
-def test_refuses_a_segment_without_length(breaks: dict[str, float]) -> None:
-    message = "a segment needs breaks at two places at least, its ends"
-    with pytest.raises(ValueError, match=f"^{re.escape(message)}$"):
-        mesh_segment(BOX, breaks, 0.2)
-
-
-def _signals(name: str) -> int:
-    """Return a mask of this process's signals, from Linux."""
-    status = Path("/proc/self/status").read_text(encoding="utf-8")
-    (line,) = (line for line in status.splitlines() if line.startswith(f"{name}:"))
-    return int(line.split()[1], 16)
+        mesh_segment(BOX, breaks, size)
 
 
 def test_meshing_keeps_signal_handlers() -> None:
     """Reference: the handlers before. gmsh starts PETSc, which resets SIGTERM, SIGPIPE."""
+
+    def signals(name: str) -> int:
+        status = Path("/proc/self/status").read_text(encoding="utf-8")
+        return int(status.partition(f"\n{name}:")[2].split()[0], 16)
+
     terminate, pipe = (1 << (number - 1) for number in (signal.SIGTERM, signal.SIGPIPE))
     before = signal.signal(signal.SIGTERM, lambda *_: None)
     try:
-        mesh_segment(BOX, BREAKS, 1.0)
-        assert _signals("SigCgt") & terminate
-        assert _signals("SigIgn") & pipe
+        one, again = (mesh_segment(BOX, PLATE_BREAKS, 1.0) for _ in range(2))
+        assert signals("SigCgt") & terminate
+        assert signals("SigIgn") & pipe
     finally:
         signal.signal(signal.SIGTERM, before)
+    np.testing.assert_array_equal(again.points, one.points)
+    np.testing.assert_array_equal(again.triangles, one.triangles)
 
 
 def _longest(mesh: SegmentMesh) -> Array:

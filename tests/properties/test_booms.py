@@ -455,13 +455,8 @@ def shell_at_rest(boom: pt.Boom, m: float = 1.0) -> Rows:
 
 
 @pytest.mark.slow
-def test_a_shell_upside_down_is_mirrored() -> None:
-    rows, others = (shell_at_rest(boom_of(SHORT, up=up)) for up in (1.0, -1.0))
-    agree_upside_down(rows, others, 1e-4)
-
-
-@pytest.mark.slow
-def test_results_of_a_shell_have_the_dimensions_of_their_units() -> None:
+def test_a_shell_is_mirrored_and_has_the_dimensions_of_its_units() -> None:
     units = 2.0, 3.0, 0.5
-    other = shell_at_rest(boom_of(SHORT, *units), units[0])
-    agree(shell_at_rest(boom_of(SHORT)), other, in_units(*units), 1e-4)
+    rows, mirrored = (shell_at_rest(boom_of(SHORT, up=up)) for up in (1.0, -1.0))
+    agree_upside_down(rows, mirrored, 1e-4)
+    agree(rows, shell_at_rest(boom_of(SHORT, *units), units[0]), in_units(*units), 1e-4)

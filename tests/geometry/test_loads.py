@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Axial forces of segments, wind, moments of loads beside the axis, and luffing cylinders."""
+
+from dataclasses import replace
+from math import cos, hypot, pi, radians, sin
+
+import numpy as np
+import pytest
+
+from protractile.dynamics.excitation import PiecewiseLinear, Step
+from protractile.geometry.axial import (
+    AxialChange,
+    MovingForce,
+    Thrust,
+    axial_force,
+    moving_force,
+    with_compression,
+)
+from protractile.geometry.boom import BoomError, Collar, Diaphragm, Joint, PointMass, Segment
+from protractile.geometry.cylinder import Cylinder, EarthPoint
+from protractile.geometry.head import Head
+from protractile.geometry.joint import Carrier, Drive
+from protractile.geometry.load import Load, Moment, PartialLoad, Torque
+from protractile.geometry.support import Support
+from protractile.geometry.wind import wind_direction, wind_loads
+from tests.booms import ARM, FLY, STEEL
+
+# Of both segments in kg/m.
+HEAVY, LIGHT = 7850.0 * ARM.area, 7850.0 * FLY.area
+JOINT = Joint(outer=0, inner=1, stations=(6.0, 8.0), play=0.01)
+
+
+def segments(tail: float = 6.0, length: float = 8.0) -> tuple[Segment, Segment]:
+    arm = Segment.of_section("arm", 0.0, 8.0, STEEL, ARM, supports=(Support(1.0), Support(3.0)))
+    return arm, Segment.of_section("fly", tail, tail + length, STEEL, FLY)
+
+
+def at(segment: Segment, *places: float) -> list[float]:
+    return segment.compression(np.array(places)).tolist()
+
+
+def test_weights_compress_below_and_pull_behind_the_support() -> None:
+    """Reference: analytic, masses times acceleration. The fly transfers its weight at its tail; the
+    arm's foot is at 1 m.
+    """
+    arm, fly = segments()
+    stiff = replace(
+        fly,
+        masses=(PointMass(14.0, 300.0), PointMass(10.0, 50.0)),
+        collars=(Collar((8.0, 9.0), 0.01),),
+        diaphragms=(Diaphragm(12.0, 0.02),),
+    )
+    arm, plain = with_compression((arm, fly), [JOINT], [], gravity=5.0)
+    assert at(plain, 6.5, 10.0, 13.9) == pytest.approx(
+        [5.0 * LIGHT * length for length in (7.5, 4.0, 0.1)], rel=1e-12
+    )
+    assert at(arm, 0.5, 5.5, 7.0) == pytest.approx(
+        [-2.5 * HEAVY, 12.5 * HEAVY + 40.0 * LIGHT, 5.0 * HEAVY], rel=1e-9
+    )
+    _, pressed = with_compression((arm, stiff), [JOINT], [], gravity=2.0)
+    collar, plate = 7850.0 * FLY.perimeter * 0.01, 7850.0 * FLY.enclosed_area * 0.02
+    expected = [
+        LIGHT + 300.0, 3.0 * LIGHT + 300.0 + plate, 5.5 * LIGHT + 350.0 + plate + 0.5 * collar,
+        7.0 * LIGHT + 350.0 + plate + collar,
+    ]  # fmt: skip
+    found = np.array(at(pressed, 13.0, 11.0, 8.5, 7.0))
+    assert 0.5 * found == pytest.approx(np.array(expected), rel=1e-12)
+
+
+def test_a_thrust_goes_by_the_lock_into_the_next_segment() -> None:
+    """Reference: analytic. Force transfers at the tail by default, at a lock, or at the foot; each
+    of three segments carries the outboard forces.
+    """
+    for locked, of_fly, of_arm in (
+        (None, [1000.0, 1000.0, 1000.0], [1000.0, 0.0, 0.0]),
+        (7.5, [0.0, 0.0, 1000.0], [1000.0, 1000.0, 0.0]),
+        (2.0, [1000.0, 1000.0, 1000.0], [0.0, 0.0, 0.0]),
+    ):
+        joint = replace(JOINT, locked_at=locked)
+        arm, fly = with_compression(segments(), [joint], [Thrust(1, 14.0, 1000.0)])
+        assert at(fly, 6.5, 7.0, 9.0) == of_fly
+        assert at(arm, 5.0, 7.0, 7.9) == of_arm
+        assert at(arm, 0.5, 1.5) == [0.0, 1000.0]
+    jib = Segment.of_section("jib", 12.0, 20.0, STEEL, FLY)
+    second = Joint(outer=1, inner=2, stations=(12.0, 14.0), play=0.01)
+    thrusts = [Thrust(2, 20.0, 700.0), Thrust(1, 13.0, -100.0), Thrust(0, 7.0, 10.0)]
+    arm, fly, jib = with_compression((*segments(), jib), [JOINT, second], thrusts)
+    assert at(jib, 13.0, 19.0) == [700.0, 700.0]
+    assert at(fly, 7.0, 12.5, 13.5) == pytest.approx([600.0, -100.0, 0.0], abs=1e-9)
+    assert at(arm, 5.0, 6.5, 7.5) == pytest.approx([610.0, 10.0, 0.0], abs=1e-9)
+
+
+def test_axial_forces_and_masses_soften_a_mode() -> None:
+    """Reference: analytic, ∫ P w′² dx = P π²/2L and m w² of w = sin πx/L with a mass at L/3."""
+    (arm,) = with_compression([segments()[0]], [], [Thrust(0, 8.0, 900.0)])
+    x = np.linspace(0.0, 8.0, 81)
+    lines = {"z": (x, np.sin(np.pi * x / 8.0)[:, None]), "y": (x, 0.0 * x[:, None])}
+    masses = [[PointMass(8.0 / 3.0, 60.0)]]
+    found = AxialChange(Step(), [arm.compression], masses, "z").geometric_stiffness([lines])
+    # The force ends at the foot, at 1 m.
+    bent = 900.0 * (np.pi / 8.0) ** 2 * (3.5 - np.sin(0.25 * np.pi) / (0.5 * np.pi))
+    assert found == pytest.approx(np.array([[bent + 0.75 * 60.0]]), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("carrier", "locked", "place"),
+    [("inner", None, (0, 6.0, 1)), ("inner", 7.0, (0, 7.0, 1)), ("outer", 6.0, (1, 6.0, -1)),
+     ("outer", 5.0, None)],
+)  # fmt: skip
+def test_drawn_out_a_force_goes_along(
+    carrier: Carrier, locked: float | None, place: tuple[int, float, int] | None
+) -> None:
+    """Reference: other code path, the forces in the boom built at this extension."""
+    ways = PiecewiseLinear([0.0, 1.0], [0.0, 1.0])
+    drive = Drive(ways, ("inner", "outer"), 0.0, carrier)
+    joint = replace(JOINT, drive=drive, locked_at=locked)
+    own = with_compression(segments(), [joint], [Thrust(1, 14.0, 1000.0)], gravity=5.0)
+    found = moving_force(own, [joint], 0)
+    if place is None:
+        assert found is None
+    else:
+        assert found is not None
+        assert found == MovingForce(*place, found.force)
+        assert found.force == pytest.approx(1000.0 + 40.0 * LIGHT, rel=1e-9)
+    for way in (1.0, -1.0):
+        along = locked + way if carrier == "inner" and locked is not None else locked
+        there = replace(JOINT, locked_at=along)
+        drawn, thrust = segments(6.0 + way), Thrust(1, 14.0 + way, 1000.0)
+        expected = with_compression(drawn, [there], [thrust], gravity=5.0)
+        for number, moved in ((0, 0.0), (1, way)):
+            x = np.linspace(own[number].start, own[number].end, 97)[1:-1] + 1e-3
+            here = own[number].compression(x)
+            if way > 0.0:
+                here = axial_force(own, [joint], number, x, np.array([0.3, way]))[1]
+            elif found is not None and found.segment == number:
+                here = here + found.change(x, np.array(way))
+            assert here == pytest.approx(expected[number].compression(x + moved), abs=1e-6)
+
+
+PRESSURE, FACTORS = 250.0, (1.5, 1.3)
+
+
+@pytest.mark.parametrize("overlap", [0.5, 6.0])
+@pytest.mark.parametrize(("angle", "luffing"), [(0.0, 60.0), (35.0, 25.0)])
+def test_resultant_and_moment_of_wind_follow_by_hand(
+    overlap: float, angle: float, luffing: float
+) -> None:
+    """Reference: analytic, pressure times outer size and exposed length of each segment."""
+    turn, raised = radians(angle), radians(luffing)
+    lateral, up = sin(turn), -cos(turn) * sin(raised)
+    lengths, middles = (8.0, 7.0 - overlap), (4.0, 8.0 + 0.5 * (7.0 - overlap))
+    expected, found = ({"y": np.zeros(2), "z": np.zeros(2)} for _ in "12")
+    sizes = ((0.408, 0.306), (0.366, 0.265))  # outside
+    for length, middle, factor, (high, wide) in zip(lengths, middles, FACTORS, sizes, strict=True):
+        for axis, size, part in (("y", high, lateral), ("z", wide, up)):
+            force = PRESSURE * factor * size * hypot(lateral, up) * part * length
+            expected[axis] += force * np.array([1.0, middle])
+    joint = replace(JOINT, stations=(8.0 - overlap, 8.0))
+    exposed = segments(8.0 - overlap, 7.0), [joint], PRESSURE
+    for load in wind_loads(*exposed, wind_direction(turn, raised), FACTORS, Step()):
+        assert isinstance(load, PartialLoad)
+        found[load.direction] += load.resultant(0.0) * np.array([1.0, 0.5 * sum(load.span)])
+    for axis, values in expected.items():
+        np.testing.assert_allclose(found[axis], values, rtol=1e-9, atol=1e-9)
+
+
+def test_wind_on_a_taper_has_the_resultant_of_the_mean_width() -> None:
+    """Reference: analytic, the mean outer width; wind along the axis does nothing."""
+    arm, fly = segments()
+    tapered = replace(arm, head_section=replace(ARM, height=0.2, width=0.1))
+    upright, along, side = (
+        wind_direction(*map(radians, angles)) for angles in ((0.0, 90.0), (0.0, 0.0), (90.0, 0.0))
+    )
+    loads = [*wind_loads([tapered], [], PRESSURE, upright, (1.0,), Step())]
+    assert sum(load.resultant(0.0) for load in loads) == pytest.approx(
+        -PRESSURE * 0.5 * (0.306 + 0.106) * 8.0, rel=1e-9
+    )
+    assert not [*wind_loads([tapered], [], PRESSURE, along, (1.0,), Step())]
+    with pytest.raises(BoomError) as caught:
+        list(wind_loads([arm, replace(fly, section=None)], [JOINT], 1.0, side, FACTORS, Step()))
+    assert str(caught.value) == (
+        "segments[1].section: missing; the wind meets the height and width of 'fly'"
+    )
+
+
+def test_moments_of_a_load_beside_the_axis_follow_by_hand() -> None:
+    """Reference: analytic, lever arms of a weight at 30 degrees and of a force aside."""
+    head = Head(ahead=0.9, below=0.6, beside=0.25)
+    weight, aside, raised = 1000.0, 120.0, radians(30.0)
+    force = [-weight * sin(raised), aside, -weight * cos(raised)]
+    loads: list[Load] = list(head.moments(1, 14.0, np.array(force), Step()))
+    assert [type(load) for load in loads] == [Moment, Moment, Torque]
+    assert loads[1].direction == "y"
+    assert [load.magnitude for load in loads] == pytest.approx(
+        [
+            -weight * (0.9 * cos(raised) + 0.6 * sin(raised)),
+            0.9 * aside + 0.25 * weight * sin(raised),
+            -0.25 * weight * cos(raised) + 0.6 * aside,
+        ],
+        rel=1e-12,
+    )
+
+
+def test_stroke_follows_by_the_law_of_cosines() -> None:
+    """Reference: analytic, the triangle of foot pin, lug and ground at two angles."""
+    a, b = hypot(2.0, 0.4), hypot(0.5, 1.2)
+    jack = Cylinder(0, 2.0, 0.4, ground=EarthPoint(front=0.5, below=1.2), closed=1.5, stiffness=1e7)
+    for luffing in (radians(10.0), radians(55.0)):
+        turned = luffing - np.arctan2(0.4, 2.0) + np.arctan2(1.2, 0.5)
+        placed = jack.in_boom_axes(luffing, Support(0.0, "hinged"))
+        expected = np.sqrt(a**2 + b**2 - 2.0 * a * b * cos(turned))
+        assert placed.length == pytest.approx(expected, rel=1e-12)
+        assert placed.extension == pytest.approx(expected - 1.5, rel=1e-12)
+
+
+def test_cylinder_data_give_stiffness_pressure_and_buckling() -> None:
+    """Reference: analytic, springs in series, area times pressure, Euler's hinged column."""
+    jack = Cylinder(
+        0, 4.0, 0.3, ground=(1.0, -4.3), bore=0.14, rod=0.10, closed=3.0, open=5.2, pressure=2.5e7
+    )
+    area, rod = 0.25 * pi * 0.14**2, 0.25 * pi * 0.10**2
+    stiffness = 1.0 / (2.0 / (1.4e9 * area) + 3.0 / (2.1e11 * rod))
+    buckling = pi**3 * 2.1e11 * 0.10**4 / 64.0 / 5.0**2
+    assert jack.extension == 2.0
+    assert jack.axial_stiffness == pytest.approx(stiffness, rel=1e-12)
+    assert jack.buckling_force == pytest.approx(buckling, rel=1e-12)
+    assert jack.resistance == pytest.approx(min(2.5e7 * area, buckling), rel=1e-12)
+    assert replace(jack, spread=0.6).axial_stiffness == pytest.approx(2.0 * stiffness, rel=1e-12)
+    for wrong, message in (
+        ({"open": 4.5}, "open: 4.5 m, and from ground to lug it is 5 m: the cylinder does not "
+         "reach; change it, the ground or the luffing angle"),
+        ({"rod": 0.14}, "rod: must be below the bore of 0.14 m, got 0.14 m"),
+        ({"open": 6.0}, "open: must be below 6 m, twice closed, as the rod goes into the closed "
+         "cylinder, got 6 m"),
+        ({"rod": None}, "rod: missing; the stiffness needs it beside bore, rod and closed, or give "
+         "it"),
+    ):  # fmt: skip
+        with pytest.raises(BoomError) as caught:
+            replace(jack, **wrong).check("cylinders[0]", spatial=False)
+        assert str(caught.value) == f"cylinders[0].{message}"
