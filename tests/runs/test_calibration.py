@@ -288,7 +288,7 @@ def test_undamped_plates_make_the_motion_uncertain(tmp_path: Path) -> None:
     """
     run = finished(shells(tmp_path, 5e-4, 1e-8), RunContext(MPI.COMM_WORLD))
     tips = run.results.trajectories["tip"]
-    coarse, exact = (tips.sel(model=f"shell-{one}").values for one in ("0.0005", "1e-08"))
+    coarse, exact = (tips.sel(model=f"shell-{x}").values for x in ("0.0005", "1e-08"))
     error = float(np.abs(coarse - exact).max() / np.ptp(exact))
     estimate = run.results.summary.models["shell-0.0005"].reduction_error
     assert estimate is not None

@@ -147,7 +147,7 @@ def test_motions_do_not_know_the_units(table: dict[str, Any], joint: dict[str, A
     """Reference: the model in SI units, tips within 1e-9, with friction and contacts."""
     model = KINDS[table["kind"]].model_validate({"name": "model", **table})
     case = rubbing(shipped("coarse"))
-    joints = tuple(replace(one, **joint) for one in case.joints)
+    joints = tuple(replace(own, **joint) for own in case.joints)
     case = case.model_copy(update={"joints": joints, "models": (model,)})
     in_mm = convert_to_si(case.model_copy(update={"units": "mm-t-s"}))
     si, mm = (
@@ -199,7 +199,7 @@ def states(tmp_path_factory: pytest.TempPathFactory) -> list[CombinationState]:
 
 def test_one_shell_serves_combinations_of_a_geometry(states: list[CombinationState]) -> None:
     """Reference: other code path, a shell reduced for a single combination."""
-    names = [one.combined.name for one in states]
+    names = [state.combined.name for state in states]
     assert names == ["A, raised", "A, level", "B, level", "C, raised"]
     for state in states[2:]:
         case = state.combined.case
@@ -248,7 +248,7 @@ def test_proofs_by_patches_and_factors(states: list[CombinationState], tmp_path:
     assert column.limit == pytest.approx(expected, rel=1e-12)
     # Of both geometries, the state with the lowest estimate has factors.
     buckled = [state for state in states if state.buckling]
-    assert [one.combined.name for one in buckled] == ["A, raised", "A, level"]
+    assert [state.combined.name for state in buckled] == ["A, raised", "A, level"]
     one = proofs["buckling", "base"]
     factor = next(
         found.factors[0]

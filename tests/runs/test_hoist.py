@@ -59,9 +59,7 @@ def test_maximum_load_hangs_for_any_mass(case: Case, mass: float) -> None:
     """Reference: the same load that hangs from the start. 4 t had −0.675 m in place of −1.821 m."""
     lifted = change(case, **{"hoist.mass": mass})
     hung = change(lifted, **{"hoist.hanging": True})
-    states, hanging = (
-        static_states(one, boom_with_play(one, build_boom(one))) for one in (lifted, hung)
-    )
+    states, hanging = (static_states(x, boom_with_play(x, build_boom(x))) for x in (lifted, hung))
     (_, tip), (_, hanging_tip) = largest_tip(states), largest_tip(hanging)
     assert tip == pytest.approx(hanging_tip, rel=1e-6)
     assert tip < 1.2 * states.observed("tip")[0] < 0.0
@@ -112,9 +110,7 @@ def test_rope_of_a_boom_without_play_is_straight_at_rest(case: Case) -> None:
     system = build(case, boom, model).system.gather_loads()
     bonded = bonded_system(system, [equilibrium(system, system.load)])[0]
     same = build(case, boom, model.model_copy(update={"bonded": True})).system.gather_loads()
-    own, other = (
-        closed_contact_modes(one)[0][0] for one in (with_initial_slack(bonded, case), same)
-    )
+    own, other = (closed_contact_modes(x)[0][0] for x in (with_initial_slack(bonded, case), same))
     assert own == pytest.approx(other, rel=0.02)
 
 
@@ -216,8 +212,8 @@ def test_dropped_load(case: Case) -> None:
     weight = at_head(magnitude=-5000.0 * 9.80665, released=True)
     hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, dropped=True)
     tips = [
-        run_case(case.model_copy(update=one)).trajectories["tip"].values
-        for one in ({"hoist": hung}, {"hoist": None, "loads": (weight,)})
+        run_case(case.model_copy(update=loads)).trajectories["tip"].values
+        for loads in ({"hoist": hung}, {"hoist": None, "loads": (weight,)})
     ]
     assert tips[0] == pytest.approx(tips[1], abs=1e-6)
     assert np.ptp(tips[0]) > 0.1

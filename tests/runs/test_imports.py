@@ -83,44 +83,28 @@ def trees() -> dict[str, ast.Module]:
     }
 
 
-@pytest.fixture(scope="module")
-def graph(trees: dict[str, ast.Module]) -> dict[str, set[str]]:
-    """Return the imports of each module within the project, without those for types."""
-    return {name: {*imported(tree, False)} & trees.keys() for name, tree in trees.items()}
-
-
-def test_no_module_imports_itself_by_way_of_others(
-    graph: dict[str, set[str]], trees: dict[str, ast.Module]
-) -> None:
-    """Imports for types form no cycle either."""
-    TopologicalSorter(graph).prepare()
-    typed = {name: {*imported(tree, True)} & trees.keys() for name, tree in trees.items()}
-    TopologicalSorter(typed).prepare()
-
-
-def test_a_room_knows_those_below(trees: dict[str, ast.Module], graph: dict[str, set[str]]) -> None:
-    """Geometry knows contact laws only, which know nothing."""
+def test_imports_point_downwards(trees: dict[str, ast.Module]) -> None:
+    """Nothing imports itself by way of others, also for types. Geometry knows contact laws only."""
+    graph, typed = (
+        {name: {*imported(tree, types)} for name, tree in trees.items()} for types in (False, True)
+    )
+    for found in (graph, typed):
+        TopologicalSorter({name: found[name] & trees.keys() for name in trees}).prepare()
     for room, below in ROOMS.items():
-        own = (tree for name, tree in trees.items() if room_of(name) == room)
-        known = {room_of(found) for tree in own for found in imported(tree, True)}
+        known = {room_of(x) for name in trees if room_of(name) == room for x in typed[name]}
         assert known & ROOMS.keys() <= below | {room}, room
     of_geometry = {x for name in graph if room_of(name) == "geometry" for x in graph[name]}
     laws = "protractile.dynamics.contact"
-    assert {x for x in of_geometry if room_of(x) == "dynamics"} == {laws}
-    assert graph[laws] == {"protractile.dynamics.arrays"}
-
-
-def test_a_part_of_runs_knows_those_before_it(trees: dict[str, ast.Module]) -> None:
+    assert {x for x in of_geometry & trees.keys() if room_of(x) == "dynamics"} == {laws}
+    assert graph[laws] & trees.keys() == {"protractile.dynamics.arrays"}
+    # A part of runs knows those before it.
     parts = {name: name.split(".")[2] for name in trees if name.startswith("protractile.runs.")}
     order = (*PARTS, "check", "cli", *clients.CLIENTS)
     assert {*parts.values()} == {*order}
     for name, part in parts.items():
-        known = {parts[found] for found in imported(trees[name], True) if found in parts}
+        known = {parts[x] for x in typed[name] if x in parts}
         assert known <= {*order[: order.index(part) + 1]}, name
-
-
-def test_nothing_imports_a_client(trees: dict[str, ast.Module]) -> None:
-    """Studies and tests may: they prove the product. Names in texts are imports in functions."""
+    # Studies and tests may import clients: they prove the product. Texts may hide imports, too.
     texts = {name: ast.unparse(tree) for name, tree in trees.items()}
     for client in clients.CLIENTS:
         package = f"protractile.runs.{client}"
@@ -212,25 +196,17 @@ def test_no_other_module_knows_the_paper() -> None:
 MOST_LINES, MOST_LINES_OF_A_FUNCTION = 450, 80
 # The time loop: its parts would share two dozen work arrays, each an argument.
 LONG = ["march"]
+FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def test_modules_and_functions_are_short(trees: dict[str, ast.Module]) -> None:
     paths = [path for room in ROOMS.keys() - {"studies"} for path in (ROOT / room).rglob("*.py")]
     lines = {path: path.read_text("utf-8").count("\n") for path in paths}
     assert [path for path, number in lines.items() if number > MOST_LINES] == []
-    functions = (
-        node
-        for name, tree in trees.items()
-        if room_of(name) != "studies"
-        for node in ast.walk(tree)
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
-    )
-    long = [
-        one.name
-        for one in functions
-        if (one.end_lineno or 0) - one.lineno >= MOST_LINES_OF_A_FUNCTION
-    ]
-    assert long == LONG
+    product = (tree for name, tree in trees.items() if room_of(name) != "studies")
+    functions = (node for tree in product for node in ast.walk(tree) if isinstance(node, FUNCTION))
+    lengths = ((node.name, (node.end_lineno or 0) - node.lineno) for node in functions)
+    assert [name for name, length in lengths if length >= MOST_LINES_OF_A_FUNCTION] == LONG
 
 
 def test_figures_name_their_counterparts() -> None:
