@@ -281,7 +281,7 @@ def pressed(folder: Path, text: str) -> list[list[float]]:
     return [s.compression(x).tolist() for s, x in zip(boom.segments, places, strict=True)]
 
 
-def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
+def test_weights_ropes_and_forces_press_the_segments(tmp_path: Path) -> None:
     """Reference: analytic, outboard masses times g sin θ; tension if the boom hangs."""
     mast, fly = 7850.0 * MAST.area, 7850.0 * FLY.area
     text = "[gravity]\nangle = {}\n[payload]\nmass = 300.0\n"
@@ -293,27 +293,19 @@ def test_weight_goes_along_as_the_angle_says(tmp_path: Path) -> None:
         ]
         found = pressed(tmp_path, text.format(angle))
         np.testing.assert_allclose(found, expected, rtol=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("text", "force"),
-    [
+    # The carried weight over the number of falls presses from the tip to the base.
+    for text, force in (
         ("[rope]\nfalls = 2\n[payload]\nmass = 600.0\ngravity = 5.0\n", 600.0 * 5.0 / 2),
         ("[rope]\nfalls = 2\n[payload]\nmass = 600.0\n[gravity]\n", 300.0 * 9.80665),
-    ],
-)  # fmt: skip
-def test_a_rope_presses_the_boom_from_tip_to_base(tmp_path: Path, text: str, force: float) -> None:
-    """Reference: analytic, the carried weight over the number of falls."""
-    np.testing.assert_allclose(pressed(tmp_path, text), [[force, 0.0], [force, force]], rtol=1e-12)
-
-
-def test_a_force_may_act_anywhere_and_pass_at_a_pin(tmp_path: Path) -> None:
+    ):
+        np.testing.assert_allclose(pressed(tmp_path, text), [[force, 0.0], [force, force]])
+    # A force may act anywhere, and pass at a pin.
     text = '[[axial]]\nforce = 5e3\nsegment = "fly"\nx = 10.0\n'
     assert pressed(tmp_path, text) == [[5e3, 0.0], [5e3, 0.0]]
     locked = (MAST_AND_FLY + text).replace("play = 0.01", "play = 0.01\nlocked_at = 8.0")
-    mast, fly = build_boom(read_case(tmp_path, locked)).segments
-    assert mast.compression(np.array([7.0])).tolist() == [5e3]
-    assert fly.compression(np.array([7.0, 9.0])).tolist() == [0.0, 5e3]
+    of_mast, of_fly = build_boom(read_case(tmp_path, locked)).segments
+    assert of_mast.compression(np.array([7.0])).tolist() == [5e3]
+    assert of_fly.compression(np.array([7.0, 9.0])).tolist() == [0.0, 5e3]
 
 
 def test_check_and_report_tell_the_buckling_factor(tmp_path: Path) -> None:
@@ -396,39 +388,17 @@ def test_tapered_boom_has_the_largest_stress_at_the_extension(tmp_path: Path) ->
     assert ["outer", "−300", number(-stress, 4)] in rows
 
 
-OF_ARM = "youngs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\nyield_strength = 690e6\n"
-ALUMINIUM = "{ youngs_modulus = 7e10, poissons_ratio = 0.33, density = 2700.0 }"
-ARM = """
-title = "Arm"
-time = {{ duration = 0.1 }}
-{material}
-[[segment]]
-name = "arm"
-span = [0.0, 10.0]
-supports = [{{ x = 0.0, kind = "clamped" }}]
-section = {{ height = 0.4, width = 0.3, flange = 0.01, web = 0.008 }}
-{segment}
-{rest}
-"""
-ELEMENTS = elements("beam", theory="euler-bernoulli", element_length=2.5, rotary_inertia=False)
-BOX = pt.BoxSection(height=0.4, width=0.3, flange=0.01, web=0.008)
-AREA, SECOND_MOMENT = BOX.area, BOX.second_moment_of_area
-
-
-def read(folder: Path, rest: str = "", material: str = "", segment: str = "") -> pt.Case:
-    material = material or f"[material]\n{OF_ARM}"
-    text = ARM.format(material=material, segment=segment, rest=rest) + ELEMENTS
-    return read_case(folder, text)
-
-
 def test_a_segment_has_its_own_material(tmp_path: Path) -> None:
-    """Reference: analytic, ρ A and E of each segment, by default with the material of the case."""
-    (arm,) = build_boom(read(tmp_path, segment=f"material = {ALUMINIUM}")).segments
-    assert arm.mass_per_length == pytest.approx(2700.0 * AREA, rel=1e-12)
-    assert arm.bending_stiffness == pytest.approx(7e10 * SECOND_MOMENT, rel=1e-12)
-    assert arm.rotary_inertia == pytest.approx(2700.0 * SECOND_MOMENT, rel=1e-12)
-    (steel,) = build_boom(read(tmp_path)).segments
-    assert (steel.material.density, steel.material.yield_strength) == (7850.0, 690e6)
-    case = read(tmp_path, material="# none\n", segment=f"material = {ALUMINIUM}")
-    assert build_boom(case).segments == (arm,)
+    """Reference: analytic, ρ A and E of a segment, by default with the material of the case."""
+    own = "material = { youngs_modulus = 7e10, poissons_ratio = 0.33, density = 2700.0 }"
+    text = MAST_AND_FLY.replace(CLAMPED, f"{CLAMPED}\n{own}")
+    mast, fly = build_boom(read_case(tmp_path, text)).segments
+    assert mast.mass_per_length == pytest.approx(2700.0 * MAST.area, rel=1e-12)
+    assert mast.bending_stiffness == pytest.approx(7e10 * MAST.second_moment_of_area, rel=1e-12)
+    assert mast.rotary_inertia == pytest.approx(2700.0 * MAST.second_moment_of_area, rel=1e-12)
+    assert fly.material.density == 7850.0
+    case = read_case(
+        tmp_path, text.replace(STEEL, "").replace('"fly"\nspan', f'"fly"\n{own}\nspan')
+    )
+    assert build_boom(case).segments[0] == mast
     assert read_case(tmp_path, toml.dumps(case)) == case

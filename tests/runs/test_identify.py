@@ -47,6 +47,8 @@ def test_standard_errors_and_profile_of_a_linear_model() -> None:
     assert found.agreeing == 3
     assert found.determined.all()
     assert not found.at_bound.any()
+    bounded = fit(line(noise), [-9.0, -9.0], [9.0, 1.0], [0.0, 0.0])
+    assert bounded.at_bound.tolist() == [False, True]
     # χ² grows by (distance/standard error)²; by 3.84 at 1.96 of them.
     values, increases = profile(line(noise), found, 1)
     expected = ((values - found.values[1]) / found.errors[1]) ** 2
