@@ -501,8 +501,8 @@ def test_card_has_stiffness_and_springs() -> None:
     assert len(system.laws) == 4
     residual = np.diag([2.0e-9, 4.0e-9, 5.0e-9, -1.0e-12, 1.0e-9, 1.0e-9])
     stiffness = [
-        Stiffness((1.01 * one.bending_stiffness,), (0.9 * (one.shear_stiffness or 0.0),))
-        for one in boom.segments
+        Stiffness((1.01 * segment.bending_stiffness,), (0.9 * (segment.shear_stiffness or 0.0),))
+        for segment in boom.segments
     ]
     told = calibration_card(boom, system, Calibration(stiffness, residual))
     places = [(x, side) for x in (9.0, 10.0) for side in ("top", "bottom")]
@@ -510,10 +510,10 @@ def test_card_has_stiffness_and_springs() -> None:
     springs = [spring.stiffness for spring in told.springs]
     assert springs[:3] == pytest.approx([5.0e8, 2.5e8, 2.0e8], rel=1e-12)
     assert springs[3] is None
-    for one in told.segments:
-        assert one.bending_part == pytest.approx([1.01], rel=1e-12)
-        assert one.shear_part == pytest.approx([0.9], rel=1e-12)
-        assert one.torsion is None
+    for segment in told.segments:
+        assert segment.bending_part == pytest.approx([1.01], rel=1e-12)
+        assert segment.shear_part == pytest.approx([0.9], rel=1e-12)
+        assert segment.torsion is None
 
 
 SUPPORTS = "supports = [0.0, 1.4]\nload = 880.0"

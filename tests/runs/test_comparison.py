@@ -420,8 +420,10 @@ def test_distances_are_parts_of_the_reference() -> None:
     unknown = dict.fromkeys(("slow_period_off", "stress_off", "tip_off"))
     known = {"first_peak_off": 0.0, "pad_force_off": 0.0}
     assert features(0.1, 0.4).distances_from(still) == known | unknown
+    wave = np.sin(4.0 * np.pi * SHORT)
+    assert mean_period(SHORT, 0.05 + 1e-3 * wave) == pytest.approx(0.5, rel=0.01)
     # 1e-12 of the deflection is round-off, not a period.
-    assert np.isnan(mean_period(SHORT, 0.05 + 0.05e-12 * np.sin(4.0 * np.pi * SHORT)))
+    assert np.isnan(mean_period(SHORT, 0.05 + 0.05e-12 * wave))
 
 
 def test_a_pad_force_is_held() -> None:

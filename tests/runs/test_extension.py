@@ -197,6 +197,7 @@ def test_a_table_is_its_section(table: str, section: Section) -> None:
     assert outer.section == section
     assert outer.mass_per_length == 7850.0 * section.area
     assert outer.second_moment_of_area == section.second_moment_of_area
+    assert outer.rotary_inertia == 7850.0 * section.second_moment_of_area
 
 
 def _tapering(head: str, own: str = "", inner: str = BOXES[1]) -> str:
