@@ -14,9 +14,8 @@ FORMS = [
         "step_output = 0.6": "time.step_output: unknown key; the nearest known one is output_step",
         "duration = true": "time.duration: must be a number, got true",
     }),
-    *replacing("terms = [2, 3]", {
-        "terms = [2, 2.5]": "model[2].terms[2]: must be a whole number, got 2.5",
-    }),
+    ("terms = [2, 3]", "terms = [2, 2.5]",
+     "model[2].terms[2]: must be a whole number, got 2.5"),
     *replacing("[material]", {
         "[material]\nE = 2.1e11":
             "material.E: unknown key; use youngs_modulus, Young's modulus E in Pa",
@@ -36,28 +35,22 @@ FORMS = [
     ("supports = [0.0, 2.0]", 'supports = [0.0, "2 m"]',
      "segment[1].supports[2].x: must be a number of m, 'tail', 'head' or a distance in m from "
      "one of them such as { tail = 0.2 }, got '2 m'"),
-    ("density = 7850.0\n", "",
-     "material.density: missing; it is the density in kg/m^3"),
     ("[material]\nyoungs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\n", "",
      "material: missing, and 'outer' has none of its own; it is the table of elastic constants and "
      "density, for all segments without a material of their own"),
     ("mass_per_length = 55.07\n", "",
      "segment[2].mass_per_length: missing; it is the mass per length in kg/m; follows from the "
      "section unless given"),
-    ('kind = "shell"\n', "",
-     "model[6].kind: missing; give 'kantorovich', 'finite-element', 'shell' or 'rigid'"),
     ("height_to_width = 1.5\n", "",
      "segment[1].section: missing, and 'timoshenko' needs it; give section or height_to_width, "
      "or theory = 'euler-bernoulli' in the model"),
     ("bonded = true", "bonded = 1",
      "model[5].bonded: must be true or false, got 1"),
     *replacing("title = \"The paper's boom, coarse and short\"", {
-        "title = 3": "title: must be a text, got 3",
         'title = "red \\u001b[31m"':
             "title: must be a line of printable characters, got 'red \\x1b[31m'",
     }),
     *replacing("span = [9.0, 19.0]", {
-        "span = 9.0": "segment[2].span: must be a list, got 9.0",
         "span = [9.0, 14.0, 19.0]":
             "segment[2].span: must be a list of two numbers, got [9.0, 14.0, 19.0]",
     }),
@@ -66,14 +59,9 @@ FORMS = [
      "'inner', 'stations': [9.0, 10..."),
     ('kind = "shell"', 'kind = "plate"',
      "model[6].kind: must be 'kantorovich', 'finite-element', 'shell' or 'rigid', got 'plate'"),
-    *replacing("[time]", {
-        "[time":
-            "line 8: not TOML: Expected ']' at the end of a table declaration (column 6); see "
-            "https://toml.io",
-    }),
-    ('name = "beam-fe"', 'name = "beam/fe"',
-     "model[3].name: must be made of Latin letters, digits, blanks and . _ + -, starting with a "
-     "letter or a digit, got 'beam/fe'"),
+    ("[time]", "[time",
+     "line 8: not TOML: Expected ']' at the end of a table declaration (column 6); see "
+     "https://toml.io"),
     ('name = "beam-fe"', 'name = "балка"',
      "model[3].name: must be made of Latin letters, digits, blanks and . _ + -, starting with a "
      "letter or a digit, got 'балка'"),
@@ -96,9 +84,6 @@ FORMS = [
     ("density = 7850.0",
      f"density = {'7' * 5000}",
      "file: a whole number has more than 64 bits; give fewer digits, or a number as 1.0e20"),
-    ("terms = [2, 3]",
-     f"terms = [2, 0x{'f' * 5000}]",
-     "model[2].terms[2]: has more than 64 bits; give fewer digits, or a number as 1.0e20"),
 ]  # fmt: skip
 
 # Numbers and booms.
@@ -153,12 +138,6 @@ NUMBERS = [
     }),
     ("youngs_modulus = 2.1e11", "youngs_modulus = nan",
      "material.youngs_modulus: must be a finite number, got nan"),
-    ("poissons_ratio = 0.3", "poissons_ratio = 0.5",
-     "material.poissons_ratio: must be a number less than 0.5, got 0.5"),
-    *replacing("exponent = 2.0", {
-        "exponent = 2e9":
-            "joint[1].exponent: must be a number not greater than 10, got 2000000000.0",
-    }),
     *replacing("terms = [2, 3]", {
         "terms = [2, 3, 1]":
             "model[2].terms: must have one number for each of the 2 segments, got [2, 3, 1]",
@@ -172,14 +151,12 @@ NUMBERS = [
      "model[2].name: 'beam estimate' is a model in all results; give another"),
     ('name = "inner"', 'name = "outer"',
      "segment[2].name: 'outer' is the name of segment[1] already; give each its own"),
-    *replacing('inner = "inner"', {
-        'inner = "innner"': "joint[1].inner: 'innner' is no segment; give 'outer' or 'inner'",
-    }),
-    *replacing("height_to_width = 1.5", {
-        "section = { height = 0.49, width = 0.33, flange = 0.0075, web = 0.0065 }":
-            "segment[1].mass_per_length: 83.16 is not the section's own 88.862, and beams and "
-            "shell would be different booms; leave it out, or change the section",
-    }),
+    ('inner = "inner"', 'inner = "innner"',
+     "joint[1].inner: 'innner' is no segment; give 'outer' or 'inner'"),
+    ("height_to_width = 1.5",
+     "section = { height = 0.49, width = 0.33, flange = 0.0075, web = 0.0065 }",
+     "segment[1].mass_per_length: 83.16 is not the section's own 88.862, and beams and shell "
+     "would be different booms; leave it out, or change the section"),
     *replacing("duration = 0.6", {
         "duration = 0.6005":
             "time.duration: must be a whole number of output steps of 0.001 s, such as 0.6 s, "
@@ -192,14 +169,10 @@ NUMBERS = [
     ("element_length = 0.5", "element_length = 1e-9",
      "model[3].element_length: 1e-09 m makes more than 5000 elements of a segment; it must be "
      "at least 0.002 m"),
-    *adding("mesh_size = 0.25", {
-        'modes = "many"': "model[6].modes: must be a whole number above 0, or 'auto', got 'many'",
-    }),
-    *replacing('contact_tolerance = "any"', {
-        "contact_tolerance = 1e-4":
-            "model[6].contact_tolerance: must be a number from 0.001 to below 1, or 'any', got "
-            "0.0001",
-    }),
+    ("mesh_size = 0.25", 'mesh_size = 0.25\nmodes = "many"',
+     "model[6].modes: must be a whole number above 0, or 'auto', got 'many'"),
+    ('contact_tolerance = "any"', "contact_tolerance = 1e-4",
+     "model[6].contact_tolerance: must be a number from 0.001 to below 1, or 'any', got 0.0001"),
     ("mesh_size = 0.25", "mesh_size = 1e-9",
      "model[6].mesh_size: 1e-09 m makes more than 2e+07 triangles; it must be at least 0.00176 m"),
     ("[[model]]",
@@ -224,23 +197,16 @@ CONTACTS = [
             "N/m^n; the same unless given",
         "bonded = true\nfriction = 0.2\nnormal_forces = [1.0, 1.0]":
             "joint[1].friction: the joint is bonded, and nothing slides; leave it out",
-        "bonded = true\ncontact_length = 0.1":
-            "joint[1].contact_length: the joint is bonded, and nothing touches; leave it out",
         "pad = { length = 1.5, width = 0.06 }":
             "joint[1].pad.length: must be above 0 and not above the overlap of 1 m, got 1.5 m",
         "pad = { length = 0.1, width = 0.06, offset = 0.01, bears = 'corner' }":
             "joint[1].pad.offset: the pad bears on the corner; leave offset out, or bears = "
             "'corner'",
-        "pad = { length = 0.1, width = 0.2 }":
-            "joint[1].pad.width: must be above 0 and not above half a wall of the inner "
-            "segment, 0.135298 m, got 0.2 m",
         "pad = { length = 0.1, width = 0.1, offset = 0.05 }":
             "joint[1].pad.width: must be above 0 and not above half a wall of the inner "
             "segment, 0.135298 m less the offset of 0.05 m, got 0.1 m",
         "play_above = 0.02": "joint[1].play_above: must be a part of play, got 0.02 m",
         "interference = 0.001": "joint[1].interference: shims leave no play; give play = 0",
-        "bonded = true\npad = { length = 0.1, width = 0.06 }":
-            "joint[1].pad: the joint is bonded, and nothing touches; leave it out",
         "contact_length = 1.5":
             "joint[1].contact_length: must be above 0 and not above the overlap's 1 m, got 1.5 m",
     }),
@@ -262,21 +228,17 @@ CONTACTS = [
         "0.06, thickness = 0.02 }]":
             "joint[1].pad: pads is given; leave one of them out",
     }),
-    *replacing("exponent = 2.0", {
-        "pad = { length = 0.1, width = 0.06, thickness = 0.02 }":
-            "joint[1].stiffness: pad.thickness is given; leave one of them out",
-    }),
+    ("exponent = 2.0", "pad = { length = 0.1, width = 0.06, thickness = 0.02 }",
+     "joint[1].stiffness: pad.thickness is given; leave one of them out"),
     ("play = 0.014\nstiffness = 1e13", "play = 0.0\ninterference = 0.001\nstiffness = 1e13",
      "joint[1].interference: contact on both sides of a joint at once needs a law of the "
      "exponent 1, and model 'kantorovich-4' has another; give it one, or leave interference out"),
     ('contact_line = "near webs"', 'contact_line = "near webs"\nsurface_stiffness = 1e10',
      "model[6].surface_stiffness: the segments touch at their stations, 'near webs'; leave it "
      "out, or give contact_line = 'surface'"),
-    *replacing('contact_line = "near webs"', {
-        'contact_line = "surface"\nsurface_points = [100, 4]':
-            "model[6].surface_points: 100 times 4 points on half a wall are more than 256, "
-            "which a reduced model can bear; give fewer",
-    }),
+    ('contact_line = "near webs"', 'contact_line = "surface"\nsurface_points = [100, 4]',
+     "model[6].surface_points: 100 times 4 points on half a wall are more than 256, which a "
+     "reduced model can bear; give fewer"),
     (FROM_EXPONENT,
      FROM_EXPONENT.replace(
          "exponent = 2.0\n", "exponent = 2.0\npad = { length = 0.1, width = 0.06 }\n"
@@ -320,7 +282,6 @@ CALIBRATIONS = [
             "give model[4].contact, or leave it out",
         'calibrated_by = { name = "fine", kind = "shell", mesh_siz = 0.1 }':
             "model[4].calibrated_by.mesh_siz: unknown key; the nearest known one is mesh_size",
-        "calibrated_by = 5": "model[4].calibrated_by: must be a table, got 5",
         "section_fields = true":
             "model[4].section_fields: only a calibrated beam has them; give calibrated_by, or "
             "leave it out",

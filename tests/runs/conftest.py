@@ -6,10 +6,20 @@ from pathlib import Path
 
 import pytest
 
+from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.sweep import output
 from protractile.runs.sweep.points import Plan, plan
 from tests.runs.summaries import COARSE, FAST, Planned
+
+
+@pytest.fixture(scope="session")
+def tools() -> BuildContext:
+    """Return what shells are built with, on one rank."""
+    pytest.importorskip("dolfinx", reason="shells need FEniCSx")
+    from mpi4py import MPI
+
+    return BuildContext(MPI.COMM_SELF)
 
 
 @pytest.fixture

@@ -2,7 +2,6 @@
 """All commands, and one line on stderr and an exit status for each error of a user."""
 
 import errno
-import json
 import os
 import resource
 import subprocess
@@ -10,11 +9,16 @@ import sys
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import pytest
 
+from protractile.dynamics.trajectory import Trajectory
 from protractile.runs import cli
+from protractile.runs.folder.cache import VARIABLE
+from protractile.runs.paper.rules import judge
+from protractile.runs.pipeline.models import MotionPlan
+from protractile.runs.pipeline.results import Results
 from protractile.runs.process.ranks import launcher
 from tests.runs.case_texts import COARSE
 from tests.system.run_folder import python, write_coarse
@@ -22,7 +26,6 @@ from tests.unprinted import ONE_BLANK_FIGURE
 
 pytestmark = pytest.mark.usefixtures("few_figures")
 
-SHORT = "duration = 0.02"
 SERIES = "--models kantorovich-4,kantorovich-5"
 
 
@@ -66,44 +69,11 @@ def in_a_process(
     return python(*arguments, folder=folder, prepare=keep, **environment)
 
 
-def test_check_prints_inferred_boxes(protractile: Protractile) -> None:
-    """Reference: non-regression, the boxes that :mod:`.geometry.box` infers."""
-    answer = protractile("check case.toml --all")
-    assert (answer.status, answer.err) == (0, "")
-    for part in (
-        "488.9 × 325.9",
-        "463.6 × 270.6",
-        "± 7",
-        "2 + 3 functions",
-        "bonded",
-        "mesh 0.25 m",
-    ):
-        assert part in answer.out
-
-
 def test_check_draws_the_boom(protractile: Protractile) -> None:
     """Reference: the first bytes of a PNG file (W3C 2003). The folder has no other new file."""
     assert protractile("check case.toml --picture boom.png").status == 0
     assert Path("boom.png").read_bytes().startswith(b"\x89PNG")
     assert {path.name for path in Path.cwd().iterdir()} == {"boom.png", "case.toml"}
-
-
-def test_check_prints_modal_damping_ratios(protractile: Protractile) -> None:
-    """Reference: analytic, the requested ratio, and no line without damping."""
-    assert " % at" not in protractile("check case.toml --all").out
-    Path("case.toml").write_text(COARSE + "\n[damping]\nmodal = 0.015\n", encoding="utf-8")
-    answer = protractile("check case.toml --all")
-    assert (answer.status, answer.err) == (0, "")
-    assert answer.out.count("1.5 % at") >= 3 * 3
-    dragged = COARSE.replace("exponent = 2.0", "exponent = 2.0\ndashpot = 1e3", 1)
-    Path("case.toml").write_text(dragged, encoding="utf-8")
-    assert " % at" in protractile("check case.toml --all").out
-
-
-def test_schema_is_the_case_s_json_schema(protractile: Protractile) -> None:
-    answer = protractile("schema")
-    assert (answer.status, answer.err) == (0, "")
-    assert {"time", "segment", "model"} <= set(json.loads(answer.out)["required"])
 
 
 MISTAKES = {
@@ -118,6 +88,8 @@ MISTAKES = {
     "written (No such file or directory); give a folder that can",
     f"run case.toml {SERIES} --out .": "case.toml: --out .: contains other files; give a new "
     "folder or one of an earlier run",
+    "run case.toml --mesh-size fine": "Invalid value for '--mesh-size': Input should be a valid "
+    "number, unable to parse string as a number (protractile --help tells more)",
     "check case.toml --picture boom.pdf": "case.toml: --picture boom.pdf: must end in .png",
     "report nowhere": "nowhere: folder: does not exist; give the folder of a run",
     "report case.toml": "case.toml: folder: is a file; give the folder of a run",
@@ -130,38 +102,22 @@ def test_a_mistake_is_one_line(protractile: Protractile, command: str) -> None:
     assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
 
 
-def test_bad_number_is_one_line(protractile: Protractile) -> None:
-    answer = protractile("run case.toml --mesh-size fine")
-    assert answer.status == 2
-    assert answer.err.startswith("protractile: Invalid value for '--mesh-size': ")
-    assert answer.err.count("\n") == 1
-
-
 def test_failing_numerics_are_one_line_and_no_results(protractile: Protractile) -> None:
     edit("duration = 0.6", "duration = 0.6\nstep = 1e-12")
     assert protractile(f"run case.toml {SERIES} --out out --large") == told(
         3, "case.toml: model[1]: a step of 1e-12 s makes 6e+11 steps; make it longer"
     )
     assert [path.name for path in Path.cwd().iterdir()] == ["case.toml"]
-
-
-def test_results_beyond_all_numbers_are_one_line(protractile: Protractile) -> None:
     edit("load = 83.16", "load = 1e150")
-    edited = Path("case.toml").read_text(encoding="utf-8").replace("duration = 0.6", SHORT)
-    Path("case.toml").write_text(edited, encoding="utf-8")
     status, _, err = protractile("run case.toml --models beam-fe-bonded --out out")
-    assert (status, err) == (
-        3,
-        "protractile: case.toml: model[1]: a result is not finite; look for an extreme number of "
-        "the case, for example in another unit\n",
-    )
+    line = "model[1]: a result is not finite; look for an extreme number of the case, for example "
+    assert (status, err) == (3, f"protractile: case.toml: {line}in another unit\n")
 
 
 @pytest.mark.parametrize(
     "command",
     [
         f"run case.toml {SERIES} --out loop",
-        "report loop",
         "export case.toml --to opensees --model beam-fe --out loop",
         f"sweep case.toml {SERIES} --vary joint.play=0.01,0.02 --out loop",
     ],
@@ -190,19 +146,12 @@ def test_a_temporary_folder_without_room_is_one_line(
     assert sorted(path.name for path in Path.cwd().iterdir()) == ["case.toml", "full"]
 
 
-@pytest.mark.parametrize(
-    ("variable", "value"),
-    [("MPLBACKEND", "module://matplotlib_inline.backend_inline"), ("OMPI_COMM_WORLD_RANK", "abc")],
-)
-def test_foreign_environment_variables_have_no_effect(
-    tmp_path: Path, variable: str, value: str
-) -> None:
+def test_foreign_environment_variables_have_no_effect(tmp_path: Path) -> None:
     """They name a notebook's backend that is not installed, and a rank without a launcher."""
-    # It imports matplotlib, and then, as whoever shares a shell, asks for the rank.
+    backend = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
     drawn = "check", "case.toml", "--picture", "boom.png"
-    export = "export", "case.toml", "--to", "opensees", "--model", "beam-fe"
-    arguments = drawn if variable == "MPLBACKEND" else export
-    ended = in_a_process(tmp_path, "-m", "protractile", *arguments, **{variable: value})
+    rank = {"OMPI_COMM_WORLD_RANK": "abc"}
+    ended = in_a_process(tmp_path, "-m", "protractile", *drawn, **backend, **rank)
     assert (ended.returncode, ended.stderr) == (0, "")
 
 
@@ -229,27 +178,15 @@ def test_failed_demand_is_printed_and_sets_the_exit_status(protractile: Protract
     assert Path("out/report.html").exists()
 
 
-@pytest.mark.usefixtures("unprinted")
-def test_a_report_is_not_replaced_around_its_reader(
-    protractile: Protractile, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    assert protractile(f"run case.toml {SERIES} --out out").status == 0
-    monkeypatch.chdir("out")
-    for command in ("report", "snapshot"):
-        line = ".: folder: is where you are, and will be replaced; start from another folder"
-        assert protractile(f"{command} .") == told(2, line)
-
-
 @pytest.fixture
 def without_fenicsx(monkeypatch: pytest.MonkeyPatch) -> None:
-    for name in [name for name in sys.modules if name.startswith("shell_model.")]:
-        monkeypatch.delitem(sys.modules, name)
     monkeypatch.setitem(sys.modules, "dolfinx", None)
     monkeypatch.setitem(sys.modules, "mpi4py", None)
 
 
 @pytest.mark.usefixtures("without_fenicsx")
-def test_a_shell_without_fenicsx_is_one_line(protractile: Protractile) -> None:
+def test_without_fenicsx_shells_are_refused_and_beams_exported(protractile: Protractile) -> None:
+    """Reference: by hand, the last model of beam elements with play; a shell calibrates another."""
     status, out, err = protractile("run case.toml --out out")
     assert (status, out, err.count("\n")) == (2, "", 1)
     assert err.startswith(
@@ -260,6 +197,12 @@ def test_a_shell_without_fenicsx_is_one_line(protractile: Protractile) -> None:
         "other models with --models\n"
     )
     assert not Path("out").exists()
+    assert protractile("export case.toml --to opensees") == (0, "case.py\n", "")
+    edit('name = "beam-fe"\n', 'name = "beam-fe"\ncalibrated_by = "shell"\n')
+    to = "export case.toml --to opensees --model"
+    assert protractile(f"{to} beam-fe").err.endswith("or export another one with --model\n")
+    line = "'shell' is no beam elements with play; give 'beam-fe' or 'timoshenko'"
+    assert protractile(f"{to} shell") == told(2, f"case.toml: --model: {line}")
 
 
 def test_a_missing_library_of_gmsh_is_one_line(tmp_path: Path) -> None:
@@ -287,30 +230,15 @@ main()
     )
 
 
-@pytest.mark.usefixtures("without_fenicsx")
-def test_a_beam_is_exported_without_fenicsx(protractile: Protractile) -> None:
-    """Reference: by hand, the last model of beam elements with play; a shell calibrates another."""
-    assert protractile("export case.toml --to opensees") == (0, "case.py\n", "")
-    edit('name = "beam-fe"\n', 'name = "beam-fe"\ncalibrated_by = "shell"\n')
-    to = "export case.toml --to opensees --model"
-    status, _, err = protractile(f"{to} beam-fe")
-    assert (status, err.count("\n")) == (2, 1)
-    assert err.endswith(" python3-dolfinx), or export another one with --model\n")
-    line = "'shell' is no beam elements with play; give 'beam-fe' or 'timoshenko'"
-    assert protractile(f"{to} shell") == told(2, f"case.toml: --model: {line}")
-
-
 def test_ranks_of_another_mpi_are_refused(tmp_path: Path) -> None:
     """Each of two processes that MPICH starts is the only rank of Open MPI."""
     pytest.importorskip("mpi4py", reason="ranks need mpi4py")
     variables = {"PMI_RANK": "0", "PMI_SIZE": "2"} if launcher() == "mpirun" else {"PMIX_RANK": "0"}
     command = "-m", "protractile", "run", "case.toml", "--models", "shell"
     ended = in_a_process(tmp_path, *command, **variables)
-    assert (ended.returncode, ended.stderr) == (
-        2,
-        "protractile: case.toml: mpirun: the ranks were started by another MPI; start them by "
-        f"{launcher()}\n",
-    )
+    line = "mpirun: the ranks were started by another MPI; start them by"
+    assert ended.returncode == 2
+    assert ended.stderr == f"protractile: case.toml: {line} {launcher()}\n"
 
 
 def test_beams_need_no_fenicsx(tmp_path: Path) -> None:
@@ -320,7 +248,69 @@ for name in ("dolfinx", "mpi4py", "petsc4py", "ufl", "basix", "slepc4py"):
     sys.modules[name] = None
 {ONE_BLANK_FIGURE}
 from protractile.runs.cli import main
-main(["run", "case.toml", "--models", "kantorovich-5,timoshenko", "--out", "out"])
+main(["run", "case.toml", "--models", "timoshenko", "--out", "out"])
 """
     assert in_a_process(tmp_path, "-c", program).returncode == 0
     assert (tmp_path / "out" / "report.html").exists()
+
+
+@pytest.fixture
+def moved(monkeypatch: pytest.MonkeyPatch, tmp_path_factory: pytest.TempPathFactory) -> list[int]:
+    """Return the numbers of modes of integrated systems with play, with a cache of their own."""
+    monkeypatch.setenv(VARIABLE, str(tmp_path_factory.mktemp("cache")))
+    modes: list[int] = []
+    move = MotionPlan.trajectory
+
+    def count(plan: MotionPlan, progress: Any = None) -> Trajectory:
+        if plan.motion.system.laws:
+            modes.append(plan.motion.system.num_modes)
+        return move(plan, progress)
+
+    monkeypatch.setattr(MotionPlan, "trajectory", count)
+    return modes
+
+
+@pytest.mark.usefixtures("unprinted", "moved")
+def test_other_models_are_written_and_the_failure_is_reported(protractile: Protractile) -> None:
+    edit('base = "as printed"', 'base = "as printed"\nstep = 1e-12')
+    why = "a step of 1e-12 s makes 6e+11 steps; make it longer"
+    status, out, err = protractile(f"run case.toml {SERIES} --out out --large")
+    assert (status, err) == (3, f"protractile: case.toml: model[1]: {why}\n")
+    assert f"failed: kantorovich-4: {why}" in out
+    results = Results.load(Path("out"))
+    assert results.trajectories["model"].values.tolist() == ["kantorovich-5"]
+    first = judge(results)[0]
+    assert (first.id, first.verdict) == ("S1", "undecided")
+    assert first.why == f"'kantorovich-4' failed: {why}."
+    assert ">failed</td>" in Path("out/report.html").read_text(encoding="utf-8")
+    assert protractile("report out").status == 0
+
+
+@pytest.mark.usefixtures("unprinted")
+def test_the_next_run_goes_on(
+    protractile: Protractile, moved: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The first run is interrupted in its second model. Reference: an uninterrupted run."""
+    command = f"run case.toml {SERIES} --out out"
+    edit("duration = 0.6", "duration = 0.3\nstep = 1e-4")
+    assert protractile(f"{command} --no-cache").status == 0
+    undisturbed = Path("out/trajectories.nc").read_bytes()
+    assert moved == [4, 5]
+    move = MotionPlan.trajectory
+
+    def break_off(plan: MotionPlan, progress: Any = None) -> Trajectory:
+        if plan.motion.system.num_modes == 5:
+            raise OSError("broken off")
+        return move(plan, progress)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(MotionPlan, "trajectory", break_off)
+        assert protractile(command).status == 2
+    assert protractile(command).status == 0
+    assert moved == [4, 5, 4, 5]
+    assert Path("out/trajectories.nc").read_bytes() == undisturbed
+    # Another case has other motions.
+    text = Path("case.toml").read_text("utf-8").replace("load = 55.07", "load = 55.08")
+    Path("case.toml").write_text(text, "utf-8")
+    assert protractile(command).status == 0
+    assert moved == [4, 5, 4, 5, 4, 5]

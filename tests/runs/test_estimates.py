@@ -3,17 +3,12 @@
 
 import os
 import re
-from functools import partial
 from pathlib import Path
 from time import process_time
 
 import pytest
 
-from protractile.runs import CASES
 from protractile.runs.case import reading as case_file
-from protractile.runs.case.build import build_boom
-from protractile.runs.case.kinds.model import select_kind
-from protractile.runs.case.kinds.shell import Shell
 from protractile.runs.case.reading import CheckedCase
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.estimates import (
@@ -27,15 +22,7 @@ from protractile.runs.pipeline.estimates import (
 )
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.sweep import points as sweep_points
-from tests.runs.case_texts import (
-    COARSE,
-    edited,
-    long_boom,
-    read_case,
-    refused,
-    shipped,
-    table,
-)
+from tests.runs.case_texts import COARSE, edited, long_boom, read_case, refused, shipped, table
 from tests.system.run_folder import protractile, python
 
 PROGRAM = """
@@ -54,9 +41,6 @@ except SystemExit as end:
 print(1024 * int(most.split()[1]))
 """
 
-SERIES = "--models", "kantorovich-5"
-
-
 pytestmark = pytest.mark.usefixtures("here")
 
 
@@ -64,47 +48,23 @@ def write(edits: dict[str, str]) -> None:
     Path("case.toml").write_text(edited(COARSE, *edits.items()), encoding="utf-8")
 
 
-def memory(*arguments: str) -> int:
-    """Return the largest resident set of a run in bytes."""
-    command = "run", "case.toml", "--out", "out", *arguments
-    answer = python("-c", PROGRAM, *command, folder=Path())
-    return int(answer.stdout.split()[-1])
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("edits", "options", "members"),
-    [
-        ({"duration = 0.6": "duration = 0.3", "output_step = 1e-3": "output_step = 1e-5"}, SERIES,
-         20),
-        ({"mesh_size = 0.25": "mesh_size = 0.1", "duration = 0.6": "duration = 0.01"},
-         ("--models", "shell"), None),
-        ({"duration = 0.6": "duration = 0.1",
-          "output_step = 1e-3": "output_step = 0.1\nstep = 1e-7",
-          "[[model]]": "[[load]]\nsegment = 'inner'\nmagnitude = 9.0\nramp = 0.2\n[[model]]"},
-         SERIES, None),
-    ],
-    ids=["outputs and members", "mesh", "steps of an output interval"],
-)  # fmt: skip
-def test_memory_is_not_above_the_estimate_and_not_far_below(
-    edits: dict[str, str], options: tuple[str, ...], members: int | None
-) -> None:
+def test_memory_is_not_above_the_estimate_and_not_far_below() -> None:
     """Reference: external, the operating system. Compilation needs three times as much."""
-    write(edits)
-    case = case_file.load("case.toml")
-    case = case_file.select(case, "case.toml", [options[1]], members=members)
-    told, arguments = run_cost(case).memory, (*options, "--members", str(members or 0))
-    used = memory(*arguments)
-    if used > told:  # by a run that had to compile; a later one has not
-        used = memory(*arguments)
+    write({"mesh_size = 0.25": "mesh_size = 0.1", "duration = 0.6": "duration = 0.01"})
+    told = run_cost(case_file.select(case_file.load("case.toml"), "", ["shell"])).memory
+    command = "run", "case.toml", "--out", "out", "--models", "shell"
+    for _ in range(2):
+        used = int(python("-c", PROGRAM, *command, folder=Path()).stdout.split()[-1])
+        if used <= told:  # else it had to compile; a later run has not
+            break
     assert used <= told <= 4.0 * used
 
 
 @pytest.mark.parametrize(
     ("name", "seconds"),
     [
-        ("paper", 111.2), ("paper-friction", 40.9), ("three-segments", 42.3), ("spatial", 60.4),
-        ("lift", 21.6), ("drawn-out", 15.0), ("crane-telescopes", 4.4),
+        ("paper", 111.2), ("three-segments", 42.3), ("lift", 21.6), ("crane-telescopes", 4.4),
     ],
 )  # fmt: skip
 def test_times_are_within_a_factor_of_two(name: str, seconds: float) -> None:
@@ -113,30 +73,11 @@ def test_times_are_within_a_factor_of_two(name: str, seconds: float) -> None:
     assert 0.5 * seconds <= models_cost(Preview(CheckedCase(case))).seconds <= 2.0 * seconds
 
 
-@pytest.mark.parametrize(
-    ("seconds", "text"),
-    [(3.4, "3 s"), (46.0, "50 s"), (89.0, "90 s"), (95.0, "2 min"), (6000.0, "1.67 h")],
-)
-def test_short_times_are_in_seconds(seconds: float, text: str) -> None:
-    assert str(Cost(2.0e9, seconds)) == f"2 GB and {text}"
-
-
-@pytest.mark.parametrize(
-    ("name", "mesh_size", "tolerance"),
-    [("paper", 0.1, 0.01), ("paper", 0.2, 0.001), ("lift", 0.1, 0.002), ("spatial", 0.1, 0.002)],
-)
-def test_dofs_of_a_graded_mesh_are_estimated(name: str, mesh_size: float, tolerance: float) -> None:
-    """Reference: the meshes, with 21 degrees of freedom per point."""
-    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-    from protractile.shell_model.boom_shell import segment_mesh
-
-    case = shipped(name)
-    (shell,) = select_kind(Shell, case.models)
-    shell = shell.model_copy(update={"mesh_size": mesh_size, "contact_tolerance": tolerance})
-    boom = build_boom(case)
-    meshes = [segment_mesh(boom, i, shell.options()) for i in range(len(boom.segments))]
-    dofs = sum(21 * len(mesh.points) for mesh in meshes)
-    assert 0.9 * dofs <= shell.estimate_dofs(boom) <= 2.0 * dofs
+def test_short_times_are_in_seconds() -> None:
+    for seconds, text in ((3.4, "3 s"), (46.0, "50 s"), (95.0, "2 min"), (6000.0, "1.67 h")):
+        assert str(Cost(2.0e9, seconds)) == f"2 GB and {text}"
+    with pytest.raises(BadInput):
+        refuse_large(Cost(float("nan"), 0.0), "case.toml")
 
 
 @pytest.mark.parametrize(
@@ -163,23 +104,16 @@ def test_frequencies_of_short_elements_are_refused(capsys: pytest.CaptureFixture
     write({})
     vary = "--vary", "model[3].element_length=0.002,0.5"
     assert protractile("frequencies", "case.toml", *vary, "--models", "beam-fe") == 2
-    assert capsys.readouterr().err == (
-        "protractile: case.toml: --large: missing, and it may take 21 GB and 22.3 h; give it to "
-        "start anyway, or ask for fewer outputs, members, points, states or steps, or for coarser "
-        "meshes\n"
-    )
+    line = "case.toml: --large: missing, and it may take 21 GB and 22.3 h; "
+    assert capsys.readouterr().err.startswith(f"protractile: {line}")
 
 
-@pytest.mark.parametrize("name", ["lift", "coarse"])
-def test_a_check_of_short_elements_is_soon_done(name: str) -> None:
+def test_a_check_of_short_elements_is_soon_done() -> None:
     """Reference: other code path, elements of 0.5 m, within 1 %; 4 mm would take minutes."""
-    text = (CASES / f"{name}.toml").read_text(encoding="utf-8")
     told = []
     for length in ("0.5", "0.004"):
-        edited = text.replace("element_length = 0.5", f"element_length = {length}")
-        if "[damping]" not in edited:
-            edited += "\n[damping]\nmass = 0.1\n"
-        Path("case.toml").write_text(edited, encoding="utf-8")
+        text = COARSE.replace("element_length = 0.5", f"element_length = {length}")
+        Path("case.toml").write_text(f"{text}\n[damping]\nmass = 0.1\n", encoding="utf-8")
         begin = process_time()
         told.append(repr(check_case(case_file.load_checked("case.toml"))))
     assert process_time() - begin < 20.0
@@ -192,23 +126,11 @@ def test_a_sweep_takes_the_time_of_its_points(monkeypatch: pytest.MonkeyPatch) -
     """Reference: analytic, equal points, two at a time."""
     monkeypatch.setattr(os, "cpu_count", lambda: 2)
     write({})
-    points = [p.case for p in sweep_points.plan("case.toml", VARY, ["beam-fe"], None).points]
+    vary = ["joint.stiffness=1e13:1.1e13:100"]
+    points = [p.case for p in sweep_points.plan("case.toml", vary, ["beam-fe"], None).points]
     one, all_of_them = sweep_cost(points[:1]), sweep_cost(points)
     assert all_of_them.memory == pytest.approx(2.0 * one.memory, rel=1e-9)
     assert all_of_them.seconds == pytest.approx(50.0 * one.seconds, rel=1e-9)
-
-
-VARY = ["joint.stiffness=1e13:1.1e13:100"]
-
-
-@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda path: path.stem)
-def test_shipped_cases_need_no_confirmation(path: Path) -> None:
-    refuse_large(run_cost(case_file.load(str(path))), str(path))
-
-
-def test_an_unknown_cost_is_a_large_one() -> None:
-    with pytest.raises(BadInput):
-        refuse_large(Cost(float("nan"), 0.0), "case.toml")
 
 
 def test_many_combined_states_need_a_confirmation() -> None:
@@ -219,10 +141,7 @@ def test_many_combined_states_need_a_confirmation() -> None:
         text += table("[[combination]]", name=f"c{number}", factors={"dead": 1.0})
     Path("case.toml").write_text(text, "utf-8")
     many = case_file.load("case.toml")
-    with refused(
-        "case.toml: --large: missing, and it may take 7.3 GB and 4 min; give it to start anyway, "
-        "or ask for fewer outputs, members, points, states or steps, or for coarser meshes"
-    ):
+    with pytest.raises(BadInput, match=r"it may take 7\.3 GB and 4 min; "):
         refuse_large(states_cost(many, proofs=False), "case.toml")
     few = many.model_copy(update={"combinations": many.combinations[:9]})
     assert not states_cost(few, proofs=False).large
@@ -231,26 +150,12 @@ def test_many_combined_states_need_a_confirmation() -> None:
 @pytest.mark.parametrize(
     ("name", "check", "prove"),
     [
-        ("8, 40, 10", 6.84, 8.62), ("8, 8, 10", 3.9, 4.6), ("2, 30, 10", 2.92, 3.0),
-        ("crane-proof", 4.70, 4.78), ("inspection-arm", 3.44, 3.27), ("lift", 3.31, 2.88),
+        ("8, 40, 10", 6.84, 8.62), ("2, 30, 10", 2.92, 3.0), ("inspection-arm", 3.44, 3.27),
     ],
 )  # fmt: skip
 def test_times_of_states_are_within_a_factor_of_two(name: str, check: float, prove: float) -> None:
     """Reference: external, processor times in s of `check` and `prove`."""
-    if name in ("crane-proof", "inspection-arm", "lift"):
-        case = shipped(name)
-    else:
-        case = read_case(Path(), long_boom(*map(int, name.split(","))))
+    numbers = [int(part) for part in name.split(",") if part.strip().isdigit()]
+    case = read_case(Path(), long_boom(*numbers)) if numbers else shipped(name)
     for proofs, taken in ((False, check), (True, prove)):
         assert 0.5 * taken <= states_cost(case, proofs).seconds <= 2.0 * taken
-
-
-def test_the_time_of_a_run_includes_its_states(tmp_path: Path) -> None:
-    """Reference: analytic. Times are proportional to the number of combinations in load cases."""
-    more = table("[[load_case]]", name="heavy", payload=300.0)
-    cases = [read_case(tmp_path, long_boom(combinations=k) + more) for k in (10, 40)]
-    for of in (run_cost, partial(states_cost, proofs=True)):
-        few, many = (of(case).seconds for case in cases)
-        alone = cases[0].model_copy(update={"combinations": cases[0].combinations[:1]})
-        assert many - few == pytest.approx(30.0 / 9.0 * (few - of(alone).seconds), rel=1e-9)
-        assert many - few > 20.0

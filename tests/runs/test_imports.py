@@ -8,15 +8,14 @@ import json
 import re
 from collections.abc import Iterator
 from graphlib import TopologicalSorter
-from importlib.metadata import PackageNotFoundError, version
+from importlib.metadata import version
 from pathlib import Path
 
 import pytest
 
 from protractile.runs import CASES, clients
-from protractile.runs.folder.versions import packages, program, sources
-from protractile.runs.paper.statements import STATEMENTS
-from protractile.runs.paper.verdicts import addition, evidence
+from protractile.runs.folder.versions import packages, sources
+from protractile.runs.paper.verdicts import addition
 from tests.runs.case_texts import shipped
 from tests.system.run_folder import ROOT, python
 
@@ -84,50 +83,34 @@ def trees() -> dict[str, ast.Module]:
     }
 
 
-@pytest.fixture(scope="module")
-def graph(trees: dict[str, ast.Module]) -> dict[str, set[str]]:
-    """Return the imports of each module within the project, without those for types."""
-    return {name: {*imported(tree, False)} & trees.keys() for name, tree in trees.items()}
-
-
-def test_no_module_imports_itself_by_way_of_others(
-    graph: dict[str, set[str]], trees: dict[str, ast.Module]
-) -> None:
-    """Imports for types form no cycle either."""
-    TopologicalSorter(graph).prepare()
-    typed = {name: {*imported(tree, True)} & trees.keys() for name, tree in trees.items()}
-    TopologicalSorter(typed).prepare()
-
-
-@pytest.mark.parametrize("room", ROOMS)
-def test_a_room_knows_those_below(room: str, trees: dict[str, ast.Module]) -> None:
-    own = (tree for name, tree in trees.items() if room_of(name) == room)
-    known = {room_of(found) for tree in own for found in imported(tree, True)}
-    assert known & ROOMS.keys() <= ROOMS[room] | {room}
-
-
-def test_a_part_of_runs_knows_those_before_it(trees: dict[str, ast.Module]) -> None:
+def test_imports_point_downwards(trees: dict[str, ast.Module]) -> None:
+    """Nothing imports itself by way of others, also for types. Geometry knows contact laws only."""
+    graph, typed = (
+        {name: {*imported(tree, types)} for name, tree in trees.items()} for types in (False, True)
+    )
+    for found in (graph, typed):
+        TopologicalSorter({name: found[name] & trees.keys() for name in trees}).prepare()
+    for room, below in ROOMS.items():
+        known = {room_of(x) for name in trees if room_of(name) == room for x in typed[name]}
+        assert known & ROOMS.keys() <= below | {room}, room
+    of_geometry = {x for name in graph if room_of(name) == "geometry" for x in graph[name]}
+    laws = "protractile.dynamics.contact"
+    assert {x for x in of_geometry & trees.keys() if room_of(x) == "dynamics"} == {laws}
+    assert graph[laws] & trees.keys() == {"protractile.dynamics.arrays"}
+    # A part of runs knows those before it.
     parts = {name: name.split(".")[2] for name in trees if name.startswith("protractile.runs.")}
     order = (*PARTS, "check", "cli", *clients.CLIENTS)
     assert {*parts.values()} == {*order}
     for name, part in parts.items():
-        known = {parts[found] for found in imported(trees[name], True) if found in parts}
+        known = {parts[x] for x in typed[name] if x in parts}
         assert known <= {*order[: order.index(part) + 1]}, name
-
-
-@pytest.mark.parametrize("client", clients.CLIENTS)
-def test_nothing_imports_a_client(client: str, trees: dict[str, ast.Module]) -> None:
-    """Studies and tests may: they prove the product. Names in texts are imports in functions."""
-    package = f"protractile.runs.{client}"
-    others = [name for name in trees if not name.startswith((package, "studies"))]
-    assert 150 < len(others) < len(trees)
-    assert [name for name in others if package in ast.unparse(trees[name])] == []
-
-
-def test_geometry_knows_contact_laws_only(graph: dict[str, set[str]]) -> None:
-    known = {one for name in graph if room_of(name) == "geometry" for one in graph[name]}
-    assert {one for one in known if room_of(one) == "dynamics"} == {"protractile.dynamics.contact"}
-    assert graph["protractile.dynamics.contact"] == {"protractile.dynamics.arrays"}
+    # Studies and tests may import clients: they prove the product. Texts may hide imports, too.
+    texts = {name: ast.unparse(tree) for name, tree in trees.items()}
+    for client in clients.CLIENTS:
+        package = f"protractile.runs.{client}"
+        others = [name for name in trees if not name.startswith((package, "studies"))]
+        assert 150 < len(others) < len(trees)
+        assert [name for name in others if package in texts[name]] == []
 
 
 def answer(*arguments: str, program: str = PROGRAM) -> tuple[str, set[str]]:
@@ -137,9 +120,10 @@ def answer(*arguments: str, program: str = PROGRAM) -> tuple[str, set[str]]:
     return done.stdout, set(done.stderr.split())
 
 
-@pytest.mark.parametrize("option", ["--help", "--version"])
-def test_options_import_no_numerical_library(option: str) -> None:
-    assert not answer(option)[1] & (OF_RUNS | OF_CHECKS)
+def test_options_import_no_numerical_library() -> None:
+    out, modules = answer("--version")
+    assert out == f"protractile {version('protractile')}\n"
+    assert not modules & (OF_RUNS | OF_CHECKS)
 
 
 def test_keys_and_commands_of_clients_exist_by_registration() -> None:
@@ -160,47 +144,24 @@ def test_check_and_prove_import_neither_solvers_nor_figures(command: str, case: 
     assert not modules & OF_RUNS
 
 
-def test_version_is_the_installed_one() -> None:
-    try:
-        installed = version("protractile")
-    except PackageNotFoundError:
-        installed = "(not installed)"
-    assert answer("--version")[0] == f"protractile {installed}\n"
-
-
-def test_importing_the_package_keeps_warnings() -> None:
-    program = "import warnings, protractile as pt; pt.load_case; warnings.warn('heard')"
-    assert "UserWarning: heard" in python("-c", program).stderr
-
-
 def test_modules_in_all_folders_count(tmp_path: Path) -> None:
-    package = tmp_path / "package"
-    deep = package / "inner" / "innermost"
+    """Reference: by construction. Results are no source."""
+    deep = tmp_path / "inner" / "innermost"
     deep.mkdir(parents=True)
-    for folder in (package, package / "inner", deep):
+    (tmp_path / "out").mkdir()
+    for folder in (tmp_path, tmp_path / "inner", deep):
         (folder / "__init__.py").touch()
-    found = {sources([package])}
+    found = [sources([tmp_path])]
     for change in (
         lambda: (deep / "a.py").write_text("x = 1\n"),
-        lambda: (deep / "a.py").write_text("x = 2\n"),
-        lambda: (deep / "a.py").rename(deep / "b.py"),
-        lambda: (deep / "b.py").rename(package / "b.py"),
+        lambda: (deep / "a.py").rename(tmp_path / "b.py"),
+        lambda: (tmp_path / "out" / "a.py").touch(),
     ):
         change()
-        found.add(sources([package]))
-    assert len(found) == 5
-    # Results are no source.
-    before = sources([package])
-    (package / "a.txt").touch()
-    (package / "out").mkdir()
-    (package / "out" / "a.py").touch()
-    assert sources([package]) == before
-
-
-def test_the_packages_are_found_by_themselves() -> None:
-    names = {package.name for package in packages()}
-    assert names == ROOMS.keys() - {"protractile", "studies"}
-    assert program()["sources"] == sources(packages())
+        found.append(sources([tmp_path]))
+    assert len({*found}) == 3
+    assert found[-1] == found[-2]
+    assert {package.name for package in packages()} == ROOMS.keys() - {"protractile", "studies"}
 
 
 # At the start of a line, also of one within a text of a program.
@@ -235,55 +196,23 @@ def test_no_other_module_knows_the_paper() -> None:
 MOST_LINES, MOST_LINES_OF_A_FUNCTION = 450, 80
 # The time loop: its parts would share two dozen work arrays, each an argument.
 LONG = ["march"]
+FUNCTION = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def test_modules_and_functions_are_short(trees: dict[str, ast.Module]) -> None:
     paths = [path for room in ROOMS.keys() - {"studies"} for path in (ROOT / room).rglob("*.py")]
     lines = {path: path.read_text("utf-8").count("\n") for path in paths}
     assert [path for path, number in lines.items() if number > MOST_LINES] == []
-    functions = (
-        node
-        for name, tree in trees.items()
-        if room_of(name) != "studies"
-        for node in ast.walk(tree)
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
-    )
-    long = [
-        one.name
-        for one in functions
-        if (one.end_lineno or 0) - one.lineno >= MOST_LINES_OF_A_FUNCTION
-    ]
-    assert long == LONG
+    product = (tree for name, tree in trees.items() if room_of(name) != "studies")
+    functions = (node for tree in product for node in ast.walk(tree) if isinstance(node, FUNCTION))
+    lengths = ((node.name, (node.end_lineno or 0) - node.lineno) for node in functions)
+    assert [name for name, length in lengths if length >= MOST_LINES_OF_A_FUNCTION] == LONG
 
 
-TIP, CLOSE_UP, HEAD = "figure-tip", "figure-tip-close-up", "figure-head"
-SLOW = "table-horizons", "table-slow-peaks"
-
-
-@pytest.mark.parametrize(
-    ("case", "expected"),
-    [
-        ("paper", {"S2": [TIP, *SLOW], "S6": [CLOSE_UP, HEAD], "S8": []}),
-        ("paper-friction",
-         {
-             "S2": [*SLOW], "S7": [TIP, HEAD, "table-whole"],
-             "S8": ["table-models", "table-steps"], "S11": [],
-         }),
-        ("three-segments", {"S6": [CLOSE_UP, HEAD, "figure-head-2"], "S11": [TIP, CLOSE_UP]}),
-    ],
-)  # fmt: skip
-def test_evidence_follows_the_case(case: str, expected: dict[str, list[str]]) -> None:
-    """Reference: the statements. A case with friction has other statements."""
-    found = evidence(shipped(case))
-    assert {key: [*found[key]] for key in expected} == expected
-    assert [*found] == [*STATEMENTS]
-
-
-@pytest.mark.parametrize(("case", "numbers"), [("paper", (6, 7)), ("paper-friction", (8, 9))])
-def test_figures_name_their_counterparts(case: str, numbers: tuple[int, int]) -> None:
+def test_figures_name_their_counterparts() -> None:
     """Reference: external, Figs. 6 and 7 of the paper; with friction, Figs. 8 and 9."""
-    found = shipped(case)
-    remarks = addition(found, []).remarks
-    for place, number in zip(("tip", "head"), numbers, strict=True):
-        assert f"counterpart of Fig. {number} of the paper" in remarks[f"figure-{place}"]
-    assert addition(found.without_client_keys(), []).remarks == {}
+    for case, numbers in ((shipped("paper"), (6, 7)), (shipped("paper-friction"), (8, 9))):
+        remarks = addition(case, []).remarks
+        for place, number in zip(("tip", "head"), numbers, strict=True):
+            assert f"counterpart of Fig. {number} of the paper" in remarks[f"figure-{place}"]
+        assert addition(case.without_client_keys(), []).remarks == {}
