@@ -31,7 +31,6 @@ from tests.shell_model.booms import (
     flat_boom,
     reduced,
 )
-from tests.touching import touching
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².
 SHIFTS = (10.0, 1.0e4, 1.0e6)
@@ -150,24 +149,6 @@ def test_friction_of_each_pad_follows_its_contact() -> None:
         for side in (1.0, -1.0):
             terms = [term for law in laws for term in law.terms if term.side == side]
             assert sum(term.stiffness for term in terms) == pytest.approx(1.0e13)
-
-
-@pytest.mark.slow
-def test_lateral_motion_follows_beams() -> None:
-    """Reference: other code, Timoshenko frame elements in space under lateral loads."""
-    flat = boom_in_space()
-    segments = tuple(
-        replace(segment, load=0.0, lateral=replace(segment.lateral, load=segment.load))
-        for segment in flat.segments
-    )
-    boom = replace(flat, segments=segments)
-    elements = finite_element_segments(boom, 0.5, "timoshenko", True)
-    systems = [reduced(boom, 0.5).system, gap_system(touching(boom, LAW, LATERAL_LAW), elements)]
-    shell, beam = (AdaptiveStep()(Motion(system, 0.25)) for system in systems)
-    assert shell.first_contact == pytest.approx(beam.first_contact, rel=2.0e-3)
-    tips = [motion.data["tip_lateral"].values for motion in (shell, beam)]
-    assert _differ(tips[0], tips[1]) < 0.02
-    assert np.abs(shell.data["tip"].values).max() < 1.0e-9 * np.abs(tips[0]).max()
 
 
 @pytest.mark.slow

@@ -22,7 +22,7 @@ from protractile.dynamics.excitation import Step
 from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.axial import Thrust, with_compression
-from protractile.geometry.boom import Boom, Collar, Cylinder, Joint, Load, Segment, Stop, Support
+from protractile.geometry.boom import Boom, Collar, Cylinder, Joint, Load, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.shell_model.boom_shell import ShellOptions, segment_mesh
 from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
@@ -147,18 +147,6 @@ def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
     assert found == pytest.approx(expected, rel=1.5e-2)
     frequencies = [system.frequencies[:2] for system in systems]
     assert frequencies[0] == pytest.approx(frequencies[1], rel=2e-2)
-
-
-@pytest.mark.slow
-def test_a_shell_rests_on_a_hinge_and_a_stop() -> None:
-    """Reference: analytic, the lever rule. The weight presses the shell on the stop."""
-    stop = Stop(0, 6.0, 0.02, PowerContact(0.0, 1.0, stiffness_below=1e7))
-    segment = replace(luffed().segments[0], supports=(Support(0.0),))
-    boom = replace(luffed(), segments=(segment,), stops=(stop,), cylinders=())
-    system = shell(boom)
-    gaps = system.rows @ equilibrium(system, system.gather_loads().load)
-    pressed = sum(float(law.force(gap)) for law, gap in zip(system.laws, gaps, strict=True))
-    assert pressed == pytest.approx((-1500.0 * 10.0 * 5.0 - 5.0e3 * 10.0) / 6.0, rel=1e-6)
 
 
 # Walls so thick that they do not buckle by themselves.

@@ -6,23 +6,20 @@ from functools import cache
 
 import numpy as np
 import pytest
-import xarray as xr
 
 pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
 
 from mpi4py import MPI
 
 from protractile.dynamics.excitation import Step
-from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Collar, Diaphragm, Load, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
 from protractile.geometry.plating import PlatedMesh, add_thickness
-from protractile.runs.report.scene import Scene
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
-from protractile.shell_model.segment.solver import ShiftedSolver, times
+from protractile.shell_model.segment.solver import times
 from studies.reference_models.single_segment import natural_frequencies
 from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, compliance
@@ -133,23 +130,6 @@ def test_outline_at_a_diaphragm_has_only_nodes_of_walls() -> None:
     assert shells[0].num_dofs < shells[1].num_dofs
 
 
-def test_a_stiffened_shell_mirrors_itself() -> None:
-    """Reference: analytic. No lateral motion or twist; the box on its side is equal."""
-    shell = shell_of(COLLARS, PLATES, HELD)
-    outline = shell.outline(8.0)
-    force = shell.row(outline.wall_deflection("z"))
-    solve = ShiftedSolver(shell, 0.01)
-    moved = solve(force[:, None])[:, 0]
-    solve.destroy()
-    for row in (outline.wall_deflection("y"), outline.twist()):
-        assert abs(shell.row(row) @ moved) < 1.0e-10 * abs(force @ moved)
-    lying = shell_of(COLLARS, PLATES, HELD, section=BOX.turned())
-    # The first is the free slide along x.
-    assert natural_frequencies(lying, 9)[1:] == pytest.approx(
-        natural_frequencies(shell, 9)[1:], rel=1.0e-8
-    )
-
-
 @pytest.mark.slow
 def test_a_collar_all_along_is_a_thicker_box() -> None:
     """Reference: the box of thicker walls on the same mid-surfaces, to round-off."""
@@ -171,31 +151,6 @@ def test_overlapping_collars_on_different_walls_are_one_around_all() -> None:
     plain, expected, split = (natural_frequencies(one, 8)[1:] for one in shells)
     assert split == pytest.approx(expected, rel=1.0e-10)
     assert np.abs(plain / expected - 1.0).max() > 0.01  # the tolerance is below the effect
-
-
-@pytest.mark.slow
-def test_collar_at_the_largest_moment_stiffens_like_a_stepped_beam() -> None:
-    """Reference: analytic, the overhang of a Timoshenko beam with thicker walls over half a metre
-    at its support. They reduce the deflection by 8 %, which beams neglect.
-    """
-    collar = Collar((1.75, 2.25), 0.01)
-    shells = shell_of(supports=HELD), shell_of((collar,), supports=HELD)
-    plain, stiff = (compliance(one, one.outline(10.0).wall_deflection("z")) for one in shells)
-    thick = BoxSection(BOX.height, BOX.width, BOX.flange + 0.01, BOX.web + 0.01)
-    x = np.linspace(0.0, 10.0, 100_001)
-    moment, shear = np.where(x < 2.0, 4.0 * x, 10.0 - x), np.where(x < 2.0, -4.0, 1.0)
-
-    def beam(within: Array) -> float:
-        second, area = (
-            np.where(within, getattr(thick, name), getattr(BOX, name))
-            for name in ("second_moment_of_area", "shear_area")
-        )
-        modulus, shear_modulus = STEEL.youngs_modulus, STEEL.shear_modulus
-        return float(np.mean(moment**2 / (modulus * second) + shear**2 / (shear_modulus * area)))
-
-    expected = 1.0 - beam(np.abs(x - 2.0) < 0.25) / beam(x < 0.0)
-    assert expected == pytest.approx(0.0836, abs=1.0e-4)
-    assert 1.0 - stiff / plain == pytest.approx(expected, rel=0.03)
 
 
 def test_strips_on_the_flanges_bend_as_by_hand() -> None:
@@ -237,38 +192,3 @@ def short_box(comm: MPI.Comm, size: float) -> SegmentShell:
     collar = Collar((0.0, 0.3), 0.007)
     segment = replace(box_segment("box", 0.0, 0.3, BOX), diaphragms=plates, collars=(collar,))
     return assemble_segment(comm, segment, meshed(segment, size) if comm.rank == 0 else None)
-
-
-@pytest.mark.slow
-def test_pictures_know_walls_from_diaphragms() -> None:
-    """Reference: the boom without stiffeners. Its flanges are also found with stiffeners."""
-    boom = flat_boom()
-    plates = (Diaphragm(0.0, 0.008), Diaphragm(2.0, 0.008), Diaphragm(8.0, 0.008))
-    outer = replace(boom.segments[0], diaphragms=plates, collars=(Collar((9.7, 10.0), 0.01),))
-    inner = replace(boom.segments[1], diaphragms=(Diaphragm(9.0, 0.008),))
-    stiff = replace(boom, segments=(outer, inner))
-    reduced = reduce_boom(touching(stiff, LAW), ShellOptions(0.5), MPI.COMM_WORLD)
-    state = np.eye(2, reduced.system.num_modes)
-    fields = reduced.fields.assign(state=(("time", "mode"), state)).assign_coords(time=[0.0, 1.0])
-    motion = xr.Dataset({"tip": ("time", np.zeros(2))}, coords={"time": [0.0, 1.0]})
-    scene = Scene(
-        boom=stiff,
-        symbols=[],
-        **{name: fields[name].values for name in ("points", "triangles", "segment", "modes")},
-        state=fields["state"],
-        motion=motion,
-    )
-    points = scene.points
-    for number, segment in enumerate(stiff.segments):
-        section = segment.section
-        for side in (1, -1):
-            line = points[scene.flange_in_plane(number, side)]
-            assert line[:, 2] == pytest.approx(0.5 * side * section.height)
-            assert (np.diff(line[:, 0]) > 0.0).all()
-            assert line[[0, -1], 0] == pytest.approx([segment.start, segment.end])
-    for name in ("modes", "stress_1", "stress_2"):
-        assert np.isfinite(fields[name].values).all()
-    # Each vertex is in the fields, those within the plates too.
-    within = (np.abs(points[:, 1:]) < 1.0e-9).all(axis=1)
-    assert sorted(points[within, 0]) == pytest.approx([0.0, 2.0, 8.0, 9.0])
-    assert (np.abs(fields["modes"].values[:, within]).max(axis=(0, 2)) > 0.0).all()

@@ -10,8 +10,6 @@ from mpi4py import MPI
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.excitation import Step
-from protractile.dynamics.integrator import AdaptiveStep
-from protractile.dynamics.motion import Motion
 from protractile.geometry.boom import Boom, BoomError, Diaphragm, Joint, Pad, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
@@ -127,24 +125,6 @@ def tapered_boom(pad: Pad | None, lateral: float | None) -> Boom:
         ),
         (Joint(0, 1, (5.0, 6.0), play=0.008, pad=pad, lateral_play=lateral and 2.0 * lateral),),
     )  # fmt: skip
-
-
-@pytest.mark.slow
-def test_motion_of_a_tapered_boom_follows_its_beam() -> None:
-    """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
-    boom = tapered_boom(None, 5e-3)
-    law, sides = [LAW.with_clearance(4e-3)], [LAW.with_clearance(5e-3)]
-    models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
-    shell = reduce_boom(
-        touching(boom, law, sides), ShellOptions(0.2, contact_tolerance=0.2), MPI.COMM_SELF
-    )
-    beam, found = (
-        float(
-            np.abs(AdaptiveStep()(Motion(system, 0.3, output_step=1e-3)).data["tip"].values).max()
-        )
-        for system in (gap_system(touching(boom, law, sides), models), shell.system)
-    )
-    assert found == pytest.approx(beam, rel=0.02)
 
 
 @pytest.mark.slow

@@ -173,16 +173,6 @@ def moved(system: GapSystem, duration: float) -> Trajectory:
 
 
 @pytest.mark.slow
-def test_motion_without_speed_equals_the_fixed_shell() -> None:
-    """Reference: other code path, the shell reduced there, during its first contacts."""
-    still = replace(shell(0.0, DRIVE).system, travels=())
-    runs = [moved(system, 0.5) for system in (still, shell(0.0).system)]
-    assert runs[1].data.attrs["contact_changes"] > 10
-    tips = [run.data["tip"].values for run in runs]
-    assert np.abs(tips[0] - tips[1]).max() < 5.0e-3 * np.ptp(tips[1])
-
-
-@pytest.mark.slow
 def test_beams_are_as_near_as_at_constant_extension() -> None:
     """Reference: other code, beams, as near as at constant extension; the energy balance."""
     apart = []
