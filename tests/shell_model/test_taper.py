@@ -28,14 +28,9 @@ from tests.touching import touching
 
 ENDS: Mapping[str, tuple[Section, Section]] = {
     "box": (BoxSection(0.4, 0.3, 0.008, 0.006), BoxSection(0.25, 0.2, 0.006, 0.006)),
-    "wider head": (BoxSection(0.25, 0.2, 0.006, 0.006), BoxSection(0.4, 0.3, 0.008, 0.006)),
     "unequal box": (
         BoxSection(0.4, 0.3, 0.006, 0.006, bottom_flange=0.010),
         BoxSection(0.22, 0.25, 0.006, 0.005, bottom_flange=0.008),
-    ),
-    "hexagon": (
-        hexagon(0.40, 0.36, 0.2, 0.0065, 0.0065, 0.0065),
-        hexagon(0.25, 0.26, 0.15, 0.005, 0.005, 0.005),
     ),
     "bends": (
         bent(hexagon(0.40, 0.36, 0.2, 0.006, 0.006, 0.006), 0.03),
@@ -51,24 +46,15 @@ CLAMP = Support(0.0, "clamped")
 
 def cantilever(shape: str) -> Boom:
     tail, head = ENDS[shape]
-    arm = Segment.of_section(
-        "arm",
-        0.0,
-        8.0,
-        STEEL,
-        tail,
-        head_section=head,
-        supports=(CLAMP,),
-        diaphragms=(Diaphragm(8.0, 0.006),),
-    )
+    more = {"supports": (CLAMP,), "diaphragms": (Diaphragm(8.0, 0.006),)}
+    arm = Segment.of_section("arm", 0.0, 8.0, STEEL, tail, head_section=head, **more)
     return Boom((arm,), (), (Load(0, "z", 1.0, 8.0, Step()),))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("shape", ["wider head", "unequal box", "U"])
-def test_it_bends_as_its_beam(shape: str) -> None:
+def test_it_bends_as_its_beam() -> None:
     """Reference: other code, Timoshenko elements: the tip within 1 %."""
-    boom = cantilever(shape)
+    boom = cantilever("unequal box")
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     tips = []
     for system in (
@@ -141,8 +127,7 @@ def test_its_section_forces_are_those_of_statics() -> None:
     np.testing.assert_allclose(found["shear"][inside], 1000.0, rtol=0.02)
 
 
-@pytest.mark.parametrize("lateral", [None, 5e-3])
-@pytest.mark.parametrize("pad", [None, Pad(0.12, 0.05)])
+@pytest.mark.parametrize(("pad", "lateral"), [(None, None), (Pad(0.12, 0.05), 5e-3)])
 def test_pads_lie_on_tapered_walls(pad: Pad | None, lateral: float | None) -> None:
     """Reference: by hand. A translation of 1 m gives 1 m, a rotation of 1 rad the pad's x."""
     boom = tapered_boom(pad, lateral)
