@@ -28,9 +28,6 @@ from tests.docs.conftest import DOCS, toml_blocks
 from tests.runs.case_texts import read_case
 
 PAGE = (DOCS / "tutorial.md").read_text("utf-8")
-SECTION = "section = { height = 0.300, width = 0.220, flange = 0.006, web = 0.005 }"
-COLLAR = 'collars = [{ span = [6.3, "head"], thickness = 0.008 }]'
-PAD = re.search(r"^    (pad = .*)$", PAGE, re.MULTILINE)
 
 Runner = Callable[..., Results]
 
@@ -139,9 +136,7 @@ def draft(lift: str, tmp_path_factory: pytest.TempPathFactory) -> Draft:
 @pytest.mark.parametrize(
     ("label", "key", "value"),
     [
-        ("play of 15 mm", "joint[1].play", 0.015),
         ("play of 16 mm", "joint[1].play", 0.016),
-        ("pads of 30 mm", "joint[1].pad.length", 0.030),
         ("pads of 12 mm", "joint[1].pad.length", 0.012),
     ],
 )
@@ -161,53 +156,24 @@ def test_the_live_page_has_the_numbers_of_its_table(
 def test_coarse_shell_is_close_to_the_page(run: Runner, lift: str) -> None:
     """Reference: the page, whose mesh has a tolerance of 2 %; this one has 5 %."""
     pytest.importorskip("dolfinx", reason="shells need FEniCSx")
-    coarse = lift.replace('kind = "shell"', 'kind = "shell"\ncontact_tolerance = 0.05')
-    cases = (
-        coarse,
-        re.sub("^pad = .*$", PAD[1], coarse, flags=re.MULTILINE),
-        coarse.replace(SECTION, f"{SECTION}\n{COLLAR}"),
-    )
-    assert len({*cases}) == 3
-    for column, case in enumerate(cases):
-        models = ("shell", "calibrated") if column == 0 else ("shell",)
-        results = run(case, *models, **{"time.duration": 0.4})
-        shell = results.rows.where(model="shell", play=True)
-        largest = abs(peak(shell, "tip").value)
-        tip = numbers("maximum tip deflection (mm)", 1)[column]
-        assert 1e3 * largest == pytest.approx(tip, rel=5e-3)
-        patches = {
-            (curve.segment, round(curve.place, 3)): curve.values["von_mises_patch"].max()
-            for curve in results.curves.where(model="shell", state="history")
-        }
-        head, tail = patches["base", 6.5], patches["fly", 5.3]
-        page = numbers("plate stress at the head of the base (MPa)")[column]
-        assert 1e-6 * head == pytest.approx(page, rel=0.05)
-        page = numbers("plate stress at the tail of the fly (MPa)")[column]
-        assert 1e-6 * tail == pytest.approx(page, rel=0.05)
-        pad = max(row.utilisation for row in shell.where(state=MOTION, quantity="pad_pressure"))
-        page = numbers("pad utilisation at the head of the base (%)")[column]
-        assert 100.0 * pad == pytest.approx(page, abs=0.6)
-        if column == 0:
-            calibrated = peak(results.rows.where(model="calibrated", play=True), "tip")
-            assert abs(calibrated.value) == pytest.approx(largest, rel=1e-3)
-            frequencies = shell.where(state=INITIAL, quantity="frequency")
-            assert frequencies[0].value == pytest.approx(
-                numbers("first natural frequency (Hz)")[1], rel=5e-3
-            )
-
-
-@pytest.mark.slow
-def test_table_of_meshes_holds_at_the_default_tolerance() -> None:
-    """Reference: the table of large models, to its digits; the tip peaks at 0.51 s."""
-    pytest.importorskip("dolfinx", reason="shells need FEniCSx")
-    case = pt.change(pt.load_case(pt.CASES / "lift.toml"), **{"time.duration": 1.0})
-    results = pt.run_case(case, models=["shell"])
-    shell = results.summary.models["shell"]
-    page = (DOCS / "how-to" / "large-models.md").read_text("utf-8")
-    row = re.search(rf"^\| {case.models[2].contact_tolerance} \|(.*)\|$", page, re.MULTILINE)
-    dofs, error, tip, plates = (float(cell) for cell in row[1].split("|"))
-    assert shell.degrees_of_freedom == dofs
-    assert 100.0 * shell.mesh_error == pytest.approx(error, abs=0.005)
-    assert -1e3 * shell.first_peak["tip"].height == pytest.approx(tip, abs=0.05)
-    patch = results.rows.where(quantity="wall_stress").largest.value
-    assert patch / 3.55e6 == pytest.approx(plates, abs=0.1)
+    case = lift.replace('kind = "shell"', 'kind = "shell"\ncontact_tolerance = 0.05')
+    results = run(case, "shell", "calibrated", **{"time.duration": 0.4})
+    shell = results.rows.where(model="shell", play=True)
+    largest = abs(peak(shell, "tip").value)
+    tip = numbers("maximum tip deflection (mm)", 1)[0]
+    assert 1e3 * largest == pytest.approx(tip, rel=5e-3)
+    patches = {
+        (curve.segment, round(curve.place, 3)): curve.values["von_mises_patch"].max()
+        for curve in results.curves.where(model="shell", state="history")
+    }
+    for place, label in ((("base", 6.5), "head of the base"), (("fly", 5.3), "tail of the fly")):
+        page = numbers(f"plate stress at the {label} (MPa)")[0]
+        assert 1e-6 * patches[place] == pytest.approx(page, rel=0.05)
+    pad = max(row.utilisation for row in shell.where(state=MOTION, quantity="pad_pressure"))
+    page = numbers("pad utilisation at the head of the base (%)")[0]
+    assert 100.0 * pad == pytest.approx(page, abs=0.6)
+    calibrated = peak(results.rows.where(model="calibrated", play=True), "tip")
+    assert abs(calibrated.value) == pytest.approx(largest, rel=1e-3)
+    frequencies = shell.where(state=INITIAL, quantity="frequency")
+    page = numbers("first natural frequency (Hz)")[1]
+    assert frequencies[0].value == pytest.approx(page, rel=5e-3)

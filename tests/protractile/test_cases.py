@@ -21,7 +21,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import simulate
 from protractile.dynamics.motion import build_motion
 from protractile.runs.report import output
-from tests.modal import modal_system, one_mass
+from tests.modal import modal_system
 from tests.system.run_folder import COARSE, files, protractile, python, write_coarse
 
 BEAM = ["beam-fe-bonded"]
@@ -179,14 +179,6 @@ def test_senseless_arguments_of_a_motion_are_named(given: dict[str, Any], messag
     """Reference: by construction."""
     with pytest.raises(ValueError, match=f"^{message}$"):
         build_motion(modal_system([900.0], [0.0]), 1.0, 1.0e-3, **{"at_rest": False, **given})
-
-
-def test_a_comparison_ends_after_it_begins() -> None:
-    """Reference: by construction. Before, a negative end left an empty comparison."""
-    motion = simulate(one_mass(1.0, spring=900.0), 0.1, position=[0.01])
-    for until in (-1.0, 0.0, float("nan")):
-        with pytest.raises(ValueError, match=r"^until must be after the first time, got "):
-            motion.compare(motion, until=until)
 
 
 def test_nothing_heavy_comes_with_the_import() -> None:

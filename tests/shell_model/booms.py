@@ -11,13 +11,12 @@ import numpy as np
 import pytest
 from mpi4py import MPI
 
-from protractile.beam_model.component import natural_modes
-from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
+from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import ContactLaw, PowerContact
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Direction, Joint, Material, Segment, Support
+from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
 from protractile.geometry.box import BoxSection, infer_inner_section, infer_outer_section
 from protractile.geometry.contact_places import ContactLine
 from protractile.geometry.section import Section
@@ -27,7 +26,6 @@ from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
-from protractile.shell_model.segment.segment_shell import SegmentShell
 from studies.reference_models.statics import static_response
 from tests.touching import touching
 
@@ -151,15 +149,3 @@ def reduce_segment(
     none = np.zeros((len(inputs), 0))
     data = SegmentInputs(symmetry, inputs, none if outputs is None else outputs, none)
     return reduce_segments([data], options, helper=helper)[0]
-
-
-def frequencies_off(shell: SegmentShell, direction: Direction = "z", count: int = 1) -> Array:
-    """Return relative errors (count,) of elastic frequencies against Timoshenko elements."""
-    tip = shell.row(shell.outline(10.0).wall_deflection(direction))
-    inputs = np.column_stack([shell.unit_loads[direction], tip])
-    found = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())
-    part = finite_element_segment(shell.segment, 0.25, (), "timoshenko", True).components[direction]
-    modes = natural_modes(part.stiffness, part.mass, part.rigid_modes)
-    assert np.count_nonzero(found.omega2 == 0.0) == part.rigid_modes
-    first = slice(part.rigid_modes, part.rigid_modes + count)
-    return np.asarray(np.sqrt(found.omega2[first]) / np.sqrt(modes.omega2[first]) - 1.0)

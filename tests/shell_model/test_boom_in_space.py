@@ -10,7 +10,6 @@ from mpi4py import MPI
 
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
-from protractile.dynamics.contact import ContactLaw
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.gap_system import GapSystem
@@ -31,7 +30,6 @@ from tests.shell_model.booms import (
     flat_boom,
     reduced,
 )
-from tests.touching import touching
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².
 SHIFTS = (10.0, 1.0e4, 1.0e6)
@@ -54,14 +52,14 @@ def _differ(found: Array, expected: Array) -> float:
 @pytest.mark.slow
 def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
     """Reference: the flat shell. Compliances, and the motion until the first contact, agree within
-    1e-9; then within 1 % in 0.3 s.
+    1e-9; then within 1 %.
     """
     flat, space = (reduced(one, 0.5, moments=2).system for one in (flat_boom(), boom_in_space()))
     for sigma in SHIFTS:
         expected = _compliance(flat, flat.rows, sigma)
         assert _differ(_compliance(space, _walls(space, "z"), sigma), expected) < 1.0e-9
     motions = [
-        AdaptiveStep()(Motion(system, 0.3, output_step=0.01)).data for system in (flat, space)
+        AdaptiveStep()(Motion(system, 0.2, output_step=0.01)).data for system in (flat, space)
     ]
     tips = [motion["tip"].values for motion in motions]
     early = motions[0]["time"].values < 0.115
@@ -71,25 +69,15 @@ def test_without_lateral_load_the_boom_moves_as_the_flat_one() -> None:
     assert sideways < 1.0e-9 * np.abs(tips[1]).max()
 
 
-def octagonal_boom() -> Boom:
-    """Return a boom of octagons with a lateral load of 0.3 times the load along z."""
-    boom = sections.boom_of(*sections.SHAPES["octagon"])
+@pytest.mark.slow
+def test_a_boom_on_its_side_is_the_same_boom() -> None:
+    """Reference: symmetry, exchanged directions: frequencies, compliances, loads, round-off."""
+    boom, law = sections.boom_of(*sections.SHAPES["octagon"]), sections.LAW
     segments = tuple(
         replace(s, lateral=replace(s.lateral, load=0.3 * s.load)) for s in boom.segments
     )
     joint = replace(boom.joints[0], lateral_play=2.0 * LATERAL_LAW.above)
-    return replace(boom, segments=segments, joints=(joint,))
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("upright", "law", "off"),
-    [(boom_in_space(sideways=0.3), LAW, 1.0e-9), (octagonal_boom(), sections.LAW, 1.0e-6)],
-    ids=["boxes", "octagons"],
-)
-def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off: float) -> None:
-    """Reference: symmetry, exchanged directions: frequencies, compliances, loads, round-off."""
-    joint = upright.joints[0]
+    upright = replace(boom, segments=segments, joints=(joint,))
     lying = Boom(
         tuple(segment.turned() for segment in upright.segments),
         (replace(joint, play=joint.lateral_play, lateral_play=joint.play),),
@@ -102,7 +90,7 @@ def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off
     for one, other in (("z", "y"), ("y", "z")):
         for sigma in SHIFTS:
             expected = _compliance(first, _walls(first, one), sigma)
-            assert _differ(_compliance(second, _walls(second, other), sigma), expected) < off
+            assert _differ(_compliance(second, _walls(second, other), sigma), expected) < 1.0e-6
     tips = [
         [system.observers[name].row @ (system.load / (system.omega2 + 10.0)) for name in names]
         for system, names in ((first, ("tip", "tip_lateral")), (second, ("tip_lateral", "tip")))
@@ -112,7 +100,9 @@ def test_a_boom_on_its_side_is_the_same_boom(upright: Boom, law: ContactLaw, off
 
 @pytest.mark.slow
 def test_segments_rolling_together_keep_their_gaps() -> None:
-    """Reference: analytic. Under a rotation φ, flange pads move by φ y and web pads by −φ z."""
+    """Reference: analytic. Under a rotation φ, flange pads move by φ y and web pads by −φ z. (11):
+    each pad's contact row gives N for its friction.
+    """
     system = reduced(boom_in_space(friction=0.2), 0.5).system
     rigid = np.flatnonzero(system.omega2 == 0.0)
     names = ("tip", "tail", "tip_lateral", "tail_lateral", "tip_twist")
@@ -129,45 +119,14 @@ def test_segments_rolling_together_keep_their_gaps() -> None:
     slides = system.friction_rows @ state
     arm = 0.5 * (outer.height - outer.flange) - LAW.above
     assert np.abs(slides[along_z]) == pytest.approx(1.0e-3 * arm, rel=1.0e-9)
-
-
-@pytest.mark.slow
-def test_friction_of_each_pad_follows_its_contact() -> None:
-    """Reference: external source, (11). Each pad's contact row gives N; it slides across."""
-    system = reduced(boom_in_space(friction=0.2), 0.5).system
-    assert len(system.frictions) == len(system.laws) == 16
-    for row, (friction, station) in enumerate(
-        zip(system.frictions, system.station_of_row, strict=True)
-    ):
-        assert friction.normal_rows == (row,)
-        assert friction.normal_force == 0.0
-        assert friction.station == station
+    found = [(one.normal_rows, one.normal_force, one.station) for one in system.frictions]
+    assert found == [((row,), 0.0, at) for row, at in enumerate(system.station_of_row)]
     assert list(system.station_directions) == ["z", "z", "y", "y"]
-    for station in range(4):
-        laws = [
-            w for w, at in zip(system.laws, system.station_of_row, strict=True) if at == station
-        ]
-        for side in (1.0, -1.0):
-            terms = [term for law in laws for term in law.terms if term.side == side]
-            assert sum(term.stiffness for term in terms) == pytest.approx(1.0e13)
-
-
-@pytest.mark.slow
-def test_lateral_motion_follows_beams() -> None:
-    """Reference: other code, Timoshenko frame elements in space under lateral loads."""
-    flat = boom_in_space()
-    segments = tuple(
-        replace(segment, load=0.0, lateral=replace(segment.lateral, load=segment.load))
-        for segment in flat.segments
-    )
-    boom = replace(flat, segments=segments)
-    elements = finite_element_segments(boom, 0.5, "timoshenko", True)
-    systems = [reduced(boom, 0.5).system, gap_system(touching(boom, LAW, LATERAL_LAW), elements)]
-    shell, beam = (AdaptiveStep()(Motion(system, 0.25)) for system in systems)
-    assert shell.first_contact == pytest.approx(beam.first_contact, rel=2.0e-3)
-    tips = [motion.data["tip_lateral"].values for motion in (shell, beam)]
-    assert _differ(tips[0], tips[1]) < 0.02
-    assert np.abs(shell.data["tip"].values).max() < 1.0e-9 * np.abs(tips[0]).max()
+    stiffness = np.zeros((4, 2))
+    for law, station in zip(system.laws, system.station_of_row, strict=True):
+        for term in law.terms:
+            stiffness[station, int(term.side > 0.0)] += term.stiffness
+    assert stiffness == pytest.approx(1.0e13)
 
 
 @pytest.mark.slow
@@ -220,6 +179,6 @@ def test_a_beam_moves_alike_in_both_planes() -> None:
 @pytest.mark.slow
 def test_a_shell_moves_alike_in_both_planes() -> None:
     """Reference: analytic, the symmetry of a square; before, the lateral one was 27 % lower."""
-    shell = reduce_boom(boom_of(1.0e8), ShellOptions(mesh_size=0.1), MPI.COMM_SELF)
+    shell = reduce_boom(boom_of(1.0e8), ShellOptions(mesh_size=0.15), MPI.COMM_SELF)
     first, second = first_pair(shell.system)
     assert first == pytest.approx(second, rel=1e-3)

@@ -12,12 +12,11 @@ from protractile.dynamics.failure import NumericsError
 from protractile.geometry.boom import Boom, Support
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.buckling import (
-    SegmentBuckling,
     ShellState,
     buckle_segments,
     buckling_modes,
 )
-from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
+from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.stress.stresses import triangle_areas
 from studies.reference_models.finite_strip import Strips
 from studies.reference_models.plates import STEEL
@@ -31,10 +30,8 @@ from studies.wall_buckling import (
     UNIT,
     LoadedBox,
     LoadedPlate,
-    PressedBox,
 )
-from tests.shell_model.booms import LATERAL_LAW, LAW, boom_in_space, box_segment
-from tests.touching import touching
+from tests.shell_model.booms import box_segment
 
 
 def extrapolated(coarse: float, fine: float) -> float:
@@ -50,16 +47,6 @@ def test_plates_buckle_at_known_factors(plate: LoadedPlate) -> None:
     assert fine < 1.035 * plate.factor
     assert np.log2((first - coarse) / (coarse - fine)) > 1.0
     assert extrapolated(coarse, fine) == pytest.approx(plate.factor, rel=6.0e-3)
-
-
-def test_modes_rise() -> None:
-    """Reference: analytic, k = (m b/a + a/(m b))² for a plate 2 × 1 with m half-waves."""
-    pressed = replace(PLATES[0], aspect=2.0)
-    exact = np.sort([(m / 2.0 + 2.0 / m) ** 2 for m in (1, 2, 3, 4)])
-    limits = [
-        extrapolated(*both) for both in zip(pressed.shell(8, 4), pressed.shell(16, 4), strict=True)
-    ]
-    assert limits == pytest.approx(exact, rel=0.01)
 
 
 def test_tension_has_no_factor() -> None:
@@ -85,18 +72,18 @@ def test_finite_strips_know_walls_and_columns() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("box", BOXES[2:], ids=lambda box: box.name)
-def test_boxes_buckle_as_finite_strips(box: LoadedBox) -> None:
+def test_a_box_buckles_as_finite_strips() -> None:
     """Reference: other code, finite strips, within 1 % of the limit of two meshes."""
+    box = BOXES[-1]  # in compression and bending
     coarse, fine = (float(box.shell(n)[1].factors[0]) for n in (8, 16))
     assert coarse > fine
     assert extrapolated(coarse, fine) == pytest.approx(box.strips(), rel=0.01)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("pressed", PRESSED, ids=lambda pressed: f"{pressed.length:g} m")
-def test_webs_buckle_under_patch_loads(pressed: PressedBox) -> None:
+def test_webs_buckle_under_patch_loads() -> None:
     """Reference: external, k_F = 6 + 2 (h/a)² of EN 1993-1-5, 6.4, within 15 %."""
+    pressed = PRESSED[0]
     found = extrapolated(pressed.shell(4), pressed.shell(8))
     assert found == pytest.approx(pressed.fitted, rel=0.15)
 
@@ -120,23 +107,15 @@ def test_an_unheld_segment_is_refused() -> None:
         buckling_modes(shell, forces, 1)
 
 
-def at_rest(boom: Boom, options: ShellOptions) -> tuple[ReducedShell, ShellState]:
-    """Return the reduced shell of a boom and its state at rest."""
-    shell = reduce_boom(boom, options, MPI.COMM_SELF)
-    return shell, ShellState.from_fields(shell.fields, shell.system, equilibrium_at(shell.system))
-
-
-def buckled(boom: Boom, options: ShellOptions, count: int = 1) -> list[SegmentBuckling]:
-    shell, state = at_rest(boom, options)
-    return buckle_segments(boom, shell.meshes, state, options, count, MPI.COMM_SELF)
-
-
 @pytest.mark.slow
 def test_beam_buckles_at_its_largest_moment() -> None:
     """Reference: other code, finite strips under the largest moment, from below."""
     supports = Support(0.0), Support(4.0)
     segment = box_segment("beam", 0.0, 4.0, TUBE, load=-8.0e3, supports=supports)
-    (found,) = buckled(Boom((segment,), ()), ShellOptions(0.1))
+    boom, options = Boom((segment,), ()), ShellOptions(0.1)
+    shell = reduce_boom(boom, options, MPI.COMM_SELF)
+    state = ShellState.from_fields(shell.fields, shell.system, equilibrium_at(shell.system))
+    (found,) = buckle_segments(boom, shell.meshes, state, options, 1, MPI.COMM_SELF)
     moment = 8.0e3 * 4.0**2 / 8.0
     bent = LoadedBox("beam", TUBE, 4.0, bending=-moment / TUBE.second_moment_of_area)
     least = bent.strips(16)
@@ -145,24 +124,6 @@ def test_beam_buckles_at_its_largest_moment() -> None:
     size = np.linalg.norm(found.shapes[0], axis=1)
     most = found.mesh.points[size.argmax()]
     assert most[[0, 2]] == pytest.approx([2.0, 0.2], abs=0.3)
-
-
-@pytest.mark.slow
-def test_segments_of_a_boom_buckle_between_their_contacts() -> None:
-    """Reference: analytic. Twice the forces halve the factor; the outer segment is first."""
-    boom = touching(boom_in_space(sideways=0.3), LAW, LATERAL_LAW)
-    options = ShellOptions(0.4)
-    shell, state = at_rest(boom, options)
-    twice = replace(state, forces=[2.0 * one for one in state.forces])
-    found, halves = (
-        buckle_segments(boom, shell.meshes, one, options, 2, MPI.COMM_SELF)
-        for one in (state, twice)
-    )
-    for one, half in zip(found, halves, strict=True):
-        assert one.factors.shape == (2,)
-        assert half.factors == pytest.approx(0.5 * one.factors, rel=1.0e-6)
-    outer, inner = (one.factors[0] for one in found)
-    assert 1.0 < outer < inner
 
 
 def test_halved_meshes_have_the_same_walls() -> None:

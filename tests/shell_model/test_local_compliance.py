@@ -1,15 +1,13 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Local compliance of walls and distortion of sections at contacts, with the estimates of beams."""
 
-from collections.abc import Callable
 from dataclasses import replace
-from itertools import pairwise
 
 import numpy as np
 import pytest
 from mpi4py import MPI
 
-from protractile.beam_model.calibration import Stiffness, effective_stiffness, residual_compliance
+from protractile.beam_model.calibration import effective_stiffness, residual_compliance
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.beam_model.statics import static_state
@@ -18,7 +16,6 @@ from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.damping import closed_contact_modes
 from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import Step
-from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.boom import Boom, Collar, Joint, Pad, Segment, Stop, Support
 from protractile.geometry.load import Load
 from protractile.geometry.probe_responses import PROBE_FREQUENCY
@@ -28,7 +25,6 @@ from protractile.geometry.segment import PointMass
 from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
 from protractile.shell_model.contact.local_compliance import (
     SLOW,
-    compliance,
     probe_loads,
     probe_responses,
     shell_compliance,
@@ -48,13 +44,15 @@ from tests.shell_model.booms import (
 )
 from tests.touching import touching
 
-SIZES = (0.8, 0.4, 0.2)
-
 
 @pytest.mark.slow
-def test_no_rigid_motion_fills_it() -> None:
-    """Reference: analytic. Rigid motions do not contribute, so that the shift has no effect."""
-    shell = reduced(flat_boom(), 0.4, moments=2)
+def test_no_rigid_motion_fills_it_and_its_mesh_error_is_known() -> None:
+    """Reference: analytic, rigid motions do not contribute, so that the shift has no effect; other
+    code, the mesh of twice the edge length.
+    """
+    coarse, shell = (reduced(flat_boom(), size, moments=2) for size in (0.8, 0.4))
+    change = 1.0 - coarse.local_compliance / shell.local_compliance
+    assert shell.mesh_error == pytest.approx(change.max(), rel=1.0e-4)
     system = shell.system
     rigid = system.rows[:, system.omega2 == 0.0]
     assert np.abs(rigid).max() > 0.01
@@ -64,25 +62,6 @@ def test_no_rigid_motion_fills_it() -> None:
     assert whole[0, 0] > 200.0 * shell.local_compliance[0]
     squeezed = 0.5 * (whole[0, 0] + whole[1, 1] - 2.0 * whole[0, 1])
     assert shell.local_compliance[:2] == pytest.approx(2 * [squeezed], rel=1.0e-3)
-
-
-@pytest.mark.slow
-def test_mesh_error_predicts_the_next_finer_mesh() -> None:
-    """Reference: other code, meshes of half and a quarter of the edge length."""
-    for coarse, fine in pairwise(reduced(flat_boom(), size, moments=2) for size in SIZES):
-        change = 1.0 - coarse.local_compliance / fine.local_compliance
-        assert fine.mesh_error == pytest.approx(change.max(), rel=1.0e-4)
-
-
-@pytest.mark.slow
-def test_poor_reduction_has_a_large_error() -> None:
-    """Reference: other code, more moments; non-regression of the estimate, which is far larger."""
-    rich, poor = (reduced(flat_boom(), 0.4, moments=moments) for moments in (3, 1))
-    full, own = (np.diag(compliance(r.system.omega2, r.system.rows)) for r in (rich, poor))
-    off = float(np.max((full - own) / rich.local_compliance))
-    assert off == pytest.approx(5.985e-5, rel=0.02)
-    assert poor.errors["contact_compliance"] == pytest.approx(0.01394, rel=0.02)
-    assert rich.errors["contact_compliance"] < 1.0e-5 * poor.errors["contact_compliance"]
 
 
 @pytest.mark.slow
@@ -105,39 +84,21 @@ def test_one_sided_contact_has_no_local_compliance() -> None:
     assert np.isnan(reduced(bonded, 0.8).mesh_error)
 
 
-def stiffness(boom: Boom, contact_tolerance: float | None = None) -> list[Stiffness]:
-    options = ShellOptions(0.25, contact_tolerance=contact_tolerance)
-    shells = assemble_segments(boom, options, MPI.COMM_WORLD)
-    found = []
-    for number, (segment, shell) in enumerate(zip(boom.segments, shells, strict=True)):
-        moved = shell_compliance(
-            SymmetryReduction(shell), probe_loads(boom, number, shell), PROBE_FREQUENCY
-        )
-        found.append(effective_stiffness(segment, probe_responses(boom, number, moved)))
-    return found
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("boom", [flat_boom(), boom_in_space()])
-def test_plates_are_nearly_the_beam_of_their_section(boom: Boom) -> None:
+def test_plates_are_nearly_the_beam_of_their_section() -> None:
     """Reference: analytic, E J, G A_s of the shear flow, and Bredt's G J_t."""
-    for segment, found in zip(boom.segments, stiffness(boom), strict=True):
-        planes = (segment, segment.turned())[: len(found.bending)]
+    boom = boom_in_space()
+    shells = assemble_segments(boom, ShellOptions(0.25), MPI.COMM_WORLD)
+    for number, (segment, shell) in enumerate(zip(boom.segments, shells, strict=True)):
+        loads = probe_loads(boom, number, shell)
+        moved = shell_compliance(SymmetryReduction(shell), loads, PROBE_FREQUENCY)
+        found = effective_stiffness(segment, probe_responses(boom, number, moved))
+        planes = segment, segment.turned()
         for plane, bending, shear in zip(planes, found.bending, found.shear, strict=True):
-            assert plane.shear_stiffness is not None
             assert bending == pytest.approx(plane.bending_stiffness, rel=5e-3)
             assert shear == pytest.approx(plane.shear_stiffness, rel=0.3)
-        if boom.spatial:
-            bredt = segment.material.shear_modulus * segment.lateral.torsion_constant
-            assert found.torsion == pytest.approx(bredt, rel=0.01)
-
-
-@pytest.mark.slow
-def test_graded_mesh_equals_a_uniform_mesh() -> None:
-    """Reference: other code, a uniform mesh; unit responses are far from contacts."""
-    for coarse, fine in zip(stiffness(flat_boom()), stiffness(flat_boom(), 0.01), strict=True):
-        assert coarse.bending == pytest.approx(fine.bending, rel=2e-3)
-        assert coarse.shear == pytest.approx(fine.shear, rel=0.02)
+        bredt = segment.material.shear_modulus * segment.lateral.torsion_constant
+        assert found.torsion == pytest.approx(bredt, rel=0.01)
 
 
 SUPPORTS = (Support(7.0), Support(8.0))
@@ -159,41 +120,30 @@ def short_boom(pad: Pad | None) -> Boom:
 def test_a_tolerance_is_kept() -> None:
     """Reference: a mesh for a quarter of the tolerance, extrapolated (Richardson 1911)."""
     uniform, coarse, fine = (
-        reduced(short_boom(None), 0.1, contact_tolerance=tolerance).local_compliance[0]
-        for tolerance in (None, 0.16, 0.04)
+        reduced(short_boom(None), 0.2, contact_tolerance=tolerance).local_compliance[0]
+        for tolerance in (None, 0.2, 0.05)
     )
     limit = fine + (fine - coarse) / 3.0
-    assert fine == pytest.approx(limit, rel=0.04)
-    assert coarse == pytest.approx(limit, rel=0.16)
-    assert uniform < 0.95 * limit
-
-
-def with_collar(boom: Boom) -> Boom:
-    """Return the boom with a collar at the head of the outer segment."""
-    collared = replace(boom.segments[0], collars=(Collar((9.6, 10.0), 0.008),))
-    return replace(boom, segments=(collared, boom.segments[1]))
-
-
-def with_strips(boom: Boom) -> Boom:
-    """Return the boom with doublers on the outer halves of the flanges at the head."""
-    strips = Collar((9.6, 10.0), 0.008, walls=("top", "bottom"), across=(0.06, 0.14))
-    return replace(boom, segments=(replace(boom.segments[0], collars=(strips,)), boom.segments[1]))
+    assert fine == pytest.approx(limit, rel=0.05)
+    assert coarse == pytest.approx(limit, rel=0.2)
+    assert uniform < 0.9 * limit
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("pad", "change"),
+    ("pad", "collars"),
     [
-        (Pad(0.2, 0.04, offset=0.03), lambda boom: boom),
-        (Pad(0.1, 0.06), with_collar),
-        (Pad(0.1, 0.06), with_strips),
+        (Pad(0.2, 0.04, offset=0.03), ()),
+        (Pad(0.1, 0.06), (Collar((9.6, 10.0), 0.008, ("top", "bottom"), (0.06, 0.14)),)),
     ],
-    ids=["away from the webs", "under a collar", "under strips"],
+    ids=["away from the webs", "under strips"],
 )
-def test_estimated_compliance_follows_shell(pad: Pad, change: Callable[[Boom], Boom]) -> None:
-    """Reference: other code, the shell, whose own error of the local compliance is 2 %."""
-    boom = change(short_boom(pad))
-    shell = reduced(boom, 0.2, contact_tolerance=0.02)
+def test_estimated_compliance_follows_shell(pad: Pad, collars: tuple[Collar, ...]) -> None:
+    """Reference: other code, the shell, whose own error of the local compliance is 5 %."""
+    boom = short_boom(pad)
+    outer, inner = boom.segments
+    boom = replace(boom, segments=(replace(outer, collars=collars), inner))
+    shell = reduced(boom, 0.2, contact_tolerance=0.05)
     walls = contact_compliance(boom)
     opening = walls[::2, ::2] + walls[1::2, 1::2] - walls[::2, 1::2] - walls[1::2, ::2]
     estimated = 0.5 * np.diag(opening)
@@ -202,27 +152,19 @@ def test_estimated_compliance_follows_shell(pad: Pad, change: Callable[[Boom], B
 
 @pytest.mark.slow
 def test_a_pad_on_the_corners_bends_no_wall() -> None:
-    """Reference: other code path, stations at pad centres; narrow pads are a bit softer."""
-
-    def local(boom: Boom) -> float:
-        return float(reduced(boom, 0.2, contact_tolerance=0.05).local_compliance.max())
-
+    """Reference: other code path, stations at pad centres; on walls a pad is far softer."""
     boom = short_boom(Pad(0.1, 0.06, bears="corner"))
     stations = replace(boom.joints[0], stations=(9.05, 9.95), pad=None, contact_length=0.1)
-    on_corners = local(boom)
-    of_stations = local(replace(boom, joints=(stations,)))
-    assert on_corners == pytest.approx(of_stations, rel=5.0e-4, abs=0.0)
-    wide, narrow = (local(short_boom(Pad(0.1, width))) for width in (0.06, 0.01))
-    assert on_corners < narrow < wide
-    assert on_corners < 0.1 * wide
+    on_corners, of_stations, on_walls = (
+        reduced(one, 0.2, contact_tolerance=0.2).local_compliance.max()
+        for one in (boom, replace(boom, joints=(stations,)), short_boom(Pad(0.1, 0.06)))
+    )
+    assert on_corners == pytest.approx(of_stations, rel=5.0e-3, abs=0.0)
+    assert on_corners < 0.1 * on_walls
     assert not contact_compliance(boom).any()
 
 
 HEXAGONS = CASES["hexagons, pads on corners"]
-
-
-def shell_of(boom: Boom, size: float) -> GapSystem:
-    return reduce_boom(boom, ShellOptions(size), MPI.COMM_WORLD).system.gather_loads()
 
 
 @pytest.mark.slow
@@ -247,20 +189,17 @@ def test_a_boom_of_hexagons_with_pads_on_corners_is_as_soft_as_its_shell() -> No
     law = PowerContact(stiffness=1.9e9 * 0.25 * 0.07 / 0.02, exponent=1.0)
     joint = Joint(0, 1, (7.1, 8.7), 0.004, contact=law, pad=pad)
     boom = Boom((outer, inner), (joint,), (Load(1, "z", -9.81 * 6e3, 15.8, Step()),))
-    state, shell = static_state(boom), shell_of(boom, 0.1)
+    state = static_state(boom)
     assert state.tip == pytest.approx(-0.4447, rel=0.02)
     hertz = closed_contact_modes(state.system, state.position)[0][0] / (2.0 * np.pi)
     assert hertz == pytest.approx(0.7828, rel=0.02)
-    rest = equilibrium_at(shell, 0.0)
-    assert state.tip == pytest.approx(shell.observers["tip"].row @ rest, rel=0.03)
     assert static_state(boom, walls=0.0).tip == pytest.approx(-0.265, rel=0.02)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("bears", ["corner", "wall"])
-def test_an_octagonal_mast_distorts_in_both_planes(bears: str) -> None:
-    """Reference: other code, a shell: −86 and 16 mm with pads on corners. Rigid sections give −64
-    and 35 mm: the distortion under vertical forces closes lateral play.
+def test_an_octagonal_mast_distorts_in_both_planes() -> None:
+    """Reference: other code, a shell: −86 and 16 mm. Rigid sections give −64 and 35 mm: the
+    distortion under vertical forces closes lateral play.
     """
     sections = (
         octagon(0.5, 0.5, 0.14, 0.005, 0.005, 0.005),
@@ -273,15 +212,15 @@ def test_an_octagonal_mast_distorts_in_both_planes(bears: str) -> None:
     )
     inner = Segment.of_section("inner", 4.9, 10.9, STEEL, sections[1], load=-weights[1])
     law = PowerContact(stiffness=1.9e9 * 0.15 * 0.05 / 0.02, exponent=1.0)
-    pad = Pad(0.15, 0.05, bears="corner" if bears == "corner" else "wall")
+    pad = Pad(0.15, 0.05, bears="corner")
     joint = Joint(
         0, 1, (4.9, 6.0), 0.004, lateral_play=0.004, contact=law, lateral_contact=law, pad=pad
     )
     loads = Load(1, "z", -9.81 * 300.0, 10.9, Step()), Load(1, "y", 1500.0, 10.9, Step())
     boom = Boom((outer, inner), (joint,), loads)
-    state, shell = static_state(boom), shell_of(boom, 0.1)
+    state, rigid = static_state(boom), static_state(boom, walls=0.0)
+    shell = reduce_boom(boom, ShellOptions(0.15), MPI.COMM_WORLD).system.gather_loads()
     rest = equilibrium_at(shell, 0.0)
-    rigid = static_state(boom, walls=0.0)
     for name in ("tip", "tip_lateral"):
         reference = float(shell.observers[name].row @ rest)
         assert state.system.observers[name].row @ state.position == pytest.approx(
@@ -291,40 +230,23 @@ def test_an_octagonal_mast_distorts_in_both_planes(bears: str) -> None:
         assert abs(undistorted - reference) > 0.2 * abs(reference)
 
 
-def taper_inner(boom: Boom) -> Boom:
-    inner, head = boom.segments[1], hexagon(0.37, 0.25, 0.16, 0.007, 0.009, 0.006)
-    tapered = Segment.of_section(
-        "inner", inner.start, inner.end, STEEL, inner.section, head_section=head
-    )
-    return replace(boom, segments=(boom.segments[0], tapered))
-
-
-def with_collar_at_head(boom: Boom) -> Boom:
-    collared = replace(boom.segments[0], collars=(Collar((7.7, 8.0), 0.008),))
-    return replace(boom, segments=(collared, boom.segments[1]))
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("case", "change"),
-    [
-        (
-            Case(
-                u_section(0.50, 0.34, 0.15, 3, top=0.008, bottom=0.006, web=0.006),
-                u_section(0.44, 0.28, 0.12, 3, top=0.006, bottom=0.005, web=0.005),
-                Pad(0.2, 0.04, bears="corner"),
-            ),
-            lambda boom: boom,
-        ),
-        (HEXAGONS, taper_inner),
-        (HEXAGONS, with_collar_at_head),
-    ],
-    ids=["folded bottom", "taper", "collar"],
-)
-def test_other_sections_distort_as_their_shells(case: Case, change: Callable[[Boom], Boom]) -> None:
+@pytest.mark.parametrize("shape", ["folded bottom", "taper"])
+def test_other_sections_distort_as_their_shells(shape: str) -> None:
     """Reference: other code, a shell. Rigid sections make the tip at least a quarter too stiff."""
-    boom = change(case.boom)
-    shell, beam = of_shell(boom, 0.1), of_beam(boom)
+    if shape == "folded bottom":
+        outer = u_section(0.50, 0.34, 0.15, 3, top=0.008, bottom=0.006, web=0.006)
+        inner = u_section(0.44, 0.28, 0.12, 3, top=0.006, bottom=0.005, web=0.005)
+        boom = Case(outer, inner, Pad(0.2, 0.04, bears="corner")).boom
+    else:
+        boom = HEXAGONS.boom
+        outer, inner = boom.segments
+        head = hexagon(0.37, 0.25, 0.16, 0.007, 0.009, 0.006)
+        inner = Segment.of_section(
+            "inner", inner.start, inner.end, STEEL, inner.section, head_section=head
+        )
+        boom = replace(boom, segments=(outer, inner))
+    shell, beam = of_shell(boom, 0.15 if shape == "folded bottom" else 0.1), of_beam(boom)
     assert beam.stations == pytest.approx(shell.stations, rel=0.08)
     assert beam.tip == pytest.approx(shell.tip, rel=0.03)
     assert abs(of_beam(boom, 0.0).tip) < 0.75 * abs(shell.tip)
@@ -335,7 +257,7 @@ def test_a_box_racks_under_forces_on_single_corners_as_its_shell() -> None:
     """Reference: other code, a shell. Equal forces on both corners of a side rack no box."""
     boom = touching(boom_in_space(), LAW, LATERAL_LAW)
     elements = finite_element_segments(boom, 0.25, "timoshenko", True)
-    shell = shell_of(boom, 0.15)
+    shell = reduce_boom(boom, ShellOptions(0.15), MPI.COMM_WORLD).system.gather_loads()
     contacts = slice(len(shell.laws))
     residual = residual_compliance(gap_system(boom, elements, EACH_SIDE), shell)
     expected = np.diag(residual[contacts, contacts])

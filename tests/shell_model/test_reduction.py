@@ -3,7 +3,7 @@
 
 import math
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from concurrent.futures import BrokenExecutor
 from dataclasses import replace
 
@@ -14,7 +14,7 @@ from mpi4py import MPI
 from protractile.dynamics.failure import NumericsError
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Collar, Diaphragm, PointMass, Support
-from protractile.geometry.mesh import SegmentMesh, collar_breaks, diaphragm_breaks, mesh_segment
+from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment
 from protractile.geometry.plating import add_thickness
 from protractile.geometry.probe_responses import PROBE_FREQUENCY
 from protractile.geometry.section import Section
@@ -48,19 +48,9 @@ def _inputs(shell: SegmentShell) -> np.ndarray:
 
 
 @pytest.mark.slow
-def test_compliance_equals_full_solves_far_from_the_shifts() -> None:
-    """Reference: the full model, in statics and at frequencies other than the shifts."""
-    shell = box_shell(0.25, supports=HELD)
-    inputs = _inputs(shell)
-    reduced = reduce_segment(SymmetryReduction(shell), inputs, KrylovOptions())
-    assert _measured(shell, reduced, inputs, inputs[:, :1]) < 1.0e-6
-    assert reduced.compliance_error < 1.0e-6
-
-
-@pytest.mark.slow
 def test_modes_below_the_stated_limit_are_the_full_models() -> None:
     """Reference: SLEPc on the full model. Each ω below the limit is a natural one to 1e-6."""
-    shell = box_shell(0.25)
+    shell = box_shell(0.5)
     reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())
     frequencies = np.sqrt(reduced.omega2) / (2.0 * np.pi)
     claimed = frequencies[(frequencies > 0.0) & (frequencies <= reduced.frequency_limit)]
@@ -68,14 +58,6 @@ def test_modes_below_the_stated_limit_are_the_full_models() -> None:
     full = natural_frequencies(shell, 40)
     for frequency in claimed:
         assert np.abs(full / frequency - 1.0).min() < 1.0e-6
-
-
-@pytest.mark.slow
-def test_a_load_in_plane_of_bending_leaves_two_rigid_modes_exactly_zero() -> None:
-    """The load excites only vertical translation and pitch of the six rigid motions."""
-    shell = box_shell(0.25)
-    reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions())
-    assert np.count_nonzero(reduced.omega2 == 0.0) == 2
 
 
 @pytest.mark.slow
@@ -90,13 +72,6 @@ def test_a_helper_changes_no_bit_and_may_die() -> None:
             helper.submit(os.abort).result()
         found.append(reduce_segment(SymmetryReduction(shell), inputs, options, helper=helper))
     assert len({one.omega2.tobytes() + one.shapes.tobytes() for one in found}) == 1
-
-
-def test_shapes_are_mass_orthonormal() -> None:
-    shell = box_shell(0.25)
-    reduced = reduce_segment(SymmetryReduction(shell), _inputs(shell), KrylovOptions(moments=2))
-    gram = reduced.shapes.T @ times(shell.mass, reduced.shapes)
-    assert np.abs(gram - np.eye(len(gram))).max() < 1.0e-9
 
 
 def test_dependent_inputs_add_no_coordinates() -> None:
@@ -118,15 +93,11 @@ def test_segment_without_inputs_has_no_coordinates() -> None:
         reduce_segment(SymmetryReduction(shell), np.zeros((shell.free.size, 2)), KrylovOptions())
 
 
-FREQUENCIES = (0.1, 20.0, 120.0, 400.0, 700.0)
-TOLERANCES = (1.0e-3, 1.0e-6, 1.0e-9)
-
-
 def _measured(shell: SegmentShell, reduced: ReducedSegment, inputs: Array, rows: Array) -> float:
     """Return the larger relative error of compliance and outputs, against full solves."""
     gains, read = reduced.shapes.T @ inputs, reduced.shapes.T @ rows
     worst = 0.0
-    for frequency in FREQUENCIES:
+    for frequency in (0.1, 20.0, 120.0, 400.0, 700.0):
         solve = ShiftedSolver(shell, frequency)
         moved = solve(inputs)
         full, of_rows = inputs.T @ moved, np.einsum("ij,ij->j", rows, solve(rows))
@@ -142,11 +113,11 @@ def _measured(shell: SegmentShell, reduced: ReducedSegment, inputs: Array, rows:
 @pytest.mark.slow
 def test_a_basis_grows_until_it_meets_the_tolerance() -> None:
     """Reference: full solves at other frequencies, below twice the tolerance."""
-    shell = box_shell(0.25, supports=HELD)
+    shell = box_shell(0.5, supports=HELD)
     inputs, end = _inputs(shell), shell.outline(10.0)
     rows = np.column_stack([shell.row(end.mean_deflection()), shell.row(end.rotation())])
     sizes = []
-    for tolerance in TOLERANCES:
+    for tolerance in (1.0e-3, 1.0e-6, 1.0e-9):
         reduced = reduce_segment(
             SymmetryReduction(shell), inputs, KrylovOptions(tolerance=tolerance), outputs=rows
         )
@@ -167,14 +138,13 @@ def test_no_more_coordinates_than_are_allowed() -> None:
     assert few.compliance_error > 10.0 * more.compliance_error
 
 
-@pytest.mark.parametrize("options", [KrylovOptions(), KrylovOptions(tolerance=1e-2)], ids=str)
-def test_probes_excite_more_classes_than_inputs(options: KrylovOptions) -> None:
+def test_probes_excite_more_classes_than_inputs() -> None:
     """Reference: other code path, a solver for the probes alone. No input acts along y."""
     shell = box_shell(0.5, supports=HELD)
     symmetry = SymmetryReduction(shell)
     up, aside = (shell.unit_load_vector(10.0, direction)[:, None] for direction in ("z", "y"))
     probes = np.hstack([up, aside])
-    (found,) = reduce_segments([SegmentInputs(symmetry, up, up[:, :0], probes)], options)
+    (found,) = reduce_segments([SegmentInputs(symmetry, up, up[:, :0], probes)], KrylovOptions())
     expected = shell_compliance(symmetry, probes, PROBE_FREQUENCY)
     assert (np.diag(expected) > 0.0).all()
     assert found.probe_compliance == pytest.approx(expected, rel=1e-9, abs=1e-15)
@@ -194,22 +164,13 @@ def test_missed_tolerance_is_reported() -> None:
         )
 
 
-def _terms() -> tuple[np.ndarray, np.ndarray]:
+def test_products_are_rounded_once() -> None:
+    """Reference: analytic, Python's exact sum; a force and its negative image but for a bit."""
     generator = np.random.default_rng(3)
     sizes = 10.0 ** generator.uniform(-8.0, 8.0, (50_000, 1))
-    return generator.standard_normal(50_000), sizes * generator.standard_normal((50_000, 3))
-
-
-def test_products_are_rounded_once() -> None:
-    """Reference: analytic, Python's exact sum of the same terms."""
-    left, right = _terms()
+    left, right = generator.standard_normal(50_000), sizes * generator.standard_normal((50_000, 3))
     found = exact_product(MPI.COMM_SELF, left, right)
     assert found.tolist() == [math.fsum(left * column) for column in right.T]
-
-
-def test_cancelling_terms_are_zero() -> None:
-    """Reference: analytic, a force and its negative mirror image but for a last bit."""
-    left, right = _terms()
     mirrored = np.concatenate([right, -right])
     mirrored[0] *= 1.0 + 2.3e-16
     assert not exact_product(MPI.COMM_SELF, np.concatenate([left, left]), mirrored).any()
@@ -261,15 +222,10 @@ def test_rigid_motions_belong_to_their_families(
         assert expected @ combination == pytest.approx(found, abs=1.0e-12)
 
 
-@pytest.mark.parametrize("kind", ["held", "laden", "unequal"])
-def test_a_quarter_moves_as_its_family_does_in_the_whole(kind: str) -> None:
+@pytest.mark.parametrize("section", [BOX, UNEQUAL], ids=["box", "unequal"])
+def test_a_quarter_moves_as_its_family_does_in_the_whole(section: Section) -> None:
     """Reference: other code path, the whole shell under the forces of this class."""
-    shells = {
-        "held": lambda: box_shell(0.5, supports=HELD),
-        "laden": lambda: _laden(BOX),
-        "unequal": lambda: _laden(UNEQUAL),
-    }
-    shell = shells[kind]()
+    shell = _laden(section)
     symmetry, jobs = _everything(shell)
     for job in jobs:
         quarter = job.shell(symmetry.cell)
@@ -286,61 +242,11 @@ def test_a_quarter_moves_as_its_family_does_in_the_whole(kind: str) -> None:
             assert np.abs(off).max() < 1.0e-12 * np.abs(expected).max()
 
 
-@pytest.mark.parametrize("section", [BOX, UNEQUAL], ids=["box", "unequal"])
-def test_forces_do_the_same_work_on_the_parts(section: Section) -> None:
-    """Reference: analytic. The sum over the classes is the whole force."""
-    shell = box_shell(0.5, supports=HELD, section=section)
-    symmetry = SymmetryReduction(shell)
-    force = np.random.default_rng(1).standard_normal((shell.num_dofs, 2)) * shell.free[:, None]
-    total, parts = np.zeros(2), np.zeros(2)
-    for job in symmetry.jobs(force, force, force[:, :0]):
-        assert np.array_equal(job.forces, job.outputs)
-        motion = np.random.default_rng(2).standard_normal((len(job.forces), 1))
-        motion *= job.shell(symmetry.cell).free[:, None]
-        parts += (job.forces.T @ motion)[:, 0]
-        total += (force.T @ symmetry.expand(motion, job.symmetry_class, 0))[:, 0]
-    assert parts == pytest.approx(total, rel=1.0e-10)
-
-
-def test_a_load_in_the_plane_of_bending_excites_two_families() -> None:
-    """A load along z excites bending along z; a force on one flange also excites breathing."""
-    shell = box_shell(0.5, supports=HELD)
-    push = shell.row(flange_deflection(shell.outline(10.0), 1.0, 0.1))
-    for force, expected in (
-        (shell.unit_loads["z"], [ALONG_Z]),
-        (shell.unit_loads["y"], [ALONG_Y]),
-        (push, [BREATHING, ALONG_Z]),
-    ):
-        jobs = SymmetryReduction(shell).jobs(
-            force[:, None], force[:, None], np.zeros((force.size, 0))
-        )
-        assert [job.symmetry_class for job in jobs] == expected
-
-
-def _shifted(mesh: SegmentMesh) -> SegmentMesh:
-    points = mesh.points.copy()
-    points[np.abs(points[:, 0] - 5.0).argmin(), 0] += 0.01
-    return replace(mesh, points=points)
-
-
-def _one_diagonal_turned(mesh: SegmentMesh) -> SegmentMesh:
-    """Return the mesh with the other diagonal in one rectangle, and unchanged nodes."""
-    triangles = mesh.triangles.copy()
-    for other in range(1, len(triangles)):
-        shared = np.intersect1d(triangles[0], triangles[other])
-        ends = mesh.points[shared]
-        if shared.size == 2 and (np.abs(ends[0] - ends[1]) > 1.0e-9).sum() == 2:
-            break
-    (a,), (b,) = (np.setdiff1d(triangles[k], shared) for k in (0, other))
-    triangles[0], triangles[other] = [a, b, shared[0]], [a, b, shared[1]]
-    return replace(mesh, triangles=triangles)
-
-
-@pytest.mark.parametrize(("spoil", "what"), [(_shifted, "mesh"), (_one_diagonal_turned, "shell")])
-def test_asymmetric_mesh_is_refused(spoil: Callable[[SegmentMesh], SegmentMesh], what: str) -> None:
-    mesh = spoil(mesh_segment(BOX, {"start": 0.0, "end": 10.0}, 0.5))
+def test_asymmetric_mesh_is_refused() -> None:
+    mesh = mesh_segment(BOX, {"start": 0.0, "end": 10.0}, 0.5)
+    mesh.points[np.abs(mesh.points[:, 0] - 5.0).argmin(), 0] += 0.01
     segment = box_segment("box", 0.0, 10.0, BOX)
     shell = assemble_segment(MPI.COMM_WORLD, segment, add_thickness(segment, mesh))
-    message = f"^a segment's {what} is not its own mirror image in y$"
+    message = "^a segment's mesh is not its own mirror image in y$"
     with pytest.raises(NumericsError, match=message):
         SymmetryReduction(shell)

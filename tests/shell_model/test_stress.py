@@ -10,7 +10,7 @@ import xarray as xr
 from mpi4py import MPI
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Collar, Diaphragm, Pad, Support
+from protractile.geometry.boom import Boom, Collar, Diaphragm, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import diaphragm_breaks, mesh_segment
 from protractile.geometry.plating import PlatedMesh, add_thickness
@@ -18,7 +18,7 @@ from protractile.geometry.profiles import octagon
 from protractile.geometry.section import Section
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.reduced_shell import reduce_boom
-from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
+from protractile.shell_model.segment.segment_shell import assemble_segment
 from protractile.shell_model.stress.fields import gather_stress_modes
 from protractile.shell_model.stress.history import stress_near_places, summarise
 from protractile.shell_model.stress.stresses import (
@@ -26,11 +26,11 @@ from protractile.shell_model.stress.stresses import (
     ShellStress,
     Stress,
 )
-from studies.reference_models.shell_readings import WallForces, wall_forces
+from studies.reference_models.shell_readings import wall_forces
 from studies.second_order import BOX as COLUMN_BOX
 from studies.second_order import CLAMP, CRITICAL, LENGTH, column
 from studies.taper import arm
-from tests.shell_model.booms import LAW, STEEL, box_segment, flat_boom, three_segments
+from tests.shell_model.booms import LAW, STEEL, box_segment, three_segments
 from tests.shell_model.conftest import BOX, UNEQUAL
 from tests.touching import touching
 
@@ -38,40 +38,27 @@ E, NU = STEEL.youngs_modulus, STEEL.poissons_ratio
 Field = Callable[[Array], Array]
 
 
-def plates() -> tuple[SegmentShell, PlatedMesh]:
-    """Return a short box with a diaphragm at its middle."""
-    segment = CLOSED
-    breaks = {"start": 0.0, "end": 1.0} | diaphragm_breaks(segment)
-    closed = tuple(diaphragm_breaks(segment))
-    mesh = add_thickness(segment, mesh_segment(BOX, breaks, 0.25, closed=closed))
-    first = MPI.COMM_WORLD.rank == 0
-    return assemble_segment(MPI.COMM_WORLD, segment, mesh if first else None), mesh
-
-
-CLOSED = replace(box_segment("box", 0.0, 1.0, BOX), diaphragms=(Diaphragm(0.5, 0.01),))
-
-
 def stresses(u: Field, theta: Field) -> tuple[Modes, PlatedMesh]:
-    """(num_triangles, 6) of displacement and rotation fields (num_places, 3)."""
-    shell, mesh = plates()
-    first, _ = shell.owned
+    """Return (num_triangles, 6) of displacement and rotation fields (num_places, 3) of a short box
+    with a diaphragm at its middle.
+    """
+    segment = replace(box_segment("box", 0.0, 1.0, BOX), diaphragms=(Diaphragm(0.5, 0.01),))
+    closed = diaphragm_breaks(segment)
+    mesh = mesh_segment(BOX, {"start": 0.0, "end": 1.0} | closed, 0.25, closed=tuple(closed))
+    mesh = add_thickness(segment, mesh)
+    shell = assemble_segment(MPI.COMM_SELF, segment, mesh)
     shape = np.zeros((shell.free.size, 1))
-    shape[shell.node_dofs - first, 0] = u(shell.nodes)
+    shape[shell.node_dofs, 0] = u(shell.nodes)
     rotation_nodes, rotation_dofs = shell.plates.nodes[1]
-    shape[rotation_dofs - first, 0] = theta(rotation_nodes)
-    modes = gather_stress_modes(shell, shape)
-    return modes[0], mesh
-
-
-def still(places: Array) -> Array:
-    return np.zeros_like(places)
+    shape[rotation_dofs, 0] = theta(rotation_nodes)
+    return gather_stress_modes(shell, shape)[0], mesh
 
 
 @pytest.mark.slow
 def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
     """Reference: analytic, σ_x = E ε, and -ν E ε / (1 - ν) in the plane of the diaphragm."""
     strain = 1.0e-4
-    found, mesh = stresses(lambda p: strain * p * [1.0, -NU, -NU], still)
+    found, mesh = stresses(lambda p: strain * p * [1.0, -NU, -NU], np.zeros_like)
     walls = found[mesh.on_walls]
     assert walls[:, 0] == pytest.approx(E * strain, rel=1e-5)
     assert np.abs(walls[:, 1:]).max() < 1e-5 * E * strain
@@ -84,9 +71,7 @@ def test_pull_along_the_boom_is_a_uniform_stress_of_the_walls() -> None:
 def test_shear_has_the_sign_of_the_way_around() -> None:
     """Reference: analytic, τ = G γ for u_y = γ x: along s on the top, against on the bottom."""
     shear = 1.0e-4
-    found, mesh = stresses(
-        lambda p: shear * np.stack([0.0 * p[:, 0], p[:, 0], 0.0 * p[:, 0]], axis=1), still
-    )
+    found, mesh = stresses(lambda p: shear * p[:, [0]] * [0.0, 1.0, 0.0], np.zeros_like)
     expected = {"top": 1.0, "bottom": -1.0, "right": 0.0, "left": 0.0}
     full = shear * E / (2.0 * (1.0 + NU))
     for wall, sign in expected.items():
@@ -126,12 +111,9 @@ def test_von_mises_of_simple_states(membrane: tuple[float, ...], expected: float
     assert stress.largest() >= stress.von_mises("middle")
 
 
-def at_rest(
-    boom: Boom, size: float, tolerance: float | None = None
-) -> tuple[xr.Dataset, ShellStress]:
+def at_rest(boom: Boom, size: float) -> tuple[xr.Dataset, ShellStress]:
     """Return the boom under its constant load, without contact."""
-    options = ShellOptions(size, contact_tolerance=tolerance)
-    shell = reduce_boom(touching(boom, LAW), options, MPI.COMM_SELF)
+    shell = reduce_boom(touching(boom, LAW), ShellOptions(size), MPI.COMM_SELF)
     omega2 = shell.system.omega2
     state = np.divide(shell.system.load, omega2, out=np.zeros_like(omega2), where=omega2 > 0.0)
     fields = shell.fields.assign(
@@ -146,29 +128,10 @@ def clamped(section: Section, size: float) -> ShellStress:
     return at_rest(Boom((segment,), ()), size)[1]
 
 
-def carried_at(shell: ShellStress, x: float) -> dict[str, WallForces]:
-    """Return wall forces at a row of the cantilever, checked by statics."""
-    forces, row = wall_forces(shell, 0.0, 0, x), shell.row(0, x)
-    arm = 10.0 - 0.5 * (shell.spans[row].min() + shell.spans[row].max())
-    assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
-    if {"left", "right"} <= set(forces) and len(forces) == 4:
-        shear = forces["left"].shear + forces["right"].shear
-        assert shear == pytest.approx(100.0 * arm, rel=0.02)
-        assert abs(forces["top"].shear) < 1e-2 * shear
-        axial = sum(f.axial for f in forces.values())
-        assert axial == pytest.approx(0.0, abs=2e-3 * abs(forces["top"].axial))
-    return forces
-
-
-@pytest.fixture(scope="module")
-def cantilever() -> ShellStress:
-    return clamped(BOX, 0.1)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("x", [3.0, 5.0, 7.0])
-def test_stress_away_from_supports_follows_the_beam(cantilever: ShellStress, x: float) -> None:
+def test_stress_away_from_supports_follows_the_beam() -> None:
     """Reference: analytic, σ = M z / J with M = q (L - x)² / 2, within 1 % of the largest."""
+    cantilever, x = clamped(BOX, 0.1), 4.0
     moment = -50.0 * (10.0 - x) ** 2
     extreme = abs(moment) * 0.5 * BOX.height / BOX.second_moment_of_area
     stress = cantilever.at(0.0)
@@ -187,50 +150,27 @@ def test_stress_away_from_supports_follows_the_beam(cantilever: ShellStress, x: 
 
 
 @pytest.mark.slow
-def test_wall_forces_are_in_equilibrium(cantilever: ShellStress) -> None:
-    """Reference: analytic. M = -q (L - x)² / 2, Q = q (L - x), N = 0; the webs carry the shear."""
-    forces = carried_at(cantilever, 4.01)
-    assert forces["top"].axial == pytest.approx(-forces["bottom"].axial, rel=1e-3)
-
-
-@pytest.mark.slow
-def test_row_includes_all_walls_of_a_graded_mesh() -> None:
-    """Reference: by hand, the area of each wall is its height or width times the row's length."""
-    boom = flat_boom()
-    outer, inner = boom.segments
-    short = replace(outer, end=2.0), replace(inner, start=1.0, end=3.0)
-    joint = replace(boom.joints[0], stations=(1.0, 2.0), pad=Pad(0.1, 0.06))
-    _, shell = at_rest(replace(boom, segments=short, joints=(joint,)), 0.25, tolerance=0.1)
-    for x in (0.5, 0.99, 1.0, 1.04, 1.5):
-        row = shell.row(0, x)
-        first, last = shell.spans[row, 0].min(), shell.spans[row, 1].max()
-        assert first - 1e-6 <= x <= last + 1e-6
-        for number, plate in enumerate(outer.section.plates):
-            area = shell.areas[row[shell.wall[row] == number]].sum()
-            assert area == pytest.approx(plate.length * (last - first), rel=1e-6)
-
-
-@pytest.mark.slow
 def test_wall_forces_with_unequal_flanges_are_in_equilibrium() -> None:
-    """Reference: analytic. As above, about the centroid; the thicker flange has less stress."""
-    forces = carried_at(clamped(UNEQUAL, 0.2), 5.01)
+    """Reference: analytic, about the centroid; the thicker flange has less stress."""
+    shell = clamped(UNEQUAL, 0.2)
+    forces, row = wall_forces(shell, 0.0, 0, 5.01), shell.row(0, 5.01)
+    arm = 10.0 - 0.5 * (shell.spans[row].min() + shell.spans[row].max())
+    assert sum(f.moment for f in forces.values()) == pytest.approx(-50.0 * arm**2, rel=5e-3)
+    shear = forces["left"].shear + forces["right"].shear
+    assert shear == pytest.approx(100.0 * arm, rel=0.02)
+    assert abs(forces["top"].shear) < 1e-2 * shear
+    axial = sum(f.axial for f in forces.values())
+    assert axial == pytest.approx(0.0, abs=2e-3 * abs(forces["top"].axial))
     stresses = [forces[p.name].axial / (p.length * p.thickness) for p in UNEQUAL.plates[::2]]
     midpoints = [plate.midpoint[1] for plate in UNEQUAL.plates[::2]]
     assert stresses[0] / stresses[1] == pytest.approx(midpoints[0] / midpoints[1], rel=5e-3)
 
 
 @pytest.mark.slow
-def test_forces_of_sloping_walls_are_in_equilibrium() -> None:
-    """Reference: analytic, M = -q (L - x)² / 2, of which walls at 45° carry 70 %."""
-    section = octagon(0.5, 0.5, chamfer=0.2, top=0.006, bottom=0.006, web=0.006)
-    carried_at(clamped(section, 0.2), 5.01)
-
-
-@pytest.mark.slow
 def test_a_bonded_boom_keeps_each_segments_stresses() -> None:
     """Reference: analytic. Bonded segments are one cantilever beyond the support at 2 m."""
     boom = three_segments(bonded=True)
-    fields, shell = at_rest(boom, 0.25)
+    fields, shell = at_rest(boom, 0.5)
     assert fields.sizes["mode"] < sum(fields.sizes[f"own_{k}"] for k in (1, 2, 3))
     forces = wall_forces(shell, 0.0, 0, 5.01)
     line = np.unique(shell.spans.round(6))
@@ -270,9 +210,6 @@ def test_a_column_is_pressed_by_its_load_and_its_weight() -> None:
     middle = 0.5 * (weighing.spans[row, 0].min() + weighing.spans[row, 1].max())
     above = COLUMN_BOX.mass_per_length(STEEL.density) * gravity * (LENGTH - middle)
     assert axial_force(weighing, 2.0) == pytest.approx(-force - above, rel=1e-4)
-    every = np.arange(weighing.segment.size)
-    ((_, over_time),) = weighing.over_time(every)
-    np.testing.assert_array_equal(over_time.membrane[0], weighing.at(0.0).membrane)
 
 
 def test_a_taper_is_pressed_most_at_its_slender_end() -> None:
@@ -344,14 +281,11 @@ def test_a_patch_is_half_of_a_chamfer() -> None:
     assert float(patch.max()) == pytest.approx(8.0e6 * share, rel=1e-5)
 
 
-@pytest.mark.parametrize("noise", [0.0, 1.0e-4, 1.0])
-def test_triangles_without_the_largest_stress_alone_are_left_out(
-    shell: ShellStress, noise: float
-) -> None:
+def test_triangles_without_the_largest_stress_alone_are_left_out(shell: ShellStress) -> None:
     """Reference: all triangles at every time, for two slow motions, noise and axial forces."""
     rng = np.random.default_rng(5)
     slow = np.sin(np.outer(TIME, [7.0, 11.0, 0.0, 0.0, 0.0]) + 0.5 * np.eye(1, 5))
-    states = slow + noise * rng.standard_normal(slow.shape)
+    states = slow + 1.0e-4 * rng.standard_normal(slow.shape)
     modes = rng.standard_normal((5, shell.segment.size, 6)).astype(np.float32)
     axial = rng.standard_normal(shell.segment.size).astype(np.float32)
     moving = replace(shell, modes=[modes], states=[states.astype(np.float32)], axial=axial)
@@ -360,15 +294,12 @@ def test_triangles_without_the_largest_stress_alone_are_left_out(
     np.testing.assert_allclose(found, every, rtol=1e-5)
 
 
-@pytest.mark.parametrize("places", [[1.0, 3.0], []])
-def test_the_largest_is_found(shell: ShellStress, places: list[float]) -> None:
+def test_the_largest_is_found(shell: ShellStress) -> None:
     """With a band, the result is the spot; otherwise the largest at the evaluated instants."""
-    near = stress_near_places(shell, places, ["box"])
+    without = summarise(shell, stress_near_places(shell, [], ["box"]))
+    assert (without.von_mises, without.patch) == (pytest.approx(1.0e6, rel=1e-3), None)
+    near = stress_near_places(shell, [1.0, 3.0], ["box"])
     found = summarise(shell, near)
-    if not places:
-        assert found.von_mises == pytest.approx(1.0e6, rel=1e-3)
-        assert found.patch is None
-        return
     assert found.time == pytest.approx(0.701)
     assert (found.segment, found.wall, found.face) == ("box", "top", "outer")
     assert found.x == pytest.approx(3.05, abs=0.05)

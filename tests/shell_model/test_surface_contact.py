@@ -18,14 +18,11 @@ from protractile.shell_model.boom_shell import ShellOptions, assemble_segments
 from protractile.shell_model.contact.rows import ShellContacts
 from protractile.shell_model.contact.surface import SurfaceOptions
 from protractile.shell_model.contact.wall_rows import Wall, WallPoints
-from protractile.shell_model.reduced_shell import reduce_boom
-from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.segment.cross_section import COMPONENT
 from tests.shell_model.booms import LAW, boom_in_space, flat_boom, reduced
 from tests.shell_model.conftest import BOX, box_shell
 from tests.touching import touching
 
-PAD = Pad(length=0.1, width=0.06)
 FEW = SurfaceOptions(points=(4, 2))
 
 
@@ -38,8 +35,8 @@ def _system(
     return reduced(boom, 0.5, line, law=law, surface=surface).system
 
 
-def _with_pads(boom: Boom, pad: Pad = PAD) -> Boom:
-    return replace(boom, joints=(replace(boom.joints[0], pad=pad),))
+def _with_pads(boom: Boom) -> Boom:
+    return replace(boom, joints=(replace(boom.joints[0], pad=Pad(length=0.1, width=0.06)),))
 
 
 def _rigid(system: GapSystem, readings: dict[str, float]) -> Array:
@@ -56,54 +53,43 @@ def _forces(system: GapSystem, state: Array) -> Array:
     return np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])
 
 
-@pytest.mark.parametrize("normal", ["y", "z"])
-@pytest.mark.parametrize("side", [1, -1])
-def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(normal: str, side: int) -> None:
-    """Reference: analytic, the polynomial at nodes, on edges and between them."""
+@pytest.mark.parametrize("wall", [Wall("y", 1), Wall("z", -1)], ids=str)
+def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(wall: Wall) -> None:
+    """Reference: analytic, the polynomial at nodes, on edges and between them; NaN elsewhere."""
     shell = box_shell(0.5)
-    wall = Wall("z" if normal == "z" else "y", side)
-    half = 0.5 * (BOX.width if normal == "z" else BOX.height)
+    half = 0.5 * (BOX.width if wall.normal == "z" else BOX.height)
     places = np.array(
         [[3.21, 0.3 * half], [0.0, -half], [10.0, half], [5.0, 0.0], [7.77, -0.9 * half]]
     )
-    values = {}
-    for component, factor in (("y", 1.0), ("z", -2.0)):
-        for place, dofs in zip(shell.nodes, shell.node_dofs, strict=True):
-            x, s = place[0], place[wall.across]
-            on_wall = np.sign(place[COMPONENT[wall.normal]]) == side
-            field = (
-                factor * (1.0 + 2.0 * x - x * s + 3.0 * s**2 + 0.1 * x**2) if on_wall else np.nan
-            )
-            values[int(dofs[COMPONENT["y" if component == "y" else "z"]])] = field
-    for component, factor in (("y", 1.0), ("z", -2.0)):
-        rows = WallPoints(shell).rows(wall, places, "y" if component == "y" else "z")
-        for (x, s), row in zip(places, rows, strict=True):
-            expected = factor * (1.0 + 2.0 * x - x * s + 3.0 * s**2 + 0.1 * x**2)
-            assert sum(w * values[dof] for dof, w in row.items()) == pytest.approx(
-                expected, rel=1.0e-11
-            )
 
+    def polynomial(x: Array, s: Array) -> Array:
+        return 1.0 + 2.0 * x - x * s + 3.0 * s**2 + 0.1 * x**2
 
-def test_a_place_beside_a_wall_is_refused() -> None:
-    places = np.array([[5.0, 0.2]])
-    with pytest.raises(ValueError, match=r"^no wall is at x = 5 m, 0\.2 m across$"):
-        WallPoints(box_shell(0.5)).rows(Wall("z", 1), places, "z")
+    on_wall = np.sign(shell.nodes[:, COMPONENT[wall.normal]]) == wall.side
+    given = np.where(on_wall, polynomial(shell.nodes[:, 0], shell.nodes[:, wall.across]), np.nan)
+    field = np.full(shell.num_dofs, np.nan)
+    for component, factor in (("y", 1.0), ("z", -2.0)):
+        field[shell.node_dofs[:, COMPONENT[component]]] = factor * given
+        found = [
+            sum(weight * field[dof] for dof, weight in row.items())
+            for row in WallPoints(shell).rows(wall, places, component)
+        ]
+        assert found == pytest.approx(factor * polynomial(*places.T), rel=1.0e-11)
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("side", [1.0, -1.0])
-def test_a_uniform_approach_presses_as_the_stations_do(side: float) -> None:
+def test_a_uniform_approach_presses_as_the_stations_do() -> None:
     """Reference: analytic, (4) at both stations. The resultant is at the centre of the overlap."""
     system = _system(flat_boom())
     depth = 2.0e-3
-    heave = side * (LAW.above + depth)
-    state = _rigid(system, {"tip": heave, "tail": heave})
-    force = _forces(system, state)
-    assert np.count_nonzero(force) == 8
-    assert force.sum() == pytest.approx(side * 2.0 * LAW.law.stiffness * depth**2, rel=1.0e-6)
     # A turn about the middle of the overlap, whose ends are at 9, 10 and 19 m.
     turn = _rigid(system, {"tip": 9.5, "tail": -0.5})
-    assert abs(force @ (system.rows @ turn)) < 1.0e-6 * abs(force.sum())
+    for side in (1.0, -1.0):
+        heave = side * (LAW.above + depth)
+        force = _forces(system, _rigid(system, {"tip": heave, "tail": heave}))
+        assert np.count_nonzero(force) == 8
+        assert force.sum() == pytest.approx(side * 2.0 * LAW.law.stiffness * depth**2, rel=1.0e-6)
+        assert abs(force @ (system.rows @ turn)) < 1.0e-6 * abs(force.sum())
 
 
 @pytest.mark.slow
@@ -129,12 +115,6 @@ def test_every_point_has_its_share_of_the_penalty() -> None:
     assert stiffnesses[sides > 0.0].sum() == pytest.approx(2.0e13)
     assert stiffnesses[sides < 0.0].sum() == pytest.approx(1.0e13)
     assert [int(n) for n in np.bincount(system.station_of_row)] == [8, 8]
-
-
-@pytest.mark.slow
-def test_one_sided_law_has_no_points_below() -> None:
-    law = replace(LAW.law, stiffness_below=0.0).with_clearance(LAW.above)
-    assert len(_system(flat_boom(), law=law).laws) == 8
 
 
 @pytest.mark.slow
@@ -172,64 +152,37 @@ def test_in_space_each_point_presses_one_corner() -> None:
         assert above @ arms[walls] ** 2 == pytest.approx(2.0e13 * size**2 / 12.0, rel=1.0e-6)
 
 
-def compliances(comm: MPI.Comm) -> list[float]:
-    """Return the compliance of each contact row under its own force, in m/N at 10 Hz."""
-    found = []
-    cases: list[tuple[ContactLine, Boom]]
-    cases = [("surface", flat_boom()), ("near webs", _with_pads(flat_boom()))]
-    for line, boom in cases:
-        options = ShellOptions(1.0, line, FEW, krylov=KrylovOptions(moments=1))
-        system = reduce_boom(touching(boom, LAW), options, comm).system
-        slow = (2.0 * np.pi * 10.0) ** 2
-        found += (system.rows**2 / (system.omega2 + slow)).sum(axis=1).tolist()
-    return found
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("boom", [flat_boom(0.2), boom_in_space(0.2)], ids=["flat", "space"])
-def test_pads_take_the_place_of_points_one_by_one(boom: Boom) -> None:
+def test_pads_take_the_place_of_points_one_by_one() -> None:
     """Reference: analytic. A rigid motion is read at the middle of the patch."""
+    boom = boom_in_space(0.2)
     plain, padded = _system(boom, "near webs"), _system(_with_pads(boom), "near webs")
     assert padded.laws == plain.laws
     assert padded.frictions == plain.frictions
-    readings = {"tip": 10.0, "tail": 0.0}
-    if boom.spatial:
-        readings |= {"tip_lateral": 0.0, "tail_lateral": 0.0, "tip_twist": 0.0}
-    arms = (padded.rows @ _rigid(padded, readings)).round(9)
+    still = {"tip_lateral": 0.0, "tail_lateral": 0.0, "tip_twist": 0.0}
     along_z = np.array(padded.station_directions)[padded.station_of_row] == "z"
-    assert set(np.abs(arms[along_z])) == {0.05, 0.95}
-    assert set(np.abs(arms[~along_z])) <= {0.0}
-    lifted = padded.rows @ _rigid(padded, readings | {"tip": 1.0, "tail": 1.0})
-    if not boom.spatial:
-        assert np.abs(lifted) == pytest.approx(1.0, rel=1.0e-9)
+    turned, lifted = (
+        (padded.rows @ _rigid(padded, still | {"tip": tip, "tail": tail})).round(9)
+        for tip, tail in ((10.0, 0.0), (1.0, 1.0))
+    )
+    assert set(np.abs(turned[along_z])) == {0.05, 0.95}
+    assert set(np.abs(lifted[along_z])) == {1.0}
+    assert not turned[~along_z].any()
 
 
-@pytest.mark.slow
-def test_larger_pads_are_softer() -> None:
-    """Reference: physics. Flanges are softer at a larger distance from the corners."""
-    slow = (2.0 * np.pi * 10.0) ** 2
-
-    def give(width: float, offset: float = 0.0) -> float:
-        system = _system(_with_pads(flat_boom(), Pad(0.1, width, offset)), "near webs")
-        return float((system.rows[0] ** 2 / (system.omega2 + slow)).sum())
-
-    assert give(0.02) < give(0.06) < give(0.06, 0.06)
-
-
-@pytest.mark.parametrize("line", ["across", "surface"])
-def test_pads_are_for_stations_near_webs(line: ContactLine) -> None:
+def test_pads_are_for_stations_near_webs() -> None:
     message = (
-        f"contact_line: '{line}' leaves no place to the joints' pads; give 'near webs', or leave "
+        "contact_line: 'surface' leaves no place to the joints' pads; give 'near webs', or leave "
         "pad out"
     )
     with pytest.raises(BoomError, match=f"^{message}$"):
-        _system(_with_pads(flat_boom()), line)
+        _system(_with_pads(flat_boom()))
 
 
-@pytest.mark.parametrize("sides", [("above", "below"), ("above", "below", "left", "right")])
-def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
+def test_several_pads_are_rows_of_their_own() -> None:
     """Reference: by hand, the mean (b³ − a³)/3(b − a) per pad; weights as stiffnesses."""
-    boom = flat_boom() if len(sides) == 2 else boom_in_space()
+    boom = boom_in_space()
+    sides: tuple[PadSide, ...] = ("above", "below", "left", "right")
     pads = tuple(
         SlidePad(0.1, width, offset, side=side, thickness=POLYAMIDE * 0.1 * width / stiffness)
         for side in sides
@@ -240,8 +193,7 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
     seen = touching(boom, LAW, LAW)
     rows = ShellContacts.from_shells(seen, shells, "near webs", SurfaceOptions()).rows({})
     inner, places = shells[1], places_of_pads(boom)
-    corners = 1 if len(sides) == 2 else 2
-    assert len(rows.contacts) == 2 * len(pads) * corners
+    assert len(rows.contacts) == 4 * len(pads)
     for contact, pad in zip(rows.contacts, places, strict=True):
         across = COMPONENT["y" if pad.station.direction == "z" else "z"]
         moved = np.zeros(inner.free.size)
@@ -249,5 +201,5 @@ def test_several_pads_are_rows_of_their_own(sides: tuple[PadSide, ...]) -> None:
         near, far = pad.patch.across(inner.segment.section.face(pad.station.direction, pad.side))
         mean = (far**3 - near**3) / (3.0 * (far - near))
         assert inner.row(contact.operator[1]) @ moved == pytest.approx(mean, rel=1e-9)
-        share = (0.75 if pad.patch.offset == 0.0 else 0.25) / corners
+        share = 0.375 if pad.patch.offset == 0.0 else 0.125
         assert contact.law.terms[0].stiffness == pytest.approx(share * LAW.law.stiffness)

@@ -10,8 +10,6 @@ from mpi4py import MPI
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.excitation import Step
-from protractile.dynamics.integrator import AdaptiveStep
-from protractile.dynamics.motion import Motion
 from protractile.geometry.boom import Boom, BoomError, Diaphragm, Joint, Pad, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
@@ -30,14 +28,9 @@ from tests.touching import touching
 
 ENDS: Mapping[str, tuple[Section, Section]] = {
     "box": (BoxSection(0.4, 0.3, 0.008, 0.006), BoxSection(0.25, 0.2, 0.006, 0.006)),
-    "wider head": (BoxSection(0.25, 0.2, 0.006, 0.006), BoxSection(0.4, 0.3, 0.008, 0.006)),
     "unequal box": (
         BoxSection(0.4, 0.3, 0.006, 0.006, bottom_flange=0.010),
         BoxSection(0.22, 0.25, 0.006, 0.005, bottom_flange=0.008),
-    ),
-    "hexagon": (
-        hexagon(0.40, 0.36, 0.2, 0.0065, 0.0065, 0.0065),
-        hexagon(0.25, 0.26, 0.15, 0.005, 0.005, 0.005),
     ),
     "bends": (
         bent(hexagon(0.40, 0.36, 0.2, 0.006, 0.006, 0.006), 0.03),
@@ -53,24 +46,15 @@ CLAMP = Support(0.0, "clamped")
 
 def cantilever(shape: str) -> Boom:
     tail, head = ENDS[shape]
-    arm = Segment.of_section(
-        "arm",
-        0.0,
-        8.0,
-        STEEL,
-        tail,
-        head_section=head,
-        supports=(CLAMP,),
-        diaphragms=(Diaphragm(8.0, 0.006),),
-    )
+    more = {"supports": (CLAMP,), "diaphragms": (Diaphragm(8.0, 0.006),)}
+    arm = Segment.of_section("arm", 0.0, 8.0, STEEL, tail, head_section=head, **more)
     return Boom((arm,), (), (Load(0, "z", 1.0, 8.0, Step()),))
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("shape", ["wider head", "unequal box", "U"])
-def test_it_bends_as_its_beam(shape: str) -> None:
+def test_it_bends_as_its_beam() -> None:
     """Reference: other code, Timoshenko elements: the tip within 1 %."""
-    boom = cantilever(shape)
+    boom = cantilever("unequal box")
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
     tips = []
     for system in (
@@ -130,24 +114,6 @@ def tapered_boom(pad: Pad | None, lateral: float | None) -> Boom:
 
 
 @pytest.mark.slow
-def test_motion_of_a_tapered_boom_follows_its_beam() -> None:
-    """Reference: other code, Timoshenko elements: first peak of the tip within 2 %."""
-    boom = tapered_boom(None, 5e-3)
-    law, sides = [LAW.with_clearance(4e-3)], [LAW.with_clearance(5e-3)]
-    models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
-    shell = reduce_boom(
-        touching(boom, law, sides), ShellOptions(0.2, contact_tolerance=0.2), MPI.COMM_SELF
-    )
-    beam, found = (
-        float(
-            np.abs(AdaptiveStep()(Motion(system, 0.3, output_step=1e-3)).data["tip"].values).max()
-        )
-        for system in (gap_system(touching(boom, law, sides), models), shell.system)
-    )
-    assert found == pytest.approx(beam, rel=0.02)
-
-
-@pytest.mark.slow
 def test_its_section_forces_are_those_of_statics() -> None:
     """Reference: by hand, M = −1000 s and V = 1000 N; inclined flanges carry 40 % across."""
     boom = cantilever("box")
@@ -161,8 +127,7 @@ def test_its_section_forces_are_those_of_statics() -> None:
     np.testing.assert_allclose(found["shear"][inside], 1000.0, rtol=0.02)
 
 
-@pytest.mark.parametrize("lateral", [None, 5e-3])
-@pytest.mark.parametrize("pad", [None, Pad(0.12, 0.05)])
+@pytest.mark.parametrize(("pad", "lateral"), [(None, None), (Pad(0.12, 0.05), 5e-3)])
 def test_pads_lie_on_tapered_walls(pad: Pad | None, lateral: float | None) -> None:
     """Reference: by hand. A translation of 1 m gives 1 m, a rotation of 1 rad the pad's x."""
     boom = tapered_boom(pad, lateral)

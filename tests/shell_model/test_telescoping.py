@@ -17,7 +17,6 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
 from protractile.dynamics.motion_laws import SCurve, Stroke
-from protractile.dynamics.trajectory import Trajectory
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom
@@ -73,7 +72,9 @@ def standing(system: GapSystem, way: float) -> GapSystem:
 
 
 def test_springs_keep_stiffness_and_mass_of_the_residual_modes() -> None:
-    """Reference: analytic, two masses on springs, with two rows that rotate with the extension."""
+    """Reference: analytic, two masses on springs, with two rows that rotate with the extension; a
+    mass of 900 Hz, of which the difference of both rows has round-off alone.
+    """
     omega2 = np.array([squared(900.0), squared(2500.0)])
     shifted = omega2 + squared(SLOW)
     angles = np.linspace(0.0, 0.3, 5)
@@ -89,9 +90,6 @@ def test_springs_keep_stiffness_and_mass_of_the_residual_modes() -> None:
     found, pulls = springs(residual[:1], inertia[:1])
     assert np.sort(found) == pytest.approx(omega2, rel=1e-9)
 
-
-def test_round_off_makes_no_spring_unstable() -> None:
-    """Reference: analytic, a mass of 900 Hz; the difference of both rows has round-off alone."""
     (shifted,) = omega2 = np.array([squared(900.0) + squared(SLOW)])
     same, other = np.ones((2, 2)), np.array([[1.0, -1.0], [-1.0, 1.0]])
     residual, inertia = same + 2e-4 * other, same / shifted + 2e-8 * other
@@ -145,7 +143,7 @@ def test_pads_of_a_boom_in_space_on_the_way() -> None:
 @pytest.mark.slow
 def test_no_ring_of_the_mesh_is_felt() -> None:
     """Reference: analytic, the lever rule. Between lines compliances are linear to 0.1 %."""
-    ways = np.linspace(0.5, 2.0, 49)
+    ways = np.linspace(0.5, 2.0, 25)
     (travel,) = shell(0.0, DRIVE).system.travels
     compliances, forces, pulls = [], [], []
     for way in ways:
@@ -168,32 +166,15 @@ def test_no_ring_of_the_mesh_is_felt() -> None:
     assert np.abs(np.array(pulls) - curve).max() < 1.0e-3 * np.abs(forces).max()
 
 
-def moved(system: GapSystem, duration: float) -> Trajectory:
-    return FixedStep(1.0e-5)(Motion(system, duration))
-
-
 @pytest.mark.slow
-def test_motion_without_speed_equals_the_fixed_shell() -> None:
-    """Reference: other code path, the shell reduced there, during its first contacts."""
-    still = replace(shell(0.0, DRIVE).system, travels=())
-    runs = [moved(system, 0.5) for system in (still, shell(0.0).system)]
-    assert runs[1].data.attrs["contact_changes"] > 10
+def test_a_moving_shell_is_near_its_beam() -> None:
+    """Reference: other code, beams; analytic, the energy balance."""
+    boom = touching(telescope(0.0, DRIVE, dashpot=3.0e3), LAW)
+    beam = gap_system(boom, finite_element_segments(boom, 0.5, "timoshenko", True))
+    runs = [FixedStep(1.0e-5)(Motion(one, 0.5)) for one in (beam, shell(0.0, DRIVE).system)]
+    assert max(run.energy_residual for run in runs) < 1.0e-4
     tips = [run.data["tip"].values for run in runs]
-    assert np.abs(tips[0] - tips[1]).max() < 5.0e-3 * np.ptp(tips[1])
-
-
-@pytest.mark.slow
-def test_beams_are_as_near_as_at_constant_extension() -> None:
-    """Reference: other code, beams, as near as at constant extension; the energy balance."""
-    apart = []
-    for drive in (None, DRIVE):
-        boom = touching(telescope(0.0, drive, dashpot=3.0e3), LAW)
-        beam = gap_system(boom, finite_element_segments(boom, 0.5, "timoshenko", True))
-        runs = [moved(system, 0.5) for system in (beam, shell(0.0, drive).system)]
-        assert max(run.energy_residual for run in runs) < 1.0e-4
-        tips = [run.data["tip"].values for run in runs]
-        apart.append(np.abs(tips[0] - tips[1]).max() / np.ptp(tips[1]))
-    assert apart[1] < 2.0 * apart[0] < 0.02
+    assert np.abs(tips[0] - tips[1]).max() < 0.02 * np.ptp(tips[1])
     works = [float(run.data["drive_work"][-1]) for run in runs]
     assert works[0] == pytest.approx(works[1], rel=0.01)
     assert abs(works[1]) > 0.01 * float(np.abs(runs[1].data["work"]).max())

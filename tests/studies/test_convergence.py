@@ -5,8 +5,6 @@ import io
 import json
 import math
 import re
-import sys
-import warnings
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from pathlib import Path
@@ -110,22 +108,6 @@ class _Here:
     map = staticmethod(map)
 
 
-def test_library_warnings_are_hidden(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    def survey(*_: object) -> list[object]:
-        warnings.warn("of a library", stacklevel=1)
-        return []
-
-    monkeypatch.setattr(sys, "argv", ["convergence"])
-    monkeypatch.setattr(convergence, "survey", survey)
-    with warnings.catch_warnings():
-        warnings.simplefilter("always")
-        with pytest.raises(SystemExit, match="0"):
-            convergence.main()
-    assert "of a library" not in capsys.readouterr().err
-
-
 def refined(values: Sequence[float], ratio: float = 2.0) -> Refined:
     sizes = [ratio ** (len(values) - i) for i in range(len(values))]
     return Refined("pressure", "", sizes, values)
@@ -163,13 +145,6 @@ def test_no_order_without_convergence(values: tuple[float, ...]) -> None:
     assert found.against_limit("p", found.sizes[0], "finest", 0.01).source == "finest"
     with pytest.raises(ValueError, match=r"^p: the finest mesh would be held against itself$"):
         found.against_limit("p", found.sizes[-1], "finest", 0.01)
-
-
-def test_a_slow_order_leads_nowhere() -> None:
-    """Reference: analytic. Differences that decrease to nine tenths have the order 0.15."""
-    found = refined([2.0, 1.9, 1.81])
-    assert found.order == pytest.approx(0.152, abs=1.0e-3)
-    assert found.best == 1.81
 
 
 def test_the_finest_is_held_against_its_reference() -> None:

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Interpretations of the paper, the rule of thumb, and cheap rows of the validation."""
 
-import csv
 import re
 from collections.abc import Mapping
 from dataclasses import replace
@@ -19,13 +18,12 @@ from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.kantorovich import Kantorovich
 from protractile.runs.case.schema import Case
-from protractile.runs.paper.verdicts import Judgement, Verdict
+from protractile.runs.paper.verdicts import Judgement
 from protractile.runs.pipeline.statics import boom_with_play
-from studies import interpretations, validation, verdicts
+from studies import validation
 from studies.calibrated_beams import EULER, PLAIN, SPRUNG
 from studies.interpretations import (
     ALL,
-    COMMON,
     JUDGED,
     MODELS,
     PAPER,
@@ -33,9 +31,7 @@ from studies.interpretations import (
     Interpretation,
     JudgedInterpretation,
     conclude,
-    finding_table,
     judge_exponents,
-    survey,
 )
 from studies.large_deflections import PARTS, compare
 from studies.reference_models.elastica import Rod, State
@@ -128,54 +124,6 @@ def test_exponents_are_compared_within_their_group(peak: float, verdict: str) ->
     assert other.findings["S9"] == Finding("undecided", ())
 
 
-@pytest.mark.slow
-def test_a_survey_of_two_interpretations(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: non-regression: n = 1 and n = 2 differ by more than half in first peaks.
-
-    The energy shows that four times the study's step, which takes a third of the time, suffices.
-    """
-    monkeypatch.setattr(interpretations, "LITERAL_STEP", 4.0 * interpretations.LITERAL_STEP)
-    found = survey([replace(LITERAL, exponent=exponent) for exponent in (1.0, 2.0)], members=2)
-    for entry in found:
-        assert sorted(entry.findings) == sorted(JUDGED)
-        assert set(COMMON) < set(entry.findings)
-        assert {"S2", "S9"} <= set(entry.excluded_by)
-        assert entry.findings["S9"].measured[0] > 0.5
-        assert max(entry.findings["S2"].measured) < 0.15
-        assert entry.energy_residual < 1e-2
-    rows = finding_table(found).rows
-    assert [row[0] for row in rows] == [f"14, literal, as printed, {n}" for n in (1, 2)]
-    assert all(row[3].startswith("✗ ") for row in rows)
-
-
-def test_distances_of_all_samples(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: by hand. The second sample is 0.1 higher, and nearer to its threshold."""
-
-    def judged(case: str, change: float) -> list[Verdict]:
-        late = change > 0.0
-        distance = 4.0 - late
-        return [
-            Verdict("S2", case, 0.4 + 0.1 * late, 0.2, "", "reproduced", "", distance),
-            Verdict("S8", case, 10.0, 7.0, "s", "contradicted", ""),
-        ]
-
-    monkeypatch.setattr(verdicts, "verdicts_on", judged)
-    monkeypatch.setattr(verdicts, "CHANGES", (0.0, 1.0e-12))
-    (table,) = verdicts.study(lambda what: None).tables
-    assert [row[0] for row in table.rows] == [case for case in verdicts.JUDGED for _ in range(2)]
-    assert table.rows[0][2:] == ("reproduced", "0.4", "0.2", "", "4.0", "3.0", "0.071")
-    assert table.rows[1][2:] == ("contradicted", "10", "7", "s", "–", "–", "0")
-
-
-def test_a_change_of_the_modulus_reaches_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: analytic."""
-    cases = []
-    monkeypatch.setattr(verdicts, "run_case", cases.append)
-    monkeypatch.setattr(verdicts, "judge", lambda results: [])
-    assert verdicts.verdicts_on("paper", 1.0e-12) == []
-    assert cases[0].material.youngs_modulus == pytest.approx(2.1e11 * (1.0 + 1e-12), rel=1e-15)
-
-
 ROOT = Path(__file__).parents[2]
 
 
@@ -209,14 +157,6 @@ def test_a_heavier_tip_slows_the_boom_lift() -> None:
     assert (heavy - middle) / (middle - light) == pytest.approx(2.0, rel=0.01)
 
 
-def test_colliding_oscillators_are_mirror_images() -> None:
-    """Reference: analytic. The oscillator must touch the wall for a meaningful comparison."""
-    verification = validation.impact_pair()
-    assert verification.value < 1.0e-9
-    pair = validation.Oscillators(25.0, 98696.0, [1.0], 10.0, 0.07).system()
-    assert pair.damping == pytest.approx(2.0 * 0.07 * np.sqrt(98696.0 / 25.0))
-
-
 def test_a_coarse_membrane_is_near_nafems() -> None:
     """Reference: external, NAFEMS FV32, 44.623 and 130.03 Hz."""
     found = validation.tapered_membrane(8)[:2]
@@ -236,15 +176,6 @@ def test_the_page_has_every_row() -> None:
     # What is not computed says what is missing.
     others = [row for row in rows if len(row) not in (7, 9)]
     assert all(len(row) == 4 and len(row[2]) > 20 for row in others)
-
-
-def test_the_template_is_a_case_with_a_table() -> None:
-    case = case_file.load(str(ROOT / "examples" / "measured-boom.toml"))
-    assert build_boom(case).joints[0].play == 0.003
-    with (ROOT / "examples" / "measured-boom.csv").open(encoding="utf-8") as file:
-        header, *rows = csv.reader(file)
-    assert header[0] == "time (s)"
-    assert {len(row) for row in rows} == {len(header)}
 
 
 @pytest.mark.parametrize(

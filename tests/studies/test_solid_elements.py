@@ -25,7 +25,6 @@ from protractile.shell_model.reduction.mirror import (
     SymmetryClass,
 )
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
-from protractile.shell_model.segment.cross_section import SectionNodes
 from protractile.shell_model.segment.segment_shell import assemble_segment
 from protractile.shell_model.segment.solver import times
 from studies.reference_models.shell_readings import quadratic_form
@@ -35,10 +34,7 @@ from studies.refined import Refined
 from studies.solid import (
     COMPLIANCES,
     EVERY,
-    FREQUENCIES,
     Comparison,
-    Sizes,
-    compare,
     order,
     rod_verification,
     slenderness_at,
@@ -137,29 +133,6 @@ def test_rigid_motions_cost_nothing_and_carry_the_mass() -> None:
     assert counts == [1, 2, 2, 1]
 
 
-def test_means_read_rigid_motions_and_thickening() -> None:
-    """Reference: analytic, a translation, a rotation about the axis, and a thickening section."""
-    fields = {
-        ALONG_Z: (lambda x, y, z: (0.0 * x, 0.0 * x, 1.0 + x), SectionNodes.mean_deflection, 3.0),
-        TWISTING: (lambda x, y, z: (0.0 * x, -z, y), SectionNodes.twist, 1.0),
-        BREATHING: (lambda x, y, z: (0.0 * x, y, z), SectionNodes.distortion, BOX.height),
-    }
-    for family, (field, read, expected) in fields.items():
-        solid = assemble_solid(segment(), coarse(), family)
-        u = np.column_stack(field(*solid.nodes.T)).ravel()
-        outline = solid.outline(LENGTH)
-        assert solid.row(read(outline)) @ u == pytest.approx(expected, rel=1.0e-12)
-        others = [other for other in fields if other != family]
-        for other in others:
-            assert np.abs(solid.row(fields[other][1](outline))).max() < 1.0e-15
-    outline = assemble_solid(segment(), coarse(), ALONG_Z).outline(0.0)
-    corner = np.array([0.0, -0.5 * BOX.width, 0.5 * BOX.height])
-    assert np.abs(outline.places - corner).max(axis=1).min() < 1.0e-12
-    mesh = coarse()
-    to_corner = sum(plane.size - 1 for plane in mesh.planes[1:]) - mesh.layers
-    assert len(outline.places) == len(np.unique(outline.places.round(9), axis=0)) == 8 * to_corner
-
-
 @pytest.mark.slow
 def test_a_long_cantilever_vibrates_as_a_timoshenko_beam() -> None:
     """Reference: other code, Timoshenko elements, within 0.2 %; shear is 1.5 %."""
@@ -215,38 +188,6 @@ def test_unsupported_parts_are_refused(change: dict[str, Any], message: str) -> 
         assemble_solid(replace(segment(), **change), coarse(), ALONG_Z)
 
 
-MESHED = BoxSection(height=0.40, width=0.30, flange=0.03, web=0.02)
-PLACES = (0.0, 0.5, 2.0)
-
-
-def volumes(mesh: SolidMesh) -> Array:
-    """(num_hexahedra,) of bricks, negative where their points do not run along x, y, z."""
-    corners = mesh.points[mesh.hexahedra]
-    edges = corners[:, [1, 2, 4]] - corners[:, :1]
-    assert corners[:, 7] == pytest.approx(corners[:, 0] + edges.sum(axis=1), abs=1.0e-12)
-    return np.linalg.det(edges)
-
-
-@pytest.mark.parametrize("layers", [2, 4])
-def test_the_quarter_has_a_quarter_of_the_volume_and_of_both_second_moments(layers: int) -> None:
-    """Reference: analytic, A L / 4, and J L / 4."""
-    mesh = mesh_quarter(MESHED, PLACES, (0.02, 0.3), 0.05, 2, layers)
-    parts = volumes(mesh)
-    assert (parts > 0.0).all()
-    assert parts.sum() == pytest.approx(0.25 * MESHED.area * 2.0, rel=1.0e-12)
-    bounds = mesh.points[mesh.hexahedra]
-    low, high = bounds.min(axis=1), bounds.max(axis=1)
-    for axis, moment in (
-        (2, MESHED.second_moment_of_area),
-        (1, MESHED.lateral_second_moment_of_area),
-    ):
-        squares = (high**3 - low**3)[:, axis] / (3.0 * (high - low)[:, axis])
-        assert parts @ squares == pytest.approx(0.25 * moment * 2.0, rel=1.0e-12)
-
-
-TINY = Sizes(walls=(0.04,), triangles=(0.2, 0.1, 0.05), splits=(1, 2), along=(0.1, 0.5), around=0.3)
-
-
 def comparison(wall: float, error: float) -> Comparison:
     """Return a comparison in which every quantity has the same error."""
     return Comparison(
@@ -269,20 +210,6 @@ def test_order_and_passed_limits_are_those_of_a_power_law() -> None:
     assert slenderness_at(found, head, 0.2) == "> 0.067"
     assert slenderness_at(found, head, 0.001) == "< 0.017"
     assert np.isnan(order([comparison(0.01, -0.01), comparison(0.02, 0.01)], head))
-
-
-@pytest.mark.slow
-def test_thick_walls_have_stiffer_corners_than_a_shell() -> None:
-    """Reference: other code, three-dimensional elasticity, which is stiffer."""
-    told: list[str] = []
-    (found,) = compare(TINY, told.append)
-    assert told == ["walls of 40 mm"]
-    for frequency in FREQUENCIES:
-        assert -0.06 < found.error(frequency) < -0.005
-    for what in COMPLIANCES:
-        assert found.error(what) > 0.02
-    assert found.error(COMPLIANCES[0]) == pytest.approx(0.027, abs=0.006)
-    assert found.slenderness(COMPLIANCES[0]) == pytest.approx(0.04 / 0.30)
 
 
 @pytest.mark.slow

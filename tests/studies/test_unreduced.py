@@ -1,16 +1,12 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Motion of the unreduced shell, timing of runs, and the benchmark of solvers."""
 
-import json
 from dataclasses import replace
-from functools import cache, partial
-from pathlib import Path
-from typing import Any
+from functools import cache
 
 import numpy as np
 import pytest
 import scipy.sparse
-from rich.console import Console
 from scipy.linalg import eigh
 
 pytest.importorskip("dolfinx", reason="the study needs DOLFINx")
@@ -20,7 +16,6 @@ from petsc4py import PETSc
 
 from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.energy import energy_residual
-from protractile.dynamics.failure import NumericsError
 from protractile.dynamics.gap_builder import GapBuilder, OutputOperator
 from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
@@ -34,20 +29,16 @@ from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.segment.cross_section import Operator
 from protractile.shell_model.segment.segment_shell import SegmentShell
-from studies.cost import other_programs, timing
+from studies.cost import other_programs
 from studies.cost.bench import (
     PAPER,
-    Sizes,
-    bench,
     five_terms,
 )
 from studies.cost.generic_solvers import (
-    SOLVERS,
     array_rates,
     compiled_rates,
     generic,
 )
-from studies.cost.timing import MEASURABLE, time_in_turns
 from studies.reference_models.resisting_rows import ResistingRows
 from studies.reference_models.unreduced import integrate_directly
 from tests.other_codes import INSTALLED
@@ -242,42 +233,6 @@ def test_a_block_on_a_rough_floor_stays_or_slides() -> None:
     assert rows.friction_loss == pytest.approx(10.0 * 8.0e-3, rel=1.0e-12)
 
 
-def test_forces_that_are_not_finite_are_refused() -> None:
-    rows = ResistingRows([], [DryFriction(0.5, 0, 20.0)], np.array([[1.0e-3]]), onward=2.0)
-    message = "^the forces of contact and friction are not found; halve the step$"
-    with pytest.raises(NumericsError, match=message):
-        rows.forces(np.array([np.nan]))
-
-
-class Clock:
-    """Clock that advances only during sleep, independent of the load of the machine."""
-
-    def __init__(self) -> None:
-        self.now = 0.0
-
-    def sleep(self, seconds: float) -> None:
-        self.now += seconds
-
-
-@pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    made = Clock()
-    monkeypatch.setattr(timing, "perf_counter", lambda: made.now)
-    return made
-
-
-def test_runs_take_turns(clock: Clock) -> None:
-    order: list[str] = []
-
-    def slow(name: str) -> None:
-        order.append(name)
-        clock.sleep(1.1 * MEASURABLE)
-
-    seconds = time_in_turns([partial(slow, "a"), partial(slow, "b")], 2, 10.0)
-    assert order == ["a", "b", "a", "b"]
-    assert [len(taken) for taken in seconds] == [2, 2]
-
-
 @pytest.mark.parametrize(
     ("values", "text"),
     [
@@ -289,73 +244,6 @@ def test_runs_take_turns(clock: Clock) -> None:
 def test_digits_follow_the_noise(values: tuple[float, ...], text: str) -> None:
     """Reference: by hand. The last digit is the first digit of half the range."""
     assert repeated(values) == text
-
-
-SIZES = Sizes(
-    duration=0.2,
-    models=("kantorovich-5",),
-    regular=0.7,
-    steps=(1e-3, 5e-4),
-    converged=1e-5,
-    early=0.2,
-    levels=[(1e-3, ("LSODA", "odeint")), (1e-4, SOLVERS)],
-    most=2,
-    members=3,
-    shell_members=0,
-    telescoping=("kantorovich-5",),
-    problems=(),
-)
-
-
-@pytest.fixture(scope="module")
-def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a folder with the smallest benchmark."""
-    out = tmp_path_factory.mktemp("bench") / "out"
-    bench(SIZES, out, Console(quiet=True))
-    return out
-
-
-@pytest.fixture(scope="module")
-def data(folder: Path) -> Any:
-    return json.loads((folder / "bench.json").read_text(encoding="utf-8"))
-
-
-@pytest.mark.slow
-def test_generic_solvers_err_no_more_than_the_time_step(data: Any) -> None:
-    """Reference: other code, the time step at its level; at most a hundred times as accurate."""
-    entries = iter(data["solvers"])
-    for step, solvers in SIZES.levels:
-        ours = next(entries)
-        assert (ours["solver"], ours["tolerance"]) == ("time step", f"{step:g} s")
-        target = ours["tip off (of range)"]
-        for solver in solvers:
-            entry = next(entries)
-            assert entry["solver"] == solver
-            assert 0.01 * target < entry["tip off (of range)"] <= target
-            assert len(entry["wall s"]) == len(entry["over the time step"]) == 2
-            assert min(entry["wall s"]) > 0.0
-
-
-@pytest.mark.slow
-def test_every_table_is_complete(folder: Path, data: Any) -> None:
-    """Half the step has a smaller error; with friction the energy balance closes for all."""
-    coarse, fine, chosen = data["errors"]
-    assert [one["steps"] for one in (coarse, fine)] == [700, 1400]
-    assert 0.0 < fine["tip off (% of range)"] < coarse["tip off (% of range)"] < 1.0
-    assert chosen["tip off (% of range)"] < 0.1
-    assert max(one["energy residual"] for one in data["errors"]) < 1e-11
-    assert [cost["resisted by"] for cost in data["drawing"]] == ["nothing", "friction", "dashpots"]
-    for cost in data["drawing"]:
-        assert cost["times"] == pytest.approx(cost["drawn out s"] / cost["at rest s"])
-    assert {entry["ensemble"] for entry in data["ensembles"]} == {
-        "3 five-term series",
-        "3 five-term series, to a tolerance",
-    }
-    text = (folder / "bench.md").read_text(encoding="utf-8")
-    assert text.count("\n## ") == 5
-    for name in ("time step", *SOLVERS):
-        assert f"\n| {name} |" in text
-    assert sorted(path.name for path in folder.iterdir()) == ["bench.json", "bench.md"]
 
 
 @pytest.mark.slow
