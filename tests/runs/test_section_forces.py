@@ -18,7 +18,7 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.equilibrium import equilibrium_at
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.line import Line
-from protractile.geometry.boom import Cylinder, Load, Support
+from protractile.geometry.boom import Boom, Cylinder, Load, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.compression import Compression
 from protractile.runs.case import reading as case_file
