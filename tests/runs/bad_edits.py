@@ -117,6 +117,8 @@ NUMBERS = [
     ("[[joint]]", "[limits]\ntip_lateral = 0.1\n\n[[joint]]",
      "limits.tip_lateral: the boom is flat, and nothing moves along 'y'; give the joints "
      "lateral_play"),
+    ("[[joint]]", "[slew]\ntravel = 60.0\ntime = 9.0\n\n[[joint]]",
+     "slew: the boom is flat, and nothing moves along 'y'; give the joints lateral_play"),
     ("stiffness = 1e13", "stiffness = 0.0",
      "joint[1].stiffness: must be a number greater than 0, got 0.0"),
     *replacing("play = 0.014", {

@@ -224,7 +224,8 @@ def verdict(
 ) -> tuple[str, float | None, str]:
     """Judge one statement: the verdict, the number and the reason; usual curves unless given."""
     ensembles = None if tips is None else members(tips)
-    found = verdicts(case or paper(), motion or curves(), summary, ensembles)[key]
+    alone = (case or paper()).model_copy(update={"statements": (key,)})
+    found = verdicts(alone, motion or curves(), summary, ensembles)[key]
     return found.verdict, found.measured, found.why
 
 

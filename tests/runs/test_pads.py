@@ -4,20 +4,16 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 import xarray as xr
 
-from protractile.analysis.equilibria import equilibria
-from protractile.analysis.measure import measure_boom
-from protractile.analysis.model import AnalysisModel
-from protractile.analysis.states import States
 from protractile.cases import run_case
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.contact_table import TableContact
 from protractile.dynamics.motion import initial_state
-from protractile.runs import CASES
 from protractile.runs.case import toml
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.contact import JointTable
@@ -30,6 +26,7 @@ from protractile.runs.pipeline.models import MotionPlan, build
 from protractile.runs.pipeline.results import Results
 from protractile.runs.report.result_tables import pad_table
 from protractile.runs.report.summary_table import summary_table
+from protractile.runs.report.tables import Table
 from tests.docs.conftest import toml_blocks
 from tests.runs.case_texts import (
     COARSE,
@@ -44,7 +41,6 @@ from tests.runs.case_texts import (
     table,
 )
 from tests.runs.summaries import model_summary, printed_check, summary_of
-from tests.runs.test_statics import told
 from tests.touching import contact_laws
 
 LAW = "stiffness = 1e13\nexponent = 2.0\n"
@@ -55,6 +51,7 @@ def case_with(folder: Path, joint: str, play: float = 0.014) -> Case:
     text = COARSE[: COARSE.index("[[model]]")] + elements("beam", element_length=0.5)
     text = text.replace(COARSE[COARSE.index("statements") :].splitlines()[0] + "\n", "")
     text = text.replace("play = 0.014", f"play = {play}").replace(LAW, joint)
+    text = text.replace("duration = 0.6", "duration = 0.3")
     return read_case(folder, text)
 
 
@@ -94,71 +91,31 @@ def test_shims_hold_the_boom_as_springs_do(tmp_path: Path) -> None:
     assert motion.energy_residual < 1e-5
 
 
-def results(folder: Path, joint: str) -> Results:
-    return run_case(case_with(folder, joint))
+def columns(table: Table) -> dict[str, list[Any]]:
+    return {column.heading: column.cells for column in table.columns}
 
 
 def test_pressure_stands_beside_the_pad_strength(tmp_path: Path) -> None:
-    """Reference: by hand, half of the station's largest force over 0.01 m², against 20 MPa."""
-    found = results(tmp_path, PAD)
+    """Reference: by hand, half of the station's largest force over 0.01 m², against 1 kPa."""
+    found = run_case(case_with(tmp_path, PAD.replace("2e7", "1e3")))
     table = pad_table(found)
-    peaks = np.abs(found.trajectories["contact_force_peak"].values[0]).max(axis=0)
+    forces = found.trajectories["contact_force_peak"].values[0]
+    peaks = np.abs(forces).max(axis=0)
     assert peaks.min() > 0.0
+    sides = ["above" if up > 0.0 else "below" for up in forces.max(axis=0) + forces.min(axis=0)]
     assert [row[0:4] for row in table.rows] == [
-        ("beam", "inner in outer", "9", "below"), ("beam", "inner in outer", "10", "above"),
-    ]  # fmt: skip
-    told = {column.heading: column.cells for column in table.columns}
-    assert told["pressure\nMPa"] == pytest.approx((0.5 * peaks / 0.01).tolist())
-    assert told["utilisation\n%"] == pytest.approx((0.5 * peaks / 0.01 / 2.0e7).tolist())
-    # Corners bear no pressure.
-    assert not pad_table(results(tmp_path, LAW)).rows
-
-
-def test_summary_names_the_governing_pad(tmp_path: Path) -> None:
-    """Reference: the table of all pads. A pad with a very small allowable pressure governs."""
-    found = results(tmp_path, PAD.replace("2e7", "1e3"))
-    table = summary_table(found)
-    told = {row[0]: row[1] for row in table.rows}
-    pads = pad_table(found)
-    columns = {column.heading: column for column in pads.columns}
-    most = int(np.argmax([float(p) for p in columns["pressure\nMPa"].cells]))
-    force, pressure = (columns[name].text[most] for name in ("maximum force\nkN", "pressure\nMPa"))
-    lines = told["Governing pad: force, pressure, utilisation"].split("\n")
-    assert lines[0] == f"{force} kN"
-    assert lines[1].startswith(f"{pressure} MPa, ")
-    where = columns["at\nm"].cells[most]
-    side = columns["side"].cells[most]
-    assert lines[2:] == ["beyond allowable", f"inner, x = {where} m, {side}"]
-    assert told["Governing pad: force, pressure, utilisation"] in table.strong
-    assert not any(asked.startswith("Contact force") for asked in told)
-
-
-@pytest.mark.parametrize("shim", [0.0, 2e-5, 1.0e-3])
-def test_governing_pad_at_rest_is_named(tmp_path: Path, shim: float) -> None:
-    """Reference: other code path, the rows of pad pairs, with 3/5 and 2/5 of a force."""
-    below = [pad_on("below", 0.03, 0.02), pad_on("below", 0.02, 0.02, offset=0.04, shim=shim)]
-    above = pad_on("above", 0.05, 0.02)
-    case = case_with(tmp_path, several(above, *below))
-    boom = build_boom(case)
-    built = build(case, boom, case.models[0])
-    loaded = AnalysisModel.of(boom, built.system, case.models[0].lines(boom, built))
-    system, rests = loaded.system, equilibria(loaded.system)
-    position = rests[0.0]
-    measured = list(measure_boom(States.of(loaded, rests)))
-    pads, forces = (
-        [one for one in measured if one.quantity == name] for name in ("pad_force", "contact_force")
-    )
-    of_rows = [
-        abs(law.force(y)) for law, y in zip(system.laws, system.rows @ position, strict=True)
+        ("beam", "inner in outer", x, side) for x, side in zip(("9", "10"), sides, strict=True)
     ]
-    parts = []
-    for k, force in enumerate(forces):
-        pad = max(one.values.item() for one in pads if one.place.startswith(force.place))
-        largest = max(f for f, at in zip(of_rows, system.station_of_row, strict=True) if at == k)
-        assert pad == pytest.approx(0.5 * largest, rel=1e-9)
-        parts.append(pad / abs(force.values.item()))
-    expected = {0.0: 0.5 * 0.6, 1.0e-3: 0.5}.get(shim)
-    assert expected is None or min(parts) == pytest.approx(expected)
+    told = columns(table)
+    assert told["pressure\nMPa"] == pytest.approx((0.5 * peaks / 0.01).tolist())
+    assert told["utilisation\n%"] == pytest.approx((0.5 * peaks / 0.01 / 1.0e3).tolist())
+    most = int(peaks.argmax())
+    summary = summary_table(found)
+    (governing,) = (row[1] for row in summary.rows if row[0].startswith("Governing pad: force"))
+    *_, beyond, where = governing.split("\n")
+    x, side = told["at\nm"][most], told["side"][most]
+    assert (beyond, where) == ("beyond allowable", f"inner, x = {x} m, {side}")
+    assert governing in summary.strong
 
 
 def pad_on(side: str, width: float, thickness: float, **others: float) -> str:
@@ -190,38 +147,29 @@ def test_pressure_of_each_pad_is_reported(tmp_path: Path) -> None:
         pad_on("below", 0.03, 0.02, allowable_pressure=2e7),
         pad_on("below", 0.02, 0.02, offset=0.04),
     ]
-    found = results(tmp_path, several(*pads))
-    table = pad_table(found)
-    told = {column.heading: column.cells for column in table.columns}
+    found = run_case(case_with(tmp_path, several(*pads)))
+    told = columns(pad_table(found))
     assert told["side"] == ["above", "below", "below 2"] * 2
     peaks = found.trajectories["contact_force_peak"].values[0]
-    down, up = -peaks.min(axis=0), peaks.max(axis=0)
-    areas = np.array([0.02, 0.012, 0.008])
-    for station in (0, 1):
-        pressures = np.array(told["pressure\nMPa"][3 * station : 3 * station + 3])
-        assert pressures[0] == pytest.approx(max(up[station], 0.0) / 0.02, rel=1e-6, abs=1.0)
-        assert pressures[1] == pytest.approx(pressures[2], rel=1e-6, abs=1.0)
-        assert pressures[1:] * areas[1:] @ np.ones(2) == pytest.approx(
-            max(down[station], 0.0), rel=1e-6, abs=1.0
-        )
-    assert told["utilisation\n%"][1] == pytest.approx(told["pressure\nMPa"][1] / 2.0e7)
-    assert told["utilisation\n%"][2] is None
+    down, up = np.maximum(-peaks.min(axis=0), 0.0), np.maximum(peaks.max(axis=0), 0.0)
+    pressures = np.reshape(told["pressure\nMPa"], (2, 3))
+    expected = np.stack([up / 0.02, down / 0.02, down / 0.02], axis=1)
+    np.testing.assert_allclose(pressures, expected, rtol=1e-6, atol=1.0)
+    assert told["utilisation\n%"][1:3] == [pytest.approx(pressures[0, 1] / 2.0e7), None]
 
 
 def test_shimmed_pads_tell_the_force_of_their_side(tmp_path: Path) -> None:
     """Reference: by hand. Pads of stiffness k with shims s on both sides carry k (s ± y)."""
     sides = [pad_on(side, 0.05, 0.02, shim=0.1) for side in ("above", "below")]
-    found = results(tmp_path, several(*sides))
+    found = run_case(case_with(tmp_path, several(*sides)))
     peaks = found.trajectories["contact_force_peak"].values[0]
     rest = 2.0 * found.boom.joints[0].pads[0].stiffness * (0.1 - 0.007)
-    table = pad_table(found)
-    forces = {column.heading: column.cells for column in table.columns}["maximum force\nkN"]
-    for station, own in enumerate(peaks.T):
+    told = 2.0 * np.reshape(columns(pad_table(found))["maximum force\nkN"], (2, 2))
+    for own, both in zip(peaks.T, told, strict=True):
         # The harder side presses with the peak, the other with 2 k s less the peak.
         above = np.where(own > 0.0, own, 2.0 * rest + own).max()
         below = np.where(own < 0.0, -own, 2.0 * rest - own).max()
-        told = 2.0 * np.array(forces[2 * station : 2 * station + 2])
-        assert told == pytest.approx([above, below], rel=1e-9)
+        assert both == pytest.approx([above, below], rel=1e-9)
         assert rest < max(above, below) < 2.0 * rest
 
 
@@ -243,13 +191,10 @@ DEPTHS = np.linspace(0.0, 5.0e-4, 101)[1:]
 POINTS = [[float(p), float(1e13 * p**2)] for p in DEPTHS]
 
 
-def table_case(folder: Path, law: str) -> Case:
-    return read_case(folder, COARSE.replace(LAW, law))
-
-
 def test_table_approximates_the_sampled_law(tmp_path: Path) -> None:
-    """Reference: analytic, chords of p² lie above it by k (Δp)²/4 at most."""
-    case = table_case(tmp_path, f"force_table = {POINTS}\n")
+    """Reference: analytic, chords of p² lie above it by k (Δp)²/4 at most; the same by a file."""
+    inline = f"force_table = {POINTS}"
+    case = read_case(tmp_path, COARSE.replace(LAW, f"{inline}\n"))
     (law,) = contact_laws(case, case.models[0])
     power = PowerContact(1e13, 2.0).with_clearance(7.0e-3)
     y = np.concatenate([[-1.0], [1.0]]) * (7.0e-3 + np.linspace(0.0, 5.0e-4, 999)[:, None])
@@ -257,27 +202,17 @@ def test_table_approximates_the_sampled_law(tmp_path: Path) -> None:
     assert -1e-6 < above.min() < 1e-6
     assert above.max() == pytest.approx(0.25 * 1e13 * (5.0e-6) ** 2, rel=1e-2)
     assert read_case(tmp_path, toml.dumps(case)) == case
-
-
-def test_a_file_and_a_model_s_own_table_are_the_same(tmp_path: Path) -> None:
     lines = "".join(f"{p!r}, {force!r}\n" for p, force in POINTS)
     (tmp_path / "pad.csv").write_text(f"# m, N\n{lines}", encoding="utf-8")
-    inline = table_case(tmp_path, f"force_table = {POINTS}\n")
-    assert table_case(tmp_path, 'force_file = "pad.csv"\n') == inline
-    own = COARSE.partition("contact = {")
-    model = 'contact = { force_file = "pad.csv" }'
-    case = read_case(tmp_path, own[0] + model + own[2].partition("}")[2])
-    (law,) = contact_laws(case, case.models[2])
-    (same,) = contact_laws(inline, inline.models[2].model_copy(update={"contact": None}))
-    assert law == same
-
-
-def test_to_the_sides_a_stiffness_makes_a_power_law_beside_a_table() -> None:
-    to_the_sides = {"lateral_play": 0.01, "lateral_stiffness": 1.0e9, "lateral_exponent": 1.5}
-    table = ((1.0e-3, 2.0),)
-    joint = JointTable("a", "b", stations=(1.0,), play=0.0, force_table=table, **to_the_sides)
-    assert joint.law("y") == PowerContact(1.0e9, 1.5)
-    assert joint.law("z") == TableContact((1.0e-3,), (2.0,))
+    file = 'force_file = "pad.csv"'
+    assert read_case(tmp_path, COARSE.replace(LAW, f"{file}\n")) == case
+    before, _, after = COARSE.partition("contact = {")
+    own = read_case(tmp_path, f"{before}contact = {{ {file} }}{after.partition('}')[2]}")
+    assert contact_laws(own, own.models[2]) == [law]
+    lateral = {"lateral_play": 0.01, "lateral_stiffness": 1.0e9, "lateral_exponent": 1.5}
+    both = JointTable("a", "b", (1.0,), 0.0, force_table=((1.0e-3, 2.0),), **lateral)
+    assert both.law("y") == PowerContact(1.0e9, 1.5)
+    assert both.law("z") == TableContact((1.0e-3,), (2.0,))
 
 
 @pytest.mark.parametrize(
@@ -302,82 +237,20 @@ def test_bad_tables_are_refused(tmp_path: Path, law: str, message: str) -> None:
     assert refusal(tmp_path, COARSE.replace(LAW, f"{law}\n")) == message
 
 
-def test_walls_under_pads_lower_the_tip_as_in_the_shell() -> None:
+def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
     """Reference: other code, the shell of the lift at rest, −229.12 mm (−190.18 mm of its beam)."""
-    lines = told(shipped("lift"))
+    lines = [line.replace("−", "-") for line in check_case(CheckedCase(shipped("lift"))).lines]
     (tip,) = (line for line in lines if line.startswith("Static tip deflection"))
     assert float(tip.split(": ")[1].split()[0]) == pytest.approx(-229.12, rel=0.01)
-
-
-def test_remedies_for_walls_under_pads_count_under_the_largest_loads() -> None:
-    """Reference: the same loads from t = 0 on, without a ramp."""
-    case = shipped("lift")
-    share, *remedies = pad_wall_sentences(case)
-    assert share == (
+    assert [line for line in lines if line.startswith(("Walls bend", "Remedies", "- "))] == [
         "Walls bend under pads, which moves the tip by -60.66 of -378.5 mm, 16 %, under the loads "
-        "at t = 0.1 s (estimate from plates)."
-    )
-    assert remedies == [
+        "at t = 0.1 s (estimate from plates).",
         "Remedies, each with the static tip deflection that it gives under these loads (for local "
         "plate stresses, run a shell with the remedy):",
         "- -317.9 mm: pads that bear on the corners, bears = 'corner'",
         "- -333 mm: collars around both segments at each pad, as thick as the walls and one "
         "section height long (the boom can then not telescope)",
     ]
-    (load,) = case.loads
-    sudden = case.model_copy(update={"loads": (load.model_copy(update={"ramp": None}),)})
-    assert pad_wall_sentences(sudden) == [share.replace("0.1 s", "0 s"), *remedies]
-
-
-def test_remedies_leave_out_collars_that_are_there(tmp_path: Path) -> None:
-    """Reference: by construction. Collars of half a millimetre, along all segments."""
-    text = (CASES / "lift.toml").read_text("utf-8")
-    collars = 'collars = [{ span = ["tail", "head"], thickness = 5e-4 }]\nsection ='
-    case = read_case(tmp_path, text.replace("section =", collars))
-    remedies = " ".join(pad_wall_sentences(case))
-    assert "bears = 'corner'" in remedies
-    assert "collars" not in remedies
-
-
-def test_walls_on_corners_have_no_share(tmp_path: Path) -> None:
-    """Reference: by construction, pads on the corners of boxes; exact words without telescoping."""
-    text = (CASES / "lift.toml").read_text("utf-8")
-    case = read_case(tmp_path, text.replace("pad = {", 'pad = { bears = "corner",'))
-    assert pad_wall_sentences(case) == []
-    shown = check_case(CheckedCase(case))
-    (notes,) = (one.notes for one in shown.tables if one.title.startswith("Extreme axial forces"))
-    assert notes == ["Includes the cylinder forces at t = 0."]
-
-
-def test_a_tip_that_rigid_sections_overestimate_by_half_causes_a_caution(tmp_path: Path) -> None:
-    """Reference: other code, a shell of edges of 0.15 m under a lateral force of 3 kN: −26.0 mm.
-
-    Rigid sections give −39.1 mm, 50 % more. Forces of lateral pads widen the section upwards,
-    which closes the vertical play.
-    """
-    pad = {"length": 0.2, "width": 0.06, "thickness": 0.02, "bears": "corner"}
-    sizes = ("shape", "height", "width", "chamfer", "top", "bottom", "web")
-    outer = dict(zip(sizes, ("octagon", 0.56, 0.56, 0.15, 0.007, 0.007, 0.007), strict=True))
-    inner = dict(zip(sizes, ("octagon", 0.50, 0.50, 0.135, 0.006, 0.006, 0.006), strict=True))
-    clamp = [{"x": 0.0, "kind": "clamped"}]
-    joint = {"outer": "outer", "inner": "inner", "extension": 6.2, "play": 0.003}
-    load = {"segment": "inner", "x": "head"}
-    text = "".join(
-        (
-            'title = "Mast"\n' + table("[time]", duration=5.0) + STEEL,
-            table("[gravity]", angle=90.0) + REST + table("[payload]", mass=3000.0),
-            table("[[axial]]", force=120000.0) + elements("beam"),
-            table("[[segment]]", name="outer", length=7.5, supports=clamp, section=outer),
-            table("[[segment]]", name="inner", length=7.5, section=inner),
-            table("[[load]]", **load, direction="y", magnitude=3100.0),
-            table("[[load]]", **load, magnitude=-2000.0),
-            table("[[joint]]", **joint, lateral_play=0.003, pad=pad, stations=["tail", "head"]),
-        )
-    )
-    lines = check_case(CheckedCase(read_case(tmp_path, text))).lines
-    (line,) = (one for one in lines if "distort under pads" in one)
-    assert line.startswith("caution: sections distort under pads, which moves the tip by 1")
-    assert ", −5" in line
 
 
 def test_sections_that_distort_have_their_share_and_remedies(tmp_path: Path) -> None:
@@ -387,33 +260,24 @@ def test_sections_that_distort_have_their_share_and_remedies(tmp_path: Path) -> 
     outer = dict(zip(sizes, ("hexagon", 0.82, 0.58, 0.39, 0.008, 0.011, 0.007), strict=True))
     inner = dict(zip(sizes, ("hexagon", 0.74, 0.50, 0.32, 0.007, 0.009, 0.006), strict=True))
     clamp = [{"x": 0.0, "kind": "clamped"}]
-    text = "".join(
-        (
-            'title = "Hexagons"\n'
-            + table("[time]", duration=5.0)
-            + STEEL
-            + table("[gravity]", angle=0.0)
-            + REST,
-            table("[payload]", mass=6000.0) + elements("beam"),
-            table("[[segment]]", name="outer", length=8.7, supports=clamp, section=outer),
-            table("[[segment]]", name="inner", length=8.7, section=inner),
-            table("[[joint]]", outer="outer", inner="inner", extension=7.1, play=0.004, pad=pad)
-            + 'stations = ["tail", "head"]',
-        )
-    )
-    lines = [
-        line.replace("−", "-") for line in check_case(CheckedCase(read_case(tmp_path, text))).lines
-    ]
+    text = f"""title = "Hexagons"
+time = {{ duration = 5.0 }}
+gravity = {{ angle = 0.0 }}
+{STEEL}{REST}{table("[payload]", mass=6000.0)}{elements("beam")}
+{table("[[segment]]", name="outer", length=8.7, supports=clamp, section=outer)}
+{table("[[segment]]", name="inner", length=8.7, section=inner)}
+{table("[[joint]]", outer="outer", inner="inner", extension=7.1, play=0.004, pad=pad)}
+stations = ["tail", "head"]
+"""
+    case = read_case(tmp_path, text)
+    lines = [line.replace("−", "-") for line in check_case(CheckedCase(case)).lines]
     tip = next(line for line in lines if line.startswith("Static tip deflection"))
     assert ", with the compliance of sections under pads: -443.7 mm; with bonded" in tip
     first = lines.index(
         "Sections distort under pads, which moves the tip by -178.7 of -443.7 mm, 40 %, under the "
         "loads at t = 0 s (estimate from a frame of plates)."
     )
-    assert lines[first + 2] == (
-        "- -304.8 mm: collars around both segments at each pad, as thick as the walls and one "
-        "section height long (the boom can then not telescope)"
-    )
+    assert lines[first + 2].startswith("- -304.8 mm: collars around both segments at each pad")
     assert lines[first + 3] == "Sections under pads are rigid in 'beam'."
 
 
@@ -436,9 +300,3 @@ def test_walls_under_pads_are_the_cause_of_a_large_deflection(tmp_path: Path) ->
         cause,
         "check units and loads",
     ]
-
-
-def pad_wall_sentences(case: Case) -> list[str]:
-    lines = check_case(CheckedCase(case)).lines
-    found = [line for line in lines if line.startswith(("Walls bend", "Remedies", "- "))]
-    return [line.replace("−", "-") for line in found]

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from matplotlib import rc_context
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Polygon, Rectangle
 from matplotlib.transforms import Affine2D
@@ -26,15 +27,13 @@ from protractile.runs.report.boom_drawing import boom_sheet
 from protractile.runs.report.marks import marks_of
 from protractile.runs.report.overlap_pictures import OverlapView
 from protractile.runs.report.scene import Scene, round_scale
-from protractile.runs.report.symbols import PAYLOAD, abbreviate, boom_symbols
-from protractile.runs.report.viewer import TRUNCATION, View, few_shapes, pack_view
-from studies.gallery import change_of_shape
+from protractile.runs.report.symbols import PAYLOAD, boom_symbols
+from protractile.runs.report.viewer import TRUNCATION, View, pack_view
 from tests.runs.case_texts import shipped
 from tests.runs.moving_segments import (
     BOOM,
     CASE,
     CLEARANCE,
-    INNER,
     OUTER,
     TIME,
     moving_fields,
@@ -74,31 +73,6 @@ def test_segments_move_along_as_drives_extend_them(shell: Scene) -> None:
     assert extended.reach([0.5]) == pytest.approx((0.0, BOOM.tip))
 
 
-def test_supports_and_forces_are_marked(shell: Scene) -> None:
-    """Reference: the case, with two fixed supports, and arrows along both segments."""
-    held = [symbol for symbol in shell.symbols if symbol.grounded]
-    assert [(symbol.kind, symbol.segment, symbol.places) for symbol in held] == [
-        ("supports", 0, (0.0,)),
-        ("supports", 0, (2.0,)),
-    ]
-    assert held[0].z(BOOM, 0.0) == pytest.approx(-0.5 * OUTER.size("z"))
-    loads = [symbol for symbol in shell.symbols if symbol.kind == "loads"]
-    assert [symbol.segment for symbol in loads] == [0, 1]
-
-
-def test_change_of_shape_excludes_the_rigid_motion(shell: Scene) -> None:
-    """Reference: analytic, a section that widens by c y, moves and rotates by φ."""
-    _, y, z = shell.points.T
-    moved = np.stack([0.0 * y, 0.03 - 0.02 * z + 0.01 * y, -0.05 + 0.02 * y], axis=1)
-    places, change = change_of_shape(shell, moved, 1, 10.0)
-    assert places[0] == pytest.approx(places[-1])
-    size = np.array([INNER.size("y"), INNER.size("z")])
-    assert np.ptp(places, axis=0) == pytest.approx(size)
-    assert np.linalg.norm(np.diff(places, axis=0), axis=1).sum() == pytest.approx(2.0 * size.sum())
-    assert change[:, 0] == pytest.approx(0.01 * places[:, 0], abs=1e-9)
-    assert np.abs(change[:, 1]).max() < 1e-9
-
-
 @pytest.mark.parametrize(("scale", "section"), [(1.0, 1.0), (5.0, 1.0), (20.0, 2.0)])
 def test_contact_in_run_is_contact_in_picture(shell: Scene, scale: float, section: float) -> None:
     """Reference: analytic, a wall between mid-surfaces; opposite, twice the clearance more."""
@@ -113,48 +87,32 @@ def test_contact_in_run_is_contact_in_picture(shell: Scene, scale: float, sectio
         assert between == pytest.approx(gap, abs=1e-9)
 
 
-@pytest.fixture(scope="module")
-def in_space(shell: Scene) -> list[Scene]:
-    """Return the views from the side and from above of two joints along z and y, and a stop."""
+def test_the_pressed_overlap_is_drawn(shell: Scene) -> None:
+    """Reference: the joints of the case; by hand, a force at one station only, and a stop."""
     boom = build_boom(shipped("inspection-arm"))
-    boom = replace(
-        boom, stops=(Stop(1, boom.joints[0].stations[0], 0.04, PowerContact(1e9, 1.0).upper()),)
-    )
+    one, two = boom.joints
+    stop = Stop(1, one.stations[0], 0.04, PowerContact(1e9, 1.0).upper())
+    boom = replace(boom, stops=(stop,))
     motion = shell.motion.isel(station=[0] * len(boom.stations))
     motion = motion.assign_coords(station=[station.x for station in boom.stations])
     side = replace(shell, boom=boom, motion=motion)
-    return [side, replace(side, from_above=True)]
-
-
-def test_each_overlap_gets_its_stations(in_space: list[Scene]) -> None:
-    one, two = in_space[0].boom.joints
-    stations = in_space[0].boom.stations
-    found = [(*at[:3], at.clearance) for scene in in_space for at in scene.overlaps]
+    views = [side, replace(side, from_above=True)]
+    found = [(*at[:3], at.clearance) for scene in views for at in scene.overlaps]
     assert found == [
-        (0, 1, [*stations[0:2]], 0.5 * one.play),
-        (1, 2, [*stations[2:4]], 0.5 * two.play),
-        (0, 1, [*stations[4:6]], 0.5 * one.lateral_play),
-        (1, 2, [*stations[6:8]], 0.5 * two.lateral_play),
+        (0, 1, [*boom.stations[0:2]], 0.5 * one.play),
+        (1, 2, [*boom.stations[2:4]], 0.5 * two.play),
+        (0, 1, [*boom.stations[4:6]], 0.5 * one.lateral_play),
+        (1, 2, [*boom.stations[6:8]], 0.5 * two.lateral_play),
     ]
     # Pads are 0.12 m long and begin at the ends of the overlap.
-    for scene in in_space:
-        assert scene.overlaps[0].centres == pytest.approx([3.56, 4.44])
-
-
-@pytest.mark.parametrize(
-    ("station", "above", "outer"), [(1, False, 0), (2, False, 1), (4, True, 0), (7, True, 1)]
-)
-def test_the_pressed_overlap_is_drawn(
-    shell: Scene, in_space: list[Scene], station: int, above: bool, outer: int
-) -> None:
-    """Reference: the fixture, with a force up or down at one station only."""
-    force = xr.zeros_like(in_space[0].motion["contact_force"])
-    force[200, station] = (-1.0) ** (station // 2) * 3.0e4
-    motion = in_space[0].motion.assign(contact_force=force)
-    views = [replace(view, motion=motion) for view in in_space]
-    found = OverlapView.of_largest_force(views, float(TIME[200]))
-    assert found is not None
-    assert (found.scene.from_above, found.overlap.outer) == (above, outer)
+    assert views[1].overlaps[0].centres == pytest.approx([3.56, 4.44])
+    for station, above, outer in ((1, False, 0), (2, False, 1), (4, True, 0), (7, True, 1)):
+        force = xr.zeros_like(motion["contact_force"])
+        force[200, station] = (-1.0) ** (station // 2) * 3.0e4
+        pressed = [replace(view, motion=motion.assign(contact_force=force)) for view in views]
+        chosen = OverlapView.of_largest_force(pressed, float(TIME[200]))
+        assert chosen is not None
+        assert (chosen.scene.from_above, chosen.overlap.outer) == (above, outer)
 
 
 def test_from_above_y_points_up(shell: Scene) -> None:
@@ -199,36 +157,28 @@ def still(boom: Boom, output: BeamOutput) -> tuple[Scene, np.ndarray]:
     return Scene.of_beam(CASE, boom, output, xr.Dataset(coords={"time": output.time}))
 
 
-def bent(boom: Boom) -> BeamOutput:
-    """Return both segments with the deflection w = t x²/100, and the moment of this curvature."""
+def test_sections_stay_plane_with_the_stress_of_their_curvature(paper_boom: Boom) -> None:
+    """Reference: analytic, w = t x²/100, so that w′ = 0.38 at the tip and κ = 0.02 1/m."""
     time = np.array([0.0, 0.5, 1.0])
     segments = []
-    for segment in boom.segments:
+    for segment in paper_boom.segments:
         x = np.linspace(segment.start, segment.end, 41)
         moment = np.outer(time, segment.bending_stiffness * 0.02 * np.ones(x.size))
-        segments.append(
-            SegmentMotion(x, {"deflection": np.outer(time, x**2 / 100.0), "moment": moment})
-        )
-    return BeamOutput(time, segments)
-
-
-def test_sections_stay_plane_and_follow_their_axis(paper_boom: Boom) -> None:
-    """Reference: analytic, w = 3.61 m and w′ = 0.38 at the tip, and −z w′ along x."""
-    scene, _ = still(paper_boom, bent(paper_boom))
+        curves = {"deflection": np.outer(time, x**2 / 100.0), "moment": moment}
+        segments.append(SegmentMotion(x, curves))
+    scene, stress = still(paper_boom, BeamOutput(time, segments))
     ends = scene.points[:, 0] == paper_boom.tip
     moved = scene.displacement(1.0)[ends]
     np.testing.assert_allclose(moved[:, 2], 3.61)
     z = scene.points[ends, 2]
     # One-sided differences of a parabola over 0.25 m are w″ times half of that off.
     np.testing.assert_allclose(moved[:, 0], -z * 0.38, atol=0.0026 * np.abs(z).max())
-
-
-def test_bending_stress_follows_the_curvature(paper_boom: Boom) -> None:
-    """Reference: analytic, σ = E κ z at the flanges of the outer box, κ = 0.02 1/m."""
-    scene, stress = still(paper_boom, bent(paper_boom))
-    highest = scene.half_height(0)
     assert stress[0].max() == 0.0
-    assert stress[-1].max() == pytest.approx(2.1e11 * 0.02 * highest, rel=1e-9)
+    assert stress[-1].max() == pytest.approx(2.1e11 * 0.02 * scene.half_height(0), rel=1e-9)
+    # The displayed inner section is less high by more than both plays.
+    drawn = scene.magnify(np.zeros_like(scene.points), 10.0)
+    outer, inner = (drawn[scene.owner == number, 2].max() for number in (0, 1))
+    assert outer - inner > 5.0 * paper_boom.joints[0].play
 
 
 def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
@@ -245,14 +195,6 @@ def test_a_taper_is_drawn_and_stressed_as_it_is_there() -> None:
         assert np.ptp(drawn[there, 2]) == pytest.approx(3.0 * box.size("z"))
         expected = 1e3 * 0.5 * box.size("z") / box.second_moment_of_area
         assert stress[0, there].max() == pytest.approx(expected, rel=1e-9)
-
-
-def test_play_stays_visible_between_beams(paper_boom: Boom) -> None:
-    """Reference: the displayed inner section is less high by more than both plays."""
-    scene, _ = still(paper_boom, bent(paper_boom))
-    drawn = scene.magnify(np.zeros_like(scene.points), 10.0)
-    outer, inner = (drawn[scene.owner == number, 2].max() for number in (0, 1))
-    assert outer - inner > 5.0 * paper_boom.joints[0].play
 
 
 def test_values_at_jumps_are_read_beyond_the_jump() -> None:
@@ -276,55 +218,45 @@ def legend(sheet: Figure) -> list[str]:
     return [text.get_text().replace("\n", " ") for text in sheet.legends[0].get_texts()]
 
 
+def test_a_lift_is_drawn_and_labelled_at_its_angle() -> None:
+    """Reference: analytic, a tip at 15.7 m and 45 degrees; the case file."""
+    sheet = drawn("lift")
+    places = np.concatenate([line.get_xydata() for line in sheet.axes[0].lines])
+    for reference in ((11.1016, 11.1016), (1.2728, -0.2828)):
+        nearest = np.nanmin(np.abs(places - reference).max(axis=1))
+        assert nearest < 0.11  # half the height of the fly
+    texts = [text.get_text() for axes in sheet.axes for text in axes.texts]
+    # The last box has equal walls.
+    assert [text for text in texts if " × " in text] == [
+        "300 × 220\nweb 5\nflange 6", "256 × 180\nweb 4\nflange 5", "218 × 146\nwalls 4"
+    ]  # fmt: skip
+    assert legend(sheet) == [
+        "slide pads", "support", "cylinder, 30 MN/m", "mass at the tip, 150 kg",
+        "1.595 kN perpendicular to the boom, towards its lower side, ramp of 0.1 s", "play 3 mm",
+        "self-weight, g = 9.807 m/s²",
+    ]  # fmt: skip
+
+
 def test_a_long_legend_fits_on_its_sheet() -> None:
-    """Reference: by construction, the size of the sheet."""
-    sheet = drawn("crane-proof")
+    """Reference: the size of the sheet, and the case file."""
+    sheet = drawn("inspection-arm")
+    assert {"lateral play 4 mm", "350 N/m lateral, wind, root"} <= {*legend(sheet)}
     sheet.draw_without_rendering()
     box = sheet.legends[0].get_window_extent()
     assert 0.0 <= box.x0 < box.x1 <= sheet.bbox.width
     assert box.y0 >= 0.0
 
 
-def test_a_lift_stands_at_its_angle() -> None:
-    """Reference: analytic. A tip at 15.7 m and 45 degrees: 11.10 m away and above the foot."""
-    whole = drawn("lift").axes[0]
-    places = np.concatenate([line.get_xydata() for line in whole.lines])
-    for reference in ((11.1016, 11.1016), (1.2728, -0.2828)):
-        nearest = np.nanmin(np.abs(places - reference).max(axis=1))
-        assert nearest < 0.11  # half the height of the fly
-
-
-def test_unequal_walls_are_labelled() -> None:
-    """Reference: the case files. The last box of the lift has equal walls."""
-
-    def sizes(name: str) -> list[str]:
-        texts = [text.get_text() for axes in drawn(name).axes for text in axes.texts]
-        return [text for text in texts if " × " in text]
-
-    boxes = ["300 × 220\nweb 5\nflange 6", "256 × 180\nweb 4\nflange 5", "218 × 146\nwalls 4"]
-    assert sizes("lift") == boxes
-    assert sizes("crane")[0] == "940 × 680\nweb 6\nflanges\n8, 10"
-
-
-def test_drawings_label_every_part() -> None:
-    """Reference: the case files."""
-    assert legend(drawn("lift")) == [
-        "slide pads", "support", "cylinder, 30 MN/m", "mass at the tip, 150 kg",
-        "1.595 kN perpendicular to the boom, towards its lower side, ramp of 0.1 s", "play 3 mm",
-        "self-weight, g = 9.807 m/s²",
-    ]  # fmt: skip
-    found = legend(drawn("inspection-arm"))
-    assert "lateral play 4 mm" in found
-    assert "350 N/m lateral, wind, root" in found
-
-
-@pytest.mark.parametrize("name", ["paper", "crane", "three-segments"])
-def test_sections_are_as_large_as_the_case_says(name: str) -> None:
-    """Reference: the plates of the boom. All sections of a panel have the same scale."""
-    boom = build_boom(shipped(name))
-    panel = next(axes for axes in drawn(name).axes if axes.get_title("left").startswith("sections"))
+def sections(sheet: Figure) -> Axes:
+    (panel,) = (axes for axes in sheet.axes if axes.get_title("left").startswith("sections"))
     assert panel.get_aspect() == 1.0
-    plates = [patch for patch in panel.patches if isinstance(patch, Polygon)]
+    return panel
+
+
+def test_sections_are_as_large_as_the_case_says() -> None:
+    """Reference: the plates of the boom. All sections of a panel have the same scale."""
+    boom = build_boom(shipped("crane"))
+    plates = [patch for patch in sections(drawn("crane")).patches if isinstance(patch, Polygon)]
     assert len(plates) == sum(len(s.section.plates) for s in boom.segments if s.section)
     first = boom.segments[0].section
     heights = np.concatenate([plate.get_xy()[:, 1] for plate in plates[: len(first.plates)]])
@@ -334,27 +266,19 @@ def test_sections_are_as_large_as_the_case_says(name: str) -> None:
 
 
 def test_sections_show_their_pads() -> None:
-    """Reference: by hand, the sizes in the case files; pads of unknown thickness fill the gap."""
-    lift, arm = (build_boom(shipped(name)) for name in ("lift", "inspection-arm"))
+    """Reference: by hand, the sizes in the case file; pads of unknown thickness fill the gap."""
+    arm = build_boom(shipped("inspection-arm"))
     first, second = arm.joints
-    assert first.pad is not None
     unknown = replace(arm, joints=(replace(first, pad=replace(first.pad, thickness=None)), second))
     # The left upper pads of the second segment: lowest (y, z), width and height in m.
-    for name, boom, count, pads in (
-        ("lift", lift, 8, [(-0.09, 0.1305, 0.05, 0.012)]),
-        (
-            "inspection-arm",
-            arm,
-            16,
-            [(-0.105, 0.149, 0.05, 0.025), (-0.1335, 0.095, 0.025, 0.05)],
-        ),
-        ("inspection-arm", unknown, 16, [(-0.105, 0.149, 0.05, 0.016)]),
+    for boom, pads in (
+        (arm, [(-0.105, 0.149, 0.05, 0.025), (-0.1335, 0.095, 0.025, 0.05)]),
+        (unknown, [(-0.105, 0.149, 0.05, 0.016)]),
     ):
         with rc_context(theme.RC):
-            sheet = boom_sheet(shipped(name), boom)
-        (panel,) = (axes for axes in sheet.axes if axes.get_title("left").startswith("sections"))
+            panel = sections(boom_sheet(shipped("inspection-arm"), boom))
         found = [one.get_bbox().bounds for one in panel.patches if isinstance(one, Rectangle)]
-        assert len(found) == count
+        assert len(found) == 16
         pitch = 1.35 * boom.segments[0].section.size("y")
         for pad in pads:
             assert np.abs(np.subtract(found, pad) - [pitch, 0, 0, 0]).max(axis=1).min() < 1e-9
@@ -370,11 +294,6 @@ def test_a_force_down_points_down() -> None:
     payload = acts["mass at the tip, 350 kg"]
     turned = payload.on_boom(60.0).transformed(Affine2D().rotate_deg(60.0))
     np.testing.assert_allclose(turned.vertices, PAYLOAD.vertices, atol=1e-12)
-
-
-def test_amounts_are_read_at_a_glance() -> None:
-    """Reference: by hand."""
-    assert (abbreviate(83.16, "N/m"), abbreviate(-5e4, "N m")) == ("83.16 N/m", "−50 kN m")
 
 
 FRAMES = TIME[::40]
@@ -440,16 +359,6 @@ def test_symbols_follow_the_boom_and_its_supports_stay(shown: View) -> None:
         edge = [np.nanmax(places[mark.anchor == near, 2]) for near in ends]
         np.testing.assert_allclose(edge, rest[ends, 2], atol=1e-9)
         np.testing.assert_allclose(places[np.isfinite(places[:, 1]), 1], 0.0, atol=1e-9)
-
-
-def test_few_shapes_leave_little() -> None:
-    """Reference: the motion, with 3 shapes and a noise below the permitted error."""
-    rng = np.random.default_rng(1)
-    moved = rng.standard_normal((40, 3)) @ rng.standard_normal((3, 300))
-    noise = 0.1 * TRUNCATION * np.abs(moved).max() * rng.uniform(-1.0, 1.0, moved.shape)
-    parts, shapes = few_shapes(moved + noise)
-    assert parts.shape == (40, 3)
-    assert np.abs(parts @ shapes - moved).max() < 2.0 * TRUNCATION * np.abs(moved).max()
 
 
 def test_points_and_shapes_rotate_with_the_boom(shown: View) -> None:

@@ -15,9 +15,8 @@ from protractile.runs import CASES
 from protractile.runs.case import reading
 from protractile.runs.case.actions import STANDARD_GRAVITY
 from protractile.runs.case.reading import CheckedCase, load
-from protractile.runs.case.schema import Case
 from protractile.runs.check import check_case
-from protractile.runs.pipeline.quantities import case_limits, decay_time
+from protractile.runs.pipeline.quantities import decay_time
 from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report.figure_context import Figure
 from protractile.runs.report.summary_table import limit_faults, limit_table
@@ -38,34 +37,17 @@ from protractile.runs.sweep.variation import numbers
 from tests.docs.conftest import toml_blocks
 from tests.runs.case_texts import (
     CANTILEVER,
-    CLAMPED,
     LOAD,
     MASS,
-    REST,
-    STEEL,
     THIN,
-    box,
     edited,
-    elements,
-    joint,
     static_tip,
-    table,
 )
 from tests.runs.summaries import printed, run
 from tests.system.run_folder import protractile
 
 sweep = partial(protractile, "sweep", "case.toml")
 LENGTHS = "segment[1].length=3:5:3"
-SQUARE = f"""
-title = "A square boom in space"
-time = {{ duration = 0.1, output_step = 1e-3 }}
-{STEEL}
-{box("base", (0.0, 4.0), (0.2, 0.2, 0.006, 0.006), CLAMPED)}
-{box("fly", (3.0, 6.5), (0.16, 0.16, 0.005, 0.005))}
-{joint("fly", "base", 0.004, (3.0, 4.0), "lateral_play = 0.004")}
-{elements("elements", theory="timoshenko")}
-{REST}
-"""
 ONE = "give one of --vary, --sensitivity and --samples"
 
 
@@ -93,17 +75,6 @@ def test_a_bound_is_bracketed(capsys: pytest.CaptureFixture[str]) -> None:
     assert rows == [f"{low:.6g}", f"{high:.6g}"]
 
 
-def test_search_with_governing_walls_gives_a_caution() -> None:
-    """Reference: exact words. Pads away from the webs on flanges of 2 mm bend these alone."""
-    text = toml_blocks("tutorial.md")[0]
-    Path("case.toml").write_text(text, encoding="utf-8")
-    assert rigid_wall_cautions(load("case.toml"), "beam") == []
-    Path("case.toml").write_text(edited(text, *THIN), encoding="utf-8")
-    (caution,) = rigid_wall_cautions(load("case.toml"), "beam")
-    assert caution.startswith("caution: walls bend under pads, which moves the tip by ")
-    assert caution.endswith(" beam has rigid walls: the bound is unsafe; take a shell")
-
-
 @pytest.mark.parametrize(
     ("arguments", "line"),
     [
@@ -129,6 +100,16 @@ def test_a_search_without_an_aim_is_refused(
     assert capsys.readouterr().err == f"protractile: case.toml: {line}\n"
 
 
+def test_search_with_governing_walls_gives_a_caution() -> None:
+    """Reference: exact words. Pads away from the webs on flanges of 2 mm bend these alone."""
+    text = toml_blocks("tutorial.md")[0]
+    for edits, count in (((), 0), (THIN, 1)):
+        Path("case.toml").write_text(edited(text, *edits), encoding="utf-8")
+        lines = rigid_wall_cautions(load("case.toml"), "beam")
+        assert len(lines) == count
+    assert lines[0].endswith(" beam has rigid walls: the bound is unsafe; take a shell")
+
+
 def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, powers of the numbers in q L⁴/(8 E J) and √(E J/m)/L²."""
     assert sweep("--sensitivity", "--out", "out") == 0
@@ -150,42 +131,31 @@ def test_changes_are_those_of_closed_forms(capsys: pytest.CaptureFixture[str]) -
     assert "Change of results in % by 1 % of each number: beam" in capsys.readouterr().out
 
 
-SHIPPED = sorted(path.stem for path in CASES.glob("*.toml"))
-
-
-def shortened(name: str) -> str:
-    """Return the text of a shipped case with a duration of 0.05 s, which sensitivities need not."""
-    text = (CASES / f"{name}.toml").read_text("utf-8").replace("gust.csv", str(CASES / "gust.csv"))
-    text, count = re.subn(r"(?m)^duration = .*", "duration = 0.05", text, count=1)
-    assert count == 1
-    return re.sub(r"(?m)^output_step = .*", "output_step = 1e-2", text)
-
-
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SHIPPED)
+@pytest.mark.parametrize("name", ["crane", "drawn-out"])
 def test_sensitivities_are_those_of_direct_sweeps(
     name: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """Reference: other code, a sweep over both values of a key, or over the valid and the case's.
 
-    Of about 8 keys of a case, those with a refused side, those behind them, and every twelfth are
-    compared.
+    Of every sixth key, the first, those with a refused side and those behind them are compared.
     """
-    Path("case.toml").write_text(shortened(name), encoding="utf-8")
-    count = len([*numbers(tables_of(load("case.toml")))])
-    some = slice(None, None, 1 + count // 12)
-    monkeypatch.setattr(sampling, "numbers", lambda tables: [*numbers(tables)][some])
+    text = (CASES / f"{name}.toml").read_text("utf-8")
+    for key, value in (("duration", "0.05"), ("output_step", "1e-2")):
+        text = re.sub(rf"(?m)^{key} = .*", f"{key} = {value}", text, count=1)
+    Path("case.toml").write_text(text, encoding="utf-8")
+    values = {place.name: value for place, value in numbers(tables_of(load("case.toml")))}
+    monkeypatch.setattr(sampling, "numbers", lambda tables: [*numbers(tables)][::6])
     planned, changed_numbers = plan_changes("case.toml", None, None)
     (model,) = planned.coordinates["model"]
     refused = [i for i, one in enumerate(changed_numbers) if len(one.points) < 2]
-    chosen = {i for at in refused for i in (at, at + 1)} | {*range(0, len(changed_numbers), 12)}
+    chosen = {i for at in refused for i in (at, at + 1)} | {0, 6}
     compared = [one for i, one in enumerate(changed_numbers) if i in chosen]
     outcomes = [Outcome({}, {}) for _ in planned.points]
     for index in [0, *(index for one in compared for index in one.points.values())]:
         outcomes[index] = run_point(planned.points[index].case)
     found = changes(planned, changed_numbers, outcomes)
     base = outcomes[0].models[model]
-    values = {place.name: value for place, value in numbers(tables_of(load("case.toml")))}
 
     def sweep_over(change: Change, *sides: int) -> Plan:
         texts = [repr((1.0 + CHANGE * side) * values[change.key]) for side in sides]
@@ -250,28 +220,18 @@ def test_points_are_normal(dimensions: int) -> None:
 def test_a_linear_result_scatters_like_its_load(capsys: pytest.CaptureFixture[str]) -> None:
     """Reference: analytic, the tip q L⁴/(8 E J) of a normally distributed q."""
     Path("case.toml").write_text(SCATTERED, encoding="utf-8")
-    assert sweep("--samples", "64", "--out", "out") == 0
+    assert reading.load("case.toml").segments[0].load == LOAD
+    assert sweep("--samples", "32", "--out", "out") == 0
     table = pd.read_csv("out/sampling.csv", index_col="result").loc["tip_at_rest"]
-    assert table["mean"] == pytest.approx(static_tip(), rel=1e-6)
     sd = static_tip() * SD / LOAD
-    assert table["sd"] == pytest.approx(sd, rel=1e-6)
+    assert [table["mean"], table["sd"]] == pytest.approx([static_tip(), sd], rel=1e-6)
     for part in QUANTILES:
         expected = static_tip() + sd * norm.ppf(part)
         assert table[str(part)] == pytest.approx(expected, abs=0.08 * sd)
     samples = pd.read_csv("out/samples.csv")
-    assert samples["segment[1].load"].mean() == pytest.approx(LOAD, rel=1e-9)
     ratio = samples["tip_at_rest"] / samples["segment[1].load"]
     np.testing.assert_allclose(ratio, static_tip() / LOAD, rtol=1e-6)
-    assert "Scatter of results over 64 samples: beam" in capsys.readouterr().out
-
-
-def test_a_run_takes_the_mean() -> None:
-    Path("case.toml").write_text(SCATTERED, encoding="utf-8")
-    assert reading.load("case.toml").segments[0].load == LOAD
-    # A mean may be no text.
-    Path("case.toml").write_text(SCATTERED.replace(f"mean = {LOAD}", "mean = 'a'"), "utf-8")
-    with pytest.raises(BadInput, match=r"got 'a' and 5\.0"):
-        reading.load("case.toml")
+    assert "Scatter of results over 32 samples: beam" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(
@@ -279,15 +239,13 @@ def test_a_run_takes_the_mean() -> None:
     [
         (SCATTERED, "48",
          "--samples: must be a power of 2 above 2 and at most 10000, such as 64, got 48"),
-        (SCATTERED, str(2**20),
-         "--samples: must be a power of 2 above 2 and at most 10000, such as 64, got 1048576"),
-        (SCATTERED, str(2**200),
-         "--samples: must be a power of 2 above 2 and at most 10000, such as 64, got "
-         "1606938044258990275541962092341162602522202993782792835301376"),
+        (SCATTERED, str(2**200), "--samples: must be a power of 2 above 2 and at most 10000, "),
         (CANTILEVER, "64", "--samples: the case has no number with a mean and an sd; give one, for "
          "example { mean = 0.003, sd = 0.0005 }"),
         (SCATTERED.replace(f"sd = {SD}", "sd = 0"), "64",
          "segment[1].load: must have a finite mean and an sd above 0, got 100.0 and 0"),
+        (SCATTERED.replace(f"mean = {LOAD}", "mean = 'a'"), "64",
+         "segment[1].load: must have a finite mean and an sd above 0, got 'a' and 5.0"),
         (CANTILEVER.replace(f"= {MASS}", f"= {{ mean = {MASS}, sd = 15.0 }}"), "64",
          "--samples: a sample is not valid, segment[1].mass_per_length: must be a"),
     ],
@@ -319,54 +277,36 @@ def test_limits_decide_by_the_numbers_of_a_run() -> None:
     assert checks["tip_at_rest"].values["beam"] == pytest.approx(tip, rel=1e-6)
     frequency = 1.875104**2 * np.sqrt(2.0e5 / 20.0) / (2.0 * np.pi * 16.0)
     assert checks["first_frequency"].values["beam"] == pytest.approx(frequency, rel=1e-4)
-    assert results.measure("beam")["decay_time"] == pytest.approx(
-        np.log(10.0) / (0.02 * 2.0 * np.pi * frequency), rel=1e-4
-    )
-    table = limit_table(results)
-    assert [row[1] for row in table.rows] == ["✓", "✗", "✓"]
+    limit = checks["first_frequency"].limit
+    assert [limit.is_met_by(value) for value in (3.4, 3.39, np.nan)] == [True, False, False]
+    measured = results.measure("beam")
+    dying = np.log(10.0) / (0.02 * 2.0 * np.pi * frequency)
+    assert measured["decay_time"] == pytest.approx(dying, rel=1e-4)
+    assert decay_time(0.0, 2.0) is None
+    assert [row[1] for row in limit_table(results).rows] == ["✓", "✗", "✓"]
     (fault,) = limit_faults(results)
-    far = 1e3 * results.measure("beam")["tip"]
-    assert fault == f"limits.tip: {far:.4g} mm in beam; the case demands tip deflection ≤ 16 mm"
+    far = f"{1e3 * measured['tip']:.4g}"
+    assert fault == f"limits.tip: {far} mm in beam; the case demands tip deflection ≤ 16 mm"
 
 
 def test_check_compares_limits_with_the_tip_at_rest() -> None:
     """Reference: analytic, q L⁴/(8 E J) = 16 mm; exact words."""
-    loose = reading.load(write("tip_at_rest = 0.02\ntip = 0.02\nfirst_frequency = 3.4"))
     rests = "the static tip deflection (maximum load) is 16 mm"
-    assert limit_sentences(loose) == [
-        "Limit static tip deflection (maximum load) ≤ 20 mm: met in this case, 16 mm; `protractile "
-        "prove` checks the combinations against it.",
-        f"Limit tip deflection ≤ 20 mm: {rests}, and the motion adds to it; a run decides.",
-        "Limit first frequency ≥ 3.4 Hz: a run decides.",
-    ]
-    tight = reading.load(write("tip_at_rest = 0.01\ntip = 0.015"))
-    assert limit_sentences(tight) == [
-        f"caution: the limit static tip deflection (maximum load) ≤ 10 mm is exceeded: {rests}",
-        f"caution: the limit tip deflection ≤ 15 mm is exceeded: {rests}",
-    ]
-
-
-@pytest.mark.usefixtures("few_figures")
-def test_a_boom_in_space_has_a_limit_of_its_lateral_tip() -> None:
-    """Reference: symmetry. A square boom deflects along y as along z under the same force."""
-    up, aside = (
-        SQUARE + table("[[load]]", segment="fly", x="head", magnitude=900.0, direction=way)
-        for way in "zy"
-    )
-    far = run_case(reading.load(write("tip = 1.0", up))).measure("elements")["tip"]
-    for part, holds in ((0.999, False), (1.001, True)):
-        case = reading.load(write(f"tip_lateral = {part * far}", aside))
-        results = run_case(case)
-        (check,) = results.check_limits()
-        assert check.values["elements"] == pytest.approx(far, rel=1e-6)
-        assert (check.holds, not [*limit_faults(results)]) == (holds, holds)
-        (sentence,) = limit_sentences(case)
-        words = "Limit lateral tip" if holds else "caution: the limit lateral tip"
-        assert sentence.startswith(words)
-
-
-def limit_sentences(case: Case) -> list[str]:
-    return [line for line in check_case(CheckedCase(case)).lines if "imit " in line]
+    told = {
+        "tip_at_rest = 0.02\ntip = 0.02\nfirst_frequency = 3.4": [
+            "Limit static tip deflection (maximum load) ≤ 20 mm: met in this case, 16 mm; "
+            "`protractile prove` checks the combinations against it.",
+            f"Limit tip deflection ≤ 20 mm: {rests}, and the motion adds to it; a run decides.",
+            "Limit first frequency ≥ 3.4 Hz: a run decides.",
+        ],
+        "tip_at_rest = 0.01\ntip = 0.015": [
+            f"caution: the limit static tip deflection (maximum load) ≤ 10 mm is exceeded: {rests}",
+            f"caution: the limit tip deflection ≤ 15 mm is exceeded: {rests}",
+        ],
+    }
+    for limits, lines in told.items():
+        checked = check_case(CheckedCase(reading.load(write(limits)))).lines
+        assert [line for line in checked if "imit " in line] == lines
 
 
 @pytest.mark.usefixtures("few_figures")
@@ -398,11 +338,3 @@ def test_a_sweep_draws_and_counts_limits(figures: list[Figure]) -> None:
     (number,) = (i for i, title in enumerate(chart.panels) if title.endswith("dotted: limit"))
     *_, line = (curve for curve in chart.curves if curve.panel == number)
     assert line.values == pytest.approx(1e3 * limit)
-
-
-def test_permitted_values_themselves_are_permitted() -> None:
-    (limit,) = case_limits(reading.load(write("first_frequency = 2.0")).limits)
-    assert limit.is_met_by(2.0)
-    assert not limit.is_met_by(1.99)
-    assert not limit.is_met_by(float("nan"))
-    assert decay_time(0.0, 2.0) is None

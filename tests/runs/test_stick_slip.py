@@ -43,9 +43,8 @@ def drawn_by(folder: Path, rope: str, **others: str) -> Case:
 
 
 def test_no_stick_slip_without_friction(tmp_path: Path) -> None:
-    """Reference: exact message."""
-    changes = {"least_overlap = 1.0 }": ROPE, "friction = 0.2 ": "# "}
-    assert refusal(tmp_path, edited(DRAWN, *changes.items())) == (
+    edits = ("least_overlap = 1.0 }", ROPE), ("friction = 0.2 ", "# ")
+    assert refusal(tmp_path, edited(DRAWN, *edits)) == (
         "joint[1].drive.static_friction: nothing rubs in the joint; give it friction, or leave "
         "static_friction out"
     )
@@ -73,46 +72,38 @@ def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
     """Reference: analytic, m g sin θ of 550.7 kg, which the drive carries before it moves."""
     along = {
         "[[joint]]": "[gravity]\nangle = 30.0\n\n[[joint]]",
-        "duration = 7.0": "duration = 0.2",
+        "duration = 7.0": "duration = 0.02",
+        "least_overlap = 1.0 }": ROPE + "\nlocked_at = 'tail'",
     }
-    rope = {"least_overlap = 1.0 }": ROPE + "\nlocked_at = 'tail'"}
-    case = read_case(tmp_path, edited(DRAWN, *rope.items(), *along.items()))
+    case = read_case(tmp_path, edited(DRAWN, *along.items()))
     (pulled,) = elastic_drives(case, build_boom(case)).values()
     assert pulled.thrust == pytest.approx(0.5 * 550.7 * 9.80665)
-    later = change(case, **{"joint.drive.start": 0.1})
-    results = run_case(later, models=["kantorovich-5"])
-    data = results.trajectories.sel(model="kantorovich-5")
-    assert data["drive_force"].values[:100] == pytest.approx(pulled.thrust)
-
-
-def test_check_predicts_stick_slip(tmp_path: Path) -> None:
-    """Reference: by hand, pads of 27 and 21.6 kN, 550.7 kg on 200 kN/m; the formula's speed."""
-    shown = printed_check(drawn_by(tmp_path, ROPE), 300)
-    assert (
-        "The drive of 'inner' moves 550.7 kg, with a frequency of 3.03 Hz and a damping ratio of "
-        "2.38 %; against the largest static friction of 9.72 kN it sticks and slips below 0.791 "
-        "m/s.\n"
-    ) in shown
-    assert "caution" not in shown
+    later = change(case, **{"joint.drive.start": 0.01})
+    data = run_case(later, models=["kantorovich-5"]).trajectories.isel(model=0)
+    assert data["drive_force"].values[:10] == pytest.approx(pulled.thrust)
 
 
 @pytest.mark.parametrize(
-    ("rope", "caution"),
+    ("rope", "slow", "told"),
     [
-        (ROPE,
-         "0.2 m/s at most, and moves smoothly from 0.791 m/s on; increase the speed, the stiffness "
-         "or the damping"),
-        (ROPE.replace("dashpot = 500.0, ", ""),
-         "0.2 m/s at most, and has no damping; give it a dashpot"),
+        (ROPE, False,
+         "The drive of 'inner' moves 550.7 kg, with a frequency of 3.03 Hz and a damping ratio of "
+         "2.38 %; against the largest static friction of 9.72 kN it sticks and slips below 0.791 "
+         "m/s.\n"),
+        (ROPE, True,
+         "caution: the drive of 'inner' sticks and slips during its whole travel: it moves at 0.2 "
+         "m/s at most, and moves smoothly from 0.791 m/s on; increase the speed, the stiffness or "
+         "the damping\n"),
+        (ROPE.replace("dashpot = 500.0, ", ""), True,
+         "0.2 m/s at most, and has no damping; give it a dashpot\n"),
     ],
 )  # fmt: skip
-def test_a_check_warns_of_it(tmp_path: Path, rope: str, caution: str) -> None:
-    """Reference: exact message, with the speeds of the previous test."""
-    slow = {"time = 5.0": "time = 40.0", "duration = 7.0": "duration = 41.0"}
-    assert (
-        f"caution: the drive of 'inner' sticks and slips during its whole travel: it moves at "
-        f"{caution}\n"
-    ) in printed_check(drawn_by(tmp_path, rope, **slow), 300)
+def test_check_predicts_stick_slip(tmp_path: Path, rope: str, slow: bool, told: str) -> None:
+    """Reference: by hand, pads of 27 and 21.6 kN, 550.7 kg on 200 kN/m; the formula's speed."""
+    slower = {"time = 5.0": "time = 40.0", "duration = 7.0": "duration = 41.0"}
+    shown = printed_check(drawn_by(tmp_path, rope, **(slower if slow else {})), 300)
+    assert told in shown
+    assert ("caution" in shown) == slow
 
 
 @pytest.mark.slow
@@ -130,12 +121,12 @@ def test_run_reports_stick_slip(tmp_path: Path) -> None:
     assert come == pytest.approx(summed, abs=1e-4)
     assert own.energy_residual < 1e-12
     assert own.sticks >= 1
-    assert own.peak >= float(np.abs(data["drive_force"]).max())
-    assert own.peak == pytest.approx(float(np.abs(data["drive_force"]).max()), rel=0.02)
+    force = np.abs(data["drive_force"])
+    assert 0.98 * own.peak < float(force.max()) <= own.peak
     assert own.speed == pytest.approx(float(np.abs(data["extension_speed"]).max()), rel=0.01)
     assert own.behind == float(data["drive_lag"][-1])
     moving = np.diff(data["extension"], prepend=0.0) != 0.0
-    assert own.mean == pytest.approx(float(np.abs(data["drive_force"])[moving].mean()))
+    assert own.mean == pytest.approx(float(force[moving].mean()))
     read = Summary.model_validate_json(str(results.summary))
     assert read.models["kantorovich-5"].stick_slip["drive_force"] == own
     table = stick_slip_table(results)
@@ -147,13 +138,14 @@ def test_run_reports_stick_slip(tmp_path: Path) -> None:
     measured = results.measure("kantorovich-5")
     assert (measured["drive_force"], measured["drive_slip"]) == (own.peak, own.slip)
     _, figure = drives(FigureContext(results))
-    assert figure.name == "stick-slip"
     assert figure.title.startswith(f"Drive of inner: sticks {own.sticks} times, slips by up to ")
-    stiff = run_case(drawn_by(tmp_path, "least_overlap = 1.0 }", **short), models=["kantorovich-5"])
-    for name, values in stiff.trajectories.data_vars.items():
-        assert np.array_equal(values, results.trajectories[name])
-    assert not stick_slip_table(stiff).rows
-    assert "stick_slip" not in str(stiff.summary)
+    # 0.1 m of the remaining overlap of 1 m.
+    shown = results.case.model_copy(update={"shown_units": "mm-t-s"})
+    late = xr.Dataset({"drive_lag": ("time", [-0.1])})
+    (line,) = lag(Context(shown, results.boom, data=late))
+    assert line.startswith(
+        "'inner' lags up to 100 mm behind its drive, more than 1 % of the 1000 mm of "
+    )
 
 
 def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
@@ -162,8 +154,8 @@ def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
     beam = '[[model]]\nname = "timoshenko"'
     coarse = 'kind = "shell"\nmesh_size = 1.0\ncontact_tolerance = "any"'
     changes = {
-        "travel = 4.0, time = 5.0": "travel = 0.03, time = 0.4",
-        "duration = 7.0": "duration = 0.45",
+        "travel = 4.0, time = 5.0": "travel = 0.015, time = 0.2",
+        "duration = 7.0": "duration = 0.225",
         beam: f'[[model]]\nname = "shell"\n{coarse}\n\n{beam}',
     }
     case = drawn_by(tmp_path, ROPE.replace("2e5", "2e6"), **changes)
@@ -172,25 +164,11 @@ def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
         results.summary.models[name].stick_slip["drive_force"] for name in ("shell", "timoshenko")
     )
     slips = _checked_slips(results.trajectories.sel(model="shell"))
-    assert 100 < slips < 400
+    assert 50 < slips < 200
     assert shell.sticks == beams.sticks >= 1
     assert shell.energy_residual < 1e-12
     for name in ("mean", "peak", "slip", "speed"):
         assert getattr(shell, name) == pytest.approx(getattr(beams, name), rel=1e-3)
-
-
-def test_a_stiff_rope_pulls_as_a_stiff_drive(tmp_path: Path) -> None:
-    """Reference: analytic, friction plus the inertia of 550.7 kg on the S-curve."""
-    short = {"time = 5.0": "time = 1.2", "duration = 7.0": "duration = 1.2"}
-    rope = "least_overlap = 1.0, stiffness = 1e10, dashpot = 2e6 }"
-    results = run_case(drawn_by(tmp_path, rope, **short), models=["kantorovich-5"])
-    data = results.trajectories.sel(model="kantorovich-5")
-    time = data["time"].values
-    speed = 4.0 / 1.2 * (1.0 - np.cos(2.0 * np.pi * time / 1.2))
-    asked = data["drive_friction"].values[1:] + 550.7 * np.diff(speed) / np.diff(time)
-    force = data["drive_force"].values[1:]
-    assert force.max() > 9000.0
-    assert np.abs(force - asked)[10:-10].max() < 1e-3 * force.max()
 
 
 def _checked_slips(data: xr.Dataset) -> int:
@@ -201,29 +179,6 @@ def _checked_slips(data: xr.Dataset) -> int:
     left = (data["drive_force"].values - friction)[1:] - 550.7 * np.diff(speed) / np.diff(time)
     assert np.abs(left[slips]).max() < 1e-9 * friction.max()
     return int(slips.sum())
-
-
-def test_lag_is_in_the_units_of_the_case(tmp_path: Path) -> None:
-    """Reference: by hand, 0.1 m of the remaining overlap of 1 m."""
-    case = drawn_by(tmp_path, ROPE).model_copy(update={"shown_units": "mm-t-s"})
-    data = xr.Dataset({"drive_lag": ("time", [-0.1])})
-    (line,) = lag(Context(case, build_boom(case), data=data))
-    assert line.startswith(
-        "'inner' lags up to 100 mm behind its drive, more than 1 % of the 1000 mm of "
-    )
-
-
-def test_large_lag_gives_a_caution_in_the_report(tmp_path: Path) -> None:
-    """Reference: by hand. 9.72 kN stretch 1e5 N/m by 97 mm, at most half as much again."""
-    slow = {"time = 5.0": "time = 8.0", "duration = 7.0": "duration = 8.0"}
-    case = drawn_by(tmp_path, ROPE.replace("2e5", "1e5"), **slow)
-    results = run_case(change(case, **{"time.output_step": 0.01}), models=["kantorovich-5"])
-    lag = float(np.abs(results.trajectories["drive_lag"]).max())
-    assert 0.09 < lag < 0.15
-    assert results.summary.cautions[-1] == (
-        f"caution: 'inner' lags up to {lag:.4g} m behind its drive, more than 1 % of the 1 m of "
-        "overlap: the motion across the boom follows the drive and neglects the lag"
-    )
 
 
 # No play and a load that ramps: no chaos, and swings that are no mere distance of the start.
@@ -259,21 +214,19 @@ def lifted(travel: float, time: float) -> GapSystem:
     return replace(system, travels=[Travel(SCurve(travel, time), table, (("rows", 0),), "")])
 
 
-def test_fixed_boom_vibrates_with_its_initial_amplitude() -> None:
-    """Reference: analytic. 1 N on springs of 1 + 3 N/m: 1/4 m about 1/4 m."""
-    system = replace(lifted(0.0, 1.0), travels=())
-    swing, _ = farthest_from_rest(system, simulate(system, 4.0))
-    assert swing == pytest.approx(0.25, rel=1e-4)
-
-
 def test_a_slow_drive_swings_about_the_rest_of_each_place() -> None:
-    """Reference: analytic, from 1/4 to 1/(1 + 3/4) m; a sudden motion vibrates by all of it."""
+    """Reference: analytic, 1 N on springs of 1 + 3 N/m: 1/4 m about 1/4 m without a motion.
+
+    From 1/4 to 1/(1 + 3/4) m; a sudden motion vibrates by all of it.
+    """
+    fixed = replace(lifted(0.0, 1.0), travels=())
+    assert farthest_from_rest(fixed, simulate(fixed, 4.0))[0] == pytest.approx(0.25, rel=1e-4)
     way = 1.0 / 1.75 - 0.25
     slow, fast = (
         farthest_from_rest(system, simulate(system, duration, position=[0.25]))[0]
-        for system, duration in ((lifted(1.0, 60.0), 60.0), (lifted(1.0, 1e-3), 4.0))
+        for system, duration in ((lifted(1.0, 30.0), 30.0), (lifted(1.0, 1e-3), 4.0))
     )
-    assert slow < 0.01 * way
+    assert slow < 0.02 * way
     assert fast == pytest.approx(way, rel=1e-3)
 
 
@@ -295,10 +248,7 @@ WAVE = PiecewiseLinear(np.arange(0.0, 10.0, 0.1).tolist(), [0.0, 1.0, 1.0, 0.0] 
 def test_quasi_static_motion_has_no_residual_vibration(load: History) -> None:
     """Reference: analytic, F/(1 + 3 r²); the load moves the tip by at least 0.5 m."""
     assert of_follower(load) < 0.01 * 0.5
-
-
-def test_fast_alternating_load_has_no_residual_vibration() -> None:
-    """Reference: by hand. 5.5 Hz reverse 110 times in 10 s, with four equilibria each."""
+    # 5.5 Hz reverse 110 times in 10 s, with four equilibria each.
     with pytest.raises(NumericsError, match=r"^loads and drives reverse 110 times, more than 100$"):
         of_follower(Sine(5.5))
 

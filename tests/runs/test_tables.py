@@ -2,10 +2,8 @@
 """Tables and charts, their texts and units, and case files that `protractile new` writes."""
 
 import base64
-import gzip
 import json
 import math
-import re
 from pathlib import Path
 
 import numpy as np
@@ -19,38 +17,37 @@ from protractile.runs.case.reading import load_checked
 from protractile.runs.case.starting_points import write_case
 from protractile.runs.cautions import rules
 from protractile.runs.cautions.context import Context
-from protractile.runs.check import check_case
 from protractile.runs.options import Kind, Standard
 from protractile.runs.pipeline.combinations import combination_states
 from protractile.runs.pipeline.model_quality import main_models
 from protractile.runs.pipeline.proofs import prove
-from protractile.runs.process.bad_input import BadInput
 from protractile.runs.report import theme
-from protractile.runs.report.charts import MOST, Chart, Curve, extremes, pack_charts, pack_plotly
+from protractile.runs.report.charts import MOST, Chart, Curve, extremes, pack_charts
 from protractile.runs.report.output import WORKBOOK, write_workbook
 from protractile.runs.report.tables import ROOMY, Amount, Column, Table
-from tests.runs.case_texts import CANTILEVER, edited, load_checked_text, read_case, refusal, shipped
+from tests.runs.case_texts import CANTILEVER, edited, read_case, refused, shipped
 from tests.runs.summaries import printed
-
-ROWS = [("beam", "1 s\n2 mm"), ("[b]", "–")]
-TABLE = Table.of_rows("peaks", "Peaks", ("model", "first\nmm"), ROWS, ("A note.",))
 
 
 def test_markdown_has_one_line_a_row_and_the_terminal_all_cells() -> None:
-    assert TABLE.markdown().splitlines() == [
+    """Reference: by hand, characters of the columns and three spaces between them."""
+    rows = [("beam", "1 s\n2 mm"), ("[b]", "–")]
+    table = Table.of_rows("peaks", "Peaks", ("model", "first\nmm"), rows, ("A note.",))
+    assert table.markdown().splitlines() == [
         "## Peaks", "", "| model | first mm |", "| :-- | --: |", "| beam | 1 s 2 mm |",
         "| [b] | – |", "", "A note.",
     ]  # fmt: skip
-    lines = [line.split() for line in printed(TABLE.show, width=60).splitlines()]
+    lines = [line.split() for line in printed(table.show, width=60).splitlines()]
     assert ["beam", "1", "s"] in lines
     assert ["[b]", "–"] in lines
-
-
-def test_words_of_headings_are_whole_in_a_narrow_terminal() -> None:
-    """Reference: by hand. With three spaces between columns the table needs 35 characters."""
     headings = ["contact", "dynamic", "factor", "mode"]
-    table = Table("", [Column(one, [1.0], ".2f") for one in headings])
-    assert printed(table.show, width=30).split()[:4] == headings
+    narrow = Table("", [Column(one, [1.0], ".2f") for one in headings])
+    assert printed(narrow.show, width=30).split()[:4] == headings
+    # This table needs 24 characters with whole cells, 19 with whole words.
+    columns = [Column("long heading of", ["41.3 bending"]), Column("two words", ["2 × 10⁻¹²"])]
+    wide, thin = (printed(Table("", columns).show, width=width) for width in (24, 20))
+    assert "41.3 bending" in wide
+    assert "2 × 10⁻¹²" in thin
 
 
 def test_wide_table_is_detected() -> None:
@@ -59,13 +56,10 @@ def test_wide_table_is_detected() -> None:
         first, second = letters // 2, letters - letters // 2
         row = ("x" * first, "\n".join(["y", "y" * second]))
         assert Table.of_rows("", "", ("a", "b"), [("x", "y"), row]).crowded is crowded
-    # So is one with longer words above its columns.
-    heading = f"{'x' * (ROOMY - 5)} {'y' * (ROOMY - 5)}"
-    assert not Table.of_rows("", "", ("a", heading), [("x", "y")]).crowded
-    assert Table.of_rows("", "", ("a", f"x{heading}"), [("x", "y")]).crowded
 
 
 def test_rows_are_in_the_units_of_their_headings_as_json_says_them() -> None:
+    """Reference: by hand. Half the range of repetitions, 10 ms, leaves two digits of the median."""
     columns = (
         Column("model", ["beam", "shell"]),
         Column("steps", [7, np.int64(8)]),
@@ -73,25 +67,15 @@ def test_rows_are_in_the_units_of_their_headings_as_json_says_them() -> None:
         Column("peak", [2, math.nan], ".1f", "mm"),
         Column("shorter", [None]),
     )
-    data = Table("Found", columns).data
-    assert json.dumps(data) == (
+    assert json.dumps(Table("Found", columns).data) == (
         '[{"model": "beam", "steps": 7, "wall\\nms": [500.0, null], "peak\\nmm": 2000.0, '
         '"shorter": null}, {"model": "shell", "steps": 8.0, "wall\\nms": 250.0, '
         '"peak\\nmm": null, "shorter": null}]'
     )
-
-
-def test_repetitions_are_shown_in_the_unit_of_their_heading() -> None:
-    """Reference: half the range, 10 ms, leaves two digits of the median."""
     assert Column("wall", [[0.41, 0.42, 0.43]], ".1f", "ms").text == ["420"]
-
-
-def test_data_do_not_lose_a_column_to_one_of_the_same_heading() -> None:
-    table = Table("Peaks", (Column("mm", [1.0]), Column("mm", [2.0])))
-    assert table.rows == [("1", "2")]
-    message = re.escape("Peaks: two columns have the same heading, of ['mm', 'mm']")
-    with pytest.raises(ValueError, match=f"^{message}$"):
-        assert table.data
+    twice = Table("Peaks", (Column("mm", [1.0]), Column("mm", [2.0])))
+    with pytest.raises(ValueError, match="two columns have the same heading"):
+        assert twice.data
 
 
 @pytest.mark.parametrize(
@@ -111,12 +95,12 @@ def test_numbers_have_so_many_digits_or_decimals(shown: str, expected: str) -> N
     assert shown == expected
 
 
-def unpacked(packed: dict[str, str]) -> np.ndarray:
-    return np.frombuffer(base64.b64decode(packed["bdata"]), f"<{packed['dtype']}")
-
-
 def test_numbers_come_as_they_are() -> None:
     """Reference: the values, to the 24 bits of a 32-bit float. A name cannot end the script."""
+
+    def unpacked(packed: dict[str, str]) -> np.ndarray:
+        return np.frombuffer(base64.b64decode(packed["bdata"]), f"<{packed['dtype']}")
+
     time, values = np.linspace(0.0, 1.0, 7), np.array([0.0, 1.5, -2.25, 3.1, 1e-9, 7.0, 8.0])
     text = pack_charts({"tip": Chart(time, [Curve("</script>", values, "#000000")])})
     assert "<" not in text
@@ -150,10 +134,6 @@ def test_thinned_curves_keep_their_extremes() -> None:
     for stretch, inside in zip(np.split(noise, 100), np.split(np.arange(50_000), 100), strict=True):
         mine = noise[np.intersect1d(kept, inside)]
         assert (mine.min(), mine.max()) == (stretch.min(), stretch.max())
-
-
-def test_long_runs_are_thinned_to_their_own_samples() -> None:
-    """Reference: the samples."""
     time = np.linspace(0.0, 10.0, 3 * MOST)
     chart = Chart(time, [Curve("a", np.sin(50.0 * time), "#000000")])
     assert chart.thinned
@@ -163,24 +143,15 @@ def test_long_runs_are_thinned_to_their_own_samples() -> None:
     np.testing.assert_allclose(curve.y, np.sin(50.0 * curve.x), atol=1e-7)
 
 
-def test_page_contains_the_whole_library() -> None:
-    """Reference: the content of the wheel."""
-    library = pytest.importorskip("plotly.offline").get_plotlyjs()
-    assert gzip.decompress(base64.b64decode(pack_plotly())).decode() == library
-
-
-@pytest.mark.parametrize(
-    ("name", "first"),
-    [
+def test_shell_beam_and_bonded_are_read_first() -> None:
+    """Reference: the case files."""
+    for name, first in (
         ("paper", {"beam-fe", "beam-fe-bonded", "shell"}),
         ("lift", {"timoshenko", "shell", "bonded"}),
         ("three-segments", {"timoshenko", "shell", "beam-fe-bonded"}),
-    ],
-)
-def test_shell_beam_and_bonded_are_read_first(name: str, first: set[str]) -> None:
-    """Reference: the case files."""
-    case = shipped(name)
-    assert main_models(case, [model.name for model in case.models]) == first
+    ):
+        case = shipped(name)
+        assert main_models(case, [model.name for model in case.models]) == first
 
 
 def test_colours_are_distinct() -> None:
@@ -209,14 +180,6 @@ def test_amounts_are_numbers_with_a_column_of_their_units() -> None:
     }
 
 
-def test_headings_break_before_cells_and_numbers_keep_their_units() -> None:
-    """Reference: by hand. The table needs 24 characters with whole cells, 19 with whole words."""
-    columns = [Column("long heading of", ["41.3 bending"]), Column("two words", ["2 × 10⁻¹²"])]
-    wide, narrow = (printed(Table("", columns).show, width=width) for width in (24, 20))
-    assert "41.3 bending" in wide
-    assert "2 × 10⁻¹²" in narrow
-
-
 def test_a_title_is_no_formula(tmp_path: Path) -> None:
     """Reference: other code, the types of cells as openpyxl reads them."""
     openpyxl = pytest.importorskip("openpyxl")
@@ -238,41 +201,6 @@ def test_a_title_is_no_card() -> None:
     assert lines[:2] == ["*HEADING", "Boom: *INCLUDE, INPUT=other.inp"]
 
 
-IN_MM = """
-title = "A lift in millimetres"
-units = "mm-t-s"
-time = { duration = 3.0 }
-gravity = { angle = 30.0 }
-start = { state = "equilibrium" }
-payload = { mass = 1.0 }
-material = { youngs_modulus = 2.1e5, poissons_ratio = 0.3, density = 7.85e-9 }
-load = [{ segment = "fly", x = "head", magnitude = -5.0e6, moment = true }]
-model = [{ name = "beam", kind = "finite-element" }]
-[[segment]]
-name = "base"
-length = 5200.0
-supports = [{ x = 0.0, kind = "hinged" }]
-section = { height = 340.0, width = 230.0, flange = 12.0, web = 8.0 }
-[[segment]]
-name = "fly"
-length = 5000.0
-section = { height = 280.0, width = 180.0, flange = 12.0, web = 8.0 }
-[[joint]]
-outer = "base"
-inner = "fly"
-extension = 4000.0
-stations = ["tail", "head"]
-play = 2.0
-pad = { length = 120.0, width = 50.0, thickness = 18.0 }
-[[cylinder]]
-segment = "base"
-x = 1800.0
-depth = 220.0
-ground = [350.0, -900.0]
-stiffness = 45000.0
-"""
-
-
 @pytest.mark.parametrize(
     ("message", "shown"),
     [
@@ -289,35 +217,17 @@ def test_amounts_are_in_the_units_of_the_case(message: str, shown: str) -> None:
     assert System().convert(message) == message
 
 
-def test_a_refusal_is_in_the_units_of_the_case(tmp_path: Path) -> None:
-    """Reference: by hand, free are 340 - 12 - 280 - 12 = 36 mm, 230 - 8 - 180 - 8 = 34 mm."""
-    found = refusal(tmp_path, edited(IN_MM, ("play = 2.0", "play = 50.0")))
-    assert found.startswith("joint[1].play: 'fly' does not fit in 'base': 36 mm of height ")
-    assert "a play of 50 mm is asked for" in found
-
-
-def test_forces_are_in_kilonewtons(tmp_path: Path) -> None:
-    """Reference: the table of cylinders, whose forces are in kN."""
-    tables = {table.title: table for table in check_case(load_checked_text(tmp_path, IN_MM)).tables}
-    assert tables["Loads"].rows[2][4] == "−5 kN m"
-    (rest,) = (table for title, table in tables.items() if title.startswith("Static results at"))
-    rows = {row[0]: row for row in rest.rows}
-    (own,) = tables["Cylinders at rest, t = 0"].rows
-    assert rows["cylinder force"][1] == f"{float(own[-1]):.3g} kN"
-
-
-@pytest.mark.parametrize("standard", Standard)
+@pytest.mark.parametrize(("standard", "count"), [(Standard.EN13001, 4), (Standard.EN280, 3)])
 @pytest.mark.parametrize("kind", Kind)
 def test_a_new_case_passes_its_proofs_without_cautions(
-    here: Path, standard: Standard, kind: Kind
+    here: Path, standard: Standard, count: int, kind: Kind
 ) -> None:
     write_case("new.toml", standard, kind)
     checked = load_checked("new.toml")
-    assert len(checked.case.combinations) == {"en13001": 4, "en280": 3}[standard]
+    assert len(checked.case.combinations) == count
     assert rules.cautions(Context(checked.case, checked.boom), rules.OF_INPUTS) == []
     proofs = prove(checked.case, combination_states(checked.case))
     assert proofs.rows
     assert all(abs(row.value) <= row.limit for row in proofs.rows if row.limit is not None)
-    with pytest.raises(BadInput) as caught:
+    with refused("new.toml: file: exists already; give another name"):
         write_case("new.toml", standard, kind)
-    assert str(caught.value) == "new.toml: file: exists already; give another name"

@@ -26,11 +26,10 @@ from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds.finite_element import BeamElements
 from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
 from protractile.runs.case.motions import turning_changes, turning_loads
-from protractile.runs.case.reading import CheckedCase, load
+from protractile.runs.case.reading import CheckedCase
 from protractile.runs.case.schema import Case
 from protractile.runs.cautions.context import Context, State
 from protractile.runs.cautions.response import swings, turning
-from protractile.runs.check import check_case
 from protractile.runs.pipeline.estimates import Preview
 from protractile.runs.pipeline.models import axial_travels
 from protractile.runs.pipeline.turning import (
@@ -39,11 +38,10 @@ from protractile.runs.pipeline.turning import (
     turning_lines,
 )
 from protractile.runs.report.drive_tables import luffing_table
-from tests.runs.case_texts import read_case, refusal, refused, shipped
+from tests.runs.case_texts import read_case, refused, shipped
 from tests.runs.summaries import static_tip
 
 ARM = (CASES / "inspection-arm.toml").read_text(encoding="utf-8")
-CRANE = (CASES / "crane.toml").read_text(encoding="utf-8")
 SLEW = "[slew]\ntravel = 60.0\nspeed = 15.0\nramp = 1.0\n"
 LUFF = "[luff]\ntravel = 10.0\ntime = 3.0\n"
 
@@ -78,7 +76,8 @@ def test_bar_turned_with_a_constant_acceleration() -> None:
 def slewing_arm(tmp_path: Path, *tables: str, arm: str = ARM) -> Case:
     gust, models = arm.index("[wind]"), arm.index("[[model]]")
     case = read_case(tmp_path, arm[:gust] + "\n".join(tables) + "\n" + arm[models:])
-    return case.model_copy(update={"models": case.models[1:2]})
+    nothing = dict.fromkeys(("load_cases", "combinations", "spectra"), ())
+    return case.model_copy(update=nothing | {"models": case.models[1:2]})
 
 
 def test_luffed_arm(tmp_path: Path) -> None:
@@ -86,7 +85,6 @@ def test_luffed_arm(tmp_path: Path) -> None:
     luffed = slewing_arm(tmp_path, LUFF.replace("10.0", "50.0"))
     there = slewing_arm(tmp_path, arm=ARM.replace("angle = 0.0", "angle = 50.0"))
     assert static_tip(luffed, 3.0) == pytest.approx(static_tip(there, 0.0), rel=1e-3)
-    assert static_tip(luffed, 3.0) > 0.8 * static_tip(luffed, 0.0)
 
 
 def test_inertia_loads_of_an_extending_segment_on_a_turning_boom() -> None:
@@ -105,9 +103,9 @@ def test_inertia_loads_of_an_extending_segment_on_a_turning_boom() -> None:
 
 
 def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
-    """Reference: the energy balance, and the numbers of the case."""
+    """Reference: the energy balance; by hand, the numbers of the case and of a swinging load."""
     case = slewing_arm(tmp_path, SLEW, LUFF, "[damping]\nmodal = 0.02")
-    results = run_case(change(case, **{"time.duration": 0.3, "time.step": 2e-4}))
+    results = run_case(change(case, **{"time.duration": 0.1, "time.step": 2e-4}))
     (summary,) = results.summary.models.values()
     assert summary.energy_residual < 1e-11
     lines = list(turning_lines(case))
@@ -115,35 +113,30 @@ def test_results_of_slewing_and_luffing(tmp_path: Path) -> None:
         "Slews by 60 degrees from 0 to 5 s, at 15 degrees/s at most.",
         "Luffs by 10 degrees from 0 to 3 s, at 6.667 degrees/s at most.",
     ]
-    # Luffing stays below 5 %.
-    state = State("in beam", frequencies=[0.5])
-    (slew,) = turning(Context(case, build_boom(case), [state]))
+    # 15 of 360 degrees per second over 0.5 Hz; luffing stays below 5 %.
+    boom = build_boom(case)
+    (slew,) = turning(Context(case, boom, [State("in beam", frequencies=[0.5])]))
     assert slew.startswith("slew: the boom turns with 8.33 % of its first circular freq")
+    # arctan of 0.8 m over 2 m; 0.39 m are just small.
+    hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, pendulum=2.0)
+    aside = ("model", "time"), [[0.0, -0.8], [0.0, 0.39]]
+    data = xr.Dataset({"swing_aside": aside}, {"model": ["far", "near"]})
+    assert [*swings(Context(case.model_copy(update={"hoist": hung}), boom, data=data))] == [
+        "hoist.pendulum: in far the load swings by 21.8 degrees; its model is for small angles"
+    ]
 
 
-def test_check_cautions_on_fast_slewing(tmp_path: Path) -> None:
-    """Reference: by hand, 30 of 360 degrees per second over the frequency that ``check`` prints."""
-    fast = slewing_arm(tmp_path, SLEW.replace("speed = 15.0", "speed = 30.0"))
-    lines = check_case(CheckedCase(fast)).lines
-    (first,) = (line for line in lines if line.startswith("First natural frequency"))
-    part = 30.0 / 360.0 / float(first.split(": ")[1].split()[0])
-    (caution,) = (line for line in lines if "Coriolis" in line)
-    assert caution.startswith(
-        f"caution: slew: the boom turns with {100.0 * part:.3g} % of its first"
-    )
-
-
-@pytest.mark.parametrize(("bonded", "least", "most"), [(True, 0.0, 0.01), (False, 0.1, 0.5)])
-def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, most: float) -> None:
-    """Reference: without the shaper. A thousandth remains, a quarter with 4 mm of play."""
+def test_shaper_proposed_by_check(tmp_path: Path) -> None:
+    """Reference: without the shaper. A thousandth remains of a vibration without play."""
     slew = "[damping]\nmodal = 0.02\n[slew]\ntravel = 12.0\ntime = 1.5\n"
     plain = slewing_arm(tmp_path, slew)
-    model = plain.models[0].model_copy(update={"bonded_joints": bonded})
-    plain = plain.model_copy(update={"models": (model,)})
-    preview = Preview(CheckedCase(plain))
-    motion = preview.motion(model)
-    line, *others = shaper_lines(plain, motion.system, motion.position)
-    assert not others
+    model = plain.models[0].model_copy(update={"bonded_joints": True})
+    plain = change(
+        plain.model_copy(update={"models": (model,)}),
+        **{"time.duration": 3.6, "time.step": 2e-3, "time.output_step": 1e-2},
+    )
+    motion = Preview(CheckedCase(plain)).motion(model)
+    (line,) = shaper_lines(plain, motion.system, motion.position)
     offered = re.fullmatch(
         r"slew: shaper = \[\[([\d.]+), ([\d.]+)\]\] would leave no vibration of these modes, "
         r"without play, and takes ([\d.]+) s longer\.",
@@ -153,13 +146,10 @@ def test_shaper_proposed_by_check(tmp_path: Path, bonded: bool, least: float, mo
     vibrations = []
     for shaper, end in (((), 1.5), (((frequency, damping),), 1.5 + longer)):
         slewed = plain.slew.model_copy(update={"shaper": shaper})
-        case = change(
-            plain.model_copy(update={"slew": slewed}), **{"time.duration": 3.6, "time.step": 1e-3}
-        )
-        data = run_case(case).trajectories.isel(model=0)
+        data = run_case(plain.model_copy(update={"slew": slewed})).trajectories.isel(model=0)
         sway = data["tip_lateral"].sel(time=slice(end, end + 1.5)).values
         vibrations.append(0.5 * np.ptp(sway))
-    assert least < vibrations[1] / vibrations[0] < most
+    assert vibrations[1] < 0.01 * vibrations[0]
 
 
 def test_moment_and_work_of_slewing(tmp_path: Path) -> None:
@@ -203,17 +193,6 @@ def test_moments_of_a_swinging_load() -> None:
     assert swung - still == pytest.approx(added, rel=1e-9)
 
 
-def test_large_swings_are_cautioned() -> None:
-    """Reference: by hand, arctan of 0.8 m over 2 m; 0.39 m are just small."""
-    hung = HoistTable(mass=5000.0, stiffness=1.0e6, hanging=True, pendulum=2.0)
-    case = shipped("hoist").model_copy(update={"hoist": hung})
-    aside = ("model", "time"), [[0.0, -0.8], [0.0, 0.39]]
-    data = xr.Dataset({"swing_aside": aside}, {"model": ["far", "near"]})
-    assert [*swings(Context(case, build_boom(case), data=data))] == [
-        "hoist.pendulum: in far the load swings by 21.8 degrees; its model is for small angles"
-    ]
-
-
 def test_luffing_cylinder() -> None:
     """Reference: by hand, a right angle at the pin between a lug and a ground 3 m and 4 m away."""
     jack = Cylinder(0, 3.0, ground=(0.0, -4.0), stiffness=1.0)
@@ -230,19 +209,15 @@ def test_table_of_luffing() -> None:
     """Reference: analytic, the cylinder's length by the cosine rule. Its lever arm is twice the
     area of the triangle of foot, lug and ground over this length.
     """
-    path = CASES / "crane.toml"
-    case = load(str(path))
-    case = case.model_copy(
-        update={"luff": LuffTable(travel=-5.0, time=1.0), "models": case.models[:1]}
-    )
-    results = run_case(change(case, **{"time.duration": 0.2}))
-    table = luffing_table(results)
-    cells = {column.title: column.cells[0] for column in table.columns}
+    case = shipped("crane")
+    luff = LuffTable(travel=-5.0, time=1.0)
+    update = {"luff": luff, "models": case.models[:1], "load_cases": (), "combinations": ()}
+    results = run_case(change(case.model_copy(update=update), **{"time.duration": 0.1}))
+    cells = {column.title: column.cells[0] for column in luffing_table(results).columns}
     lug, ground = np.hypot(4.2, 0.55), np.hypot(1.6, 1.7)
     opening = np.arctan2(1.7, 1.6) - np.arctan2(0.55, 4.2)
     data = results.trajectories.isel(model=0)
-    history = LuffTable(travel=-5.0, time=1.0).history("")
-    turned = opening + np.deg2rad(history(data["time"].values))
+    turned = opening + np.deg2rad(luff.history("")(data["time"].values))
     length = np.sqrt(lug**2 + ground**2 - 2.0 * lug * ground * np.cos(turned))
     arms = lug * ground * np.sin(turned) / length
     forces = arms[0] / arms * data["cylinder_force"].values
@@ -261,17 +236,15 @@ def test_table_of_luffing() -> None:
          "luff.travel: leads to 95 degrees; the angle must stay within ± 90"),
         (SLEW + "[hoist]\nmass = 100.0\nstiffness = 1e6\ntravel = 1.0\ntime = 1.0\n",
          "slew: the load of hoist lies on the ground; give hoist.hanging = true"),
+        ('[slew]\nfile = "angles.csv"\n',
+         "slew.file: 'angles.csv' has a unit in line 1, column 2 that is no unit of an angle; give "
+         "deg or another unit of the kind"),
     ],
 )  # fmt: skip
 def test_bad_input(tmp_path: Path, tables: str, message: str) -> None:
+    (tmp_path / "angles.csv").write_text("t [s],psi [m]\n0,0\n2,0.5\n", encoding="utf-8")
     with refused(f"{tmp_path}/case.toml: {message}"):
         slewing_arm(tmp_path, tables)
-
-
-def test_flat_boom_does_not_slew(tmp_path: Path) -> None:
-    assert refusal(tmp_path, CRANE.replace("[payload]", SLEW + "[payload]")).startswith(
-        "slew: the boom is flat, and nothing moves along 'y'; give"
-    )
 
 
 @pytest.mark.parametrize(("unit", "factor"), [("deg", 1.0), ("rad", 180.0 / np.pi)])
@@ -279,15 +252,6 @@ def test_unit_of_angles_in_a_file(tmp_path: Path, unit: str, factor: float) -> N
     (tmp_path / "angles.csv").write_text(f"t [s],psi [{unit}]\n0,0\n2,0.5\n", encoding="utf-8")
     case = slewing_arm(tmp_path, '[slew]\nfile = "angles.csv"\n')
     assert case.slew.table == ((0.0, 0.0), (2.0, pytest.approx(0.5 * factor)))
-
-
-def test_file_of_angles_with_another_unit(tmp_path: Path) -> None:
-    (tmp_path / "angles.csv").write_text("t [s],psi [m]\n0,0\n2,0.5\n", encoding="utf-8")
-    with refused(
-        f"{tmp_path}/case.toml: slew.file: 'angles.csv' has a unit in line 1, column 2 that is no "
-        "unit of an angle; give deg or another unit of the kind"
-    ):
-        slewing_arm(tmp_path, '[slew]\nfile = "angles.csv"\n')
 
 
 TIME = np.array([0.0, 2.5, 5.0])
