@@ -63,7 +63,7 @@ def test_the_commands_write_their_folders(tmp_path: Path) -> None:
         "report.html", "comparison.csv", "channel-1.png", "channel-2.png", "channel-3.png",
     }  # fmt: skip
     folder = tmp_path / "identified"
-    options = ["--unknown", "payload.mass=50:200"]
+    options = ["--unknown", "payload.mass=50:200", "--unknown", "damping.modal=0:0.1"]
     options += ["--starts", "1", "--samples", "4", "--profile"]
     found = run(cli.app, ["identify", case, *options, "--out", str(folder)])
     assert found.exit_code == 0, found.output
