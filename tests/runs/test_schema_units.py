@@ -128,13 +128,20 @@ def test_a_case_in_millimetres_is_the_same_case(units: str) -> None:
 
 
 def test_defaults_and_the_effective_case_are_in_si_units() -> None:
-    """Reference: non-regression, the defaults in SI units, which nobody gave in millimetres."""
-    assert in_mm().time.output_step == 1.0e-3
-    assert in_mm().models[1].model_dump()["element_length"] == 0.5
+    """Reference: non-regression, the defaults in SI units; the numbers of the case file."""
     case = in_mm()
+    assert case.time.output_step == 1.0e-3
+    assert case.models[1].model_dump()["element_length"] == 0.5
     text = toml.dumps(case)
     assert 'units = "SI"\nshown_units = "mm-t-s"\n' in text
     assert case_of(text) == case
+    # A change in Python is in SI units.
+    assert change(case, **{"joint.play": 0.02}).joints[0].play == 0.02
+    shown = [" ".join(line.split()) for line in printed_check(case).splitlines()]
+    assert "segment mm kg/m mm⁴ kg m flange / web, mm" in shown
+    assert "segment kg kg mm" in shown
+    (fly,) = (line for line in shown if "8500–18200" in line)
+    assert "55.07 2.183 × 10⁸" in fly
 
 
 def test_files_are_in_the_units_of_the_case_unless_they_say_others() -> None:
@@ -151,64 +158,44 @@ def test_files_are_in_the_units_of_the_case_unless_they_say_others() -> None:
         ("stiffness = 1e3", "", 2.0),
         ("stiffness = 1e3\nexponent = 1.5", "lateral_stiffness = 1e3\nlateral_exponent = 1.0", 1.0),
         ("stiffness = 1e3\nexponent = 1.5", "lateral_stiffness = 1e3", 1.5),
-        (
-            "pad = { length = 100.0, width = 50.0, thickness = 20.0 }",
-            "lateral_stiffness = 1e3",
-            1.0,
-        ),
+        ("pad = { length = 100.0, width = 50.0, thickness = 20.0 }", "lateral_stiffness = 1e3", 1),
     ],
 )
 def test_a_stiffness_has_the_unit_of_its_own_law(own: str, sides: str, power: float) -> None:
-    """Reference: analytic, N/mmⁿ times 1000ⁿ, with the exponent that the law presses by."""
+    """Reference: analytic, N/mmⁿ times 1000ⁿ, with the exponent that the law presses by.
+
+    A model's own contact has an exponent of its own, 2 unless given.
+    """
     laws = tomllib.loads(f"{own}\n{sides}")
     joint = JointTable("base", "fly", stations=(1.0,), play=1.0, lateral_play=1.0, **laws)
-    (found,) = convert_to_si(
-        in_mm().model_copy(update={"units": "mm-t-s", "joints": (joint,)})
-    ).joints
-    stiffness = found.lateral_stiffness if sides else found.stiffness
-    assert stiffness == pytest.approx(1e3 * 1000.0**power, rel=1e-15)
-
-
-def test_a_models_own_contact_has_an_exponent_of_its_own() -> None:
-    """Reference: analytic, N/mm² where no exponent is given, beside joints of another."""
-    case = in_mm()
-    joint = replace(case.joints[0], exponent=1.0)
-    model = case.models[0].model_copy(update={"contact": ContactTable(stiffness=1e3)})
+    model = in_mm().models[0].model_copy(update={"contact": ContactTable(stiffness=1e3)})
     update = {"units": "mm-t-s", "joints": (joint,), "models": (model,)}
-    contact = convert_to_si(case.model_copy(update=update)).models[0].contact
-    assert contact.stiffness == pytest.approx(1e9, rel=1e-15)
+    case = convert_to_si(in_mm().model_copy(update=update))
+    found = case.joints[0].lateral_stiffness if sides else case.joints[0].stiffness
+    assert found == pytest.approx(1e3 * 1000.0**power, rel=1e-15)
+    assert case.models[0].contact.stiffness == pytest.approx(1e9, rel=1e-15)
 
 
-def test_check_shows_the_units_of_the_case() -> None:
-    """Reference: the numbers of the case file."""
-    text = printed_check(in_mm())
-    lines = [" ".join(line.split()) for line in text.splitlines()]
-    assert "segment mm kg/m mm⁴ kg m flange / web, mm" in lines
-    assert "joint mm mm mm mm friction" in lines
-    assert "segment kg kg mm" in lines
-    for part in ("8500–18200", "55.07", "2.183 × 10⁸", "8500, 9700"):
-        assert part in text
-
-
-def test_a_sweep_s_values_are_in_the_units_of_the_case() -> None:
+@pytest.mark.parametrize(
+    ("text", "unit", "expected", "value"),
+    [
+        ("joint.extension=6000,7000", "mm", [6.0, 7.0], lambda c: c.joints[0].extension),
+        ("joint.stiffness=1e4,1e7", "N/mm^2", [1e10, 1e13], lambda c: c.joints[0].stiffness),
+        ("load[2].magnitude=1000,2000", "N mm", [1.0, 2.0], lambda c: c.loads[1].magnitude),
+        ("start.velocity.fly=5,9.7", "mm/s", [0.005, 0.0097],
+         lambda c: c.start.velocity["fly"].z),
+    ],
+)  # fmt: skip
+def test_a_sweep_s_values_are_in_the_units_of_the_case(
+    text: str, unit: str, expected: list[float], value: Callable[[Case], float]
+) -> None:
     """Reference: analytic. Keys of several units, and a number that stands for a table."""
     in_mm()
-    keys: dict[str, tuple[str, list[float], Callable[[Case], float]]] = {
-        "joint.extension=6000,7000": ("mm", [6.0, 7.0], lambda c: c.joints[0].extension),
-        "joint.stiffness=1e4,1e7": ("N/mm^2", [1e10, 1e13], lambda c: c.joints[0].stiffness),
-        "load[2].magnitude=1000,2000": ("N mm", [1.0, 2.0], lambda c: c.loads[1].magnitude),
-        "start.velocity.fly=5,9.7": (
-            "mm/s", [0.005, 0.0097], lambda c: c.start.velocity["fly"].z
-        ),
-    }  # fmt: skip
-    for text, (unit, expected, value) in keys.items():
-        planned = plan("case.toml", [text], None, None)
-        assert list(planned.units) == [unit]
-        values = [float(part) for part in text.partition("=")[2].split(",")]
-        assert list(planned.variations[0].values) == values
-        assert [value(point.case) for point in planned.points] == expected
-    # A change in Python is in SI units.
-    assert change(in_mm(), **{"joint.play": 0.02}).joints[0].play == 0.02
+    planned = plan("case.toml", [text], None, None)
+    assert list(planned.units) == [unit]
+    values = [float(part) for part in text.partition("=")[2].split(",")]
+    assert list(planned.variations[0].values) == values
+    assert [value(point.case) for point in planned.points] == expected
 
 
 def test_numbers_out_of_range_and_other_systems_are_refused() -> None:
@@ -228,48 +215,30 @@ def test_numbers_out_of_range_and_other_systems_are_refused() -> None:
         in_mm("inch-lbf-s")
 
 
-def _parts(annotation: Any) -> Iterator[Any]:
-    yield annotation
-    for part in get_args(annotation) if get_origin(annotation) else ():
-        yield from _parts(part)
-
-
 def test_every_number_declares_its_unit() -> None:
     """Reference: the descriptions, which name the unit of each number for people."""
+
+    def parts(annotation: Any) -> Iterator[Any]:
+        yield annotation
+        for part in get_args(annotation) if get_origin(annotation) else ():
+            yield from parts(part)
+
     tables = {Case, *(table for _, table in tables_of(Case))}
     fields = {(one, key): field for one in tables for key, field in fields_of(one).items()}
     assert len(fields) > 100
     for name, field in fields.items():
-        if float not in _parts(field.annotation):
+        if float not in parts(field.annotation):
             continue
         units = declared_units(field)
         assert units, f"{name} declares no unit: give it Annotated[..., In(...)]"
         for unit in units:
             Unit.of(re.sub(r"\^\(?n.*", "", unit))
-            text = describe(*name)
-            assert names_unit(text, unit) or "the same" in text or "such pairs" in text, name
-
-
-def names_unit(text: str, unit: str) -> bool:
-    """Return whether a text has a unit as a word, and not as a part of another word or unit."""
-    if unit == "1":
-        return True
-    said = {"deg": "degrees"}.get(unit, unit)
-    return re.search(rf"(?<![\w/^·]){re.escape(said)}(?![\w/^²])", text) is not None
-
-
-def test_a_unit_is_a_word_of_its_description() -> None:
-    """Reference: by hand. As parts of words, most texts have an m."""
-    assert names_unit("the length in m", "m")
-    assert not names_unit("the stiffness in N/m of the support from below", "m")
-    assert not names_unit("the stiffness in N/m", "N")
-    assert names_unit("the load in N/m, downwards", "N/m")
-
-
-def test_editors_see_the_units() -> None:
-    tables = case_schema()["$defs"]
-    assert tables["TimeTable"]["properties"]["duration"]["unit"] == "s"
-    assert "N/m^n" in str(tables["JointTable"]["properties"]["stiffness"])
+            text, word = describe(*name), re.escape({"deg": "degrees"}.get(unit, unit))
+            # As a word, and not as a part of another word or unit.
+            named = unit == "1" or re.search(rf"(?<![\w/^·]){word}(?![\w/^²])", text)
+            assert named or "the same" in text or "such pairs" in text, name
+    properties = case_schema()["$defs"]["TimeTable"]["properties"]
+    assert properties["duration"]["unit"] == "s"
 
 
 def test_systems_name_their_units() -> None:
