@@ -9,7 +9,7 @@ from functools import lru_cache
 import numpy as np
 
 from protractile.geometry.arrays import Array
-from protractile.geometry.section import Plate, Section
+from protractile.geometry.section import COMPONENT, Direction, Plate, Section
 
 # Sine of the angle between plates below which they have a butt joint instead of a mitre, which
 # would be long between different thicknesses.
@@ -79,10 +79,12 @@ def in_line(plates: Sequence[Plate]) -> list[list[int]]:
     return lines
 
 
-def outer_surfaces(section: Section) -> tuple[float, float]:
-    """Return the z in m of the outer surfaces of bottom and top."""
-    heights = trapezoids(section.plates)[:, :2, 1]
-    return float(heights.min()), float(heights.max())
+# Load cases and combinations have the same sections.
+@lru_cache(maxsize=256)
+def outer_surfaces(section: Section, direction: Direction = "z") -> tuple[float, float]:
+    """Return the smallest and the largest z or y in m of the outer surfaces of a section."""
+    places = trapezoids(section.plates)[:, :2, COMPONENT[direction] - 1]
+    return float(places.min()), float(places.max())
 
 
 def moments(plates: Sequence[Plate], radii: Array) -> Array:
@@ -115,14 +117,6 @@ def moments(plates: Sequence[Plate], radii: Array) -> Array:
         first += weights @ (one * centre + two * unit)
         second += weights @ (one * centre**2 + 2.0 * two * centre * unit + three * unit**2)
     return np.concatenate([first / area, second])
-
-
-# Load cases and combinations have the same sections.
-@lru_cache(maxsize=256)
-def outer_size(section: Section) -> tuple[float, float]:
-    """Return the width along y and the height along z in m of the outer surface of a section."""
-    width, height = np.ptp(trapezoids(section.plates)[:, :2], axis=(0, 1)).tolist()
-    return width, height
 
 
 @lru_cache(maxsize=256)

@@ -14,7 +14,7 @@ from protractile.geometry.joint import Joint
 from protractile.geometry.load import Load, PartialLoad
 from protractile.geometry.section import Direction
 from protractile.geometry.segment import SAME_PLACE, Segment
-from protractile.geometry.walls import outer_size
+from protractile.geometry.walls import outer_surfaces
 
 # Density of air in kg/m³ for the pressure of a wind speed (EN 13001-2, ISO 4302).
 AIR_DENSITY = 1.25
@@ -76,9 +76,14 @@ def wind_loads(
             raise BoomError(f"segments[{number}].section", what)
         steps = 1 if segment.head_section is None else _STEPS
         for a, b in pairwise(np.linspace(start, end, steps + 1).tolist()):
-            width, height = outer_size(segment.section_at(0.5 * (a + b)))
-            sizes: dict[Direction, tuple[float, float]] = {"y": (height, lateral), "z": (width, up)}
-            for along, (size, part) in sizes.items():
+            section = segment.section_at(0.5 * (a + b))
+            # A force along y meets the height, one along z the width.
+            facing: tuple[tuple[Direction, Direction, float], ...] = (
+                ("y", "z", lateral), ("z", "y", up),
+            )  # fmt: skip
+            for along, met, part in facing:
                 if abs(part) > SAME_PLACE:
+                    low, high = outer_surfaces(section, met)
+                    size = high - low
                     force = pressure * shape_factors[number] * size * across * part
                     yield PartialLoad(number, along, force, None, history, span=(a, b))

@@ -6,7 +6,7 @@ A symbol is a matplotlib path in units of its size, relative to its position.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import cos, radians, sin
@@ -160,7 +160,7 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
                 yield _spread(boom, index, segment.ends, load, direction, "")
         for mass in segment_table.masses:
             yield _mass(index, at(mass.x, *segment.ends), f"mass, {number(mass.mass, 4)} kg")
-    hung = partial(replace)
+    hung: Callable[..., Symbol] = replace
     if case.head is not None:
         angle = 0.0 if case.gravity is None else radians(case.gravity.angle)
         head = case.head.in_boom_axes(boom.segments[-1], angle)

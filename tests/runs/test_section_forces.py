@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: LGPL-3.0-or-later
 """Section forces along the boom, stresses in the report, and pairs of numbers."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any, get_args
 
 import matplotlib
 import numpy as np
 import pytest
 import xarray as xr
+from pydantic import AfterValidator
 
 from protractile.analysis.curves import Curves, histories
 from protractile.analysis.model import section_forces
@@ -21,6 +24,8 @@ from protractile.dynamics.line import Line
 from protractile.geometry.boom import Boom, Cylinder, Load, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.compression import Compression
+from protractile.geometry.fields import fields_of, names_of
+from protractile.runs.case import messages
 from protractile.runs.case import reading as case_file
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.toml import dumps
@@ -253,3 +258,37 @@ def test_strengths_and_depths_out_of_order_are_refused(tmp_path: Path) -> None:
     )
     level = f"{CANTILEVER}[buckling]\ncurve = [[0.0, 1.0], [0.5, 1.0], [2.0, 0.3]]"
     assert read_case(tmp_path, level).buckling.curve == ((0.0, 1.0), (0.5, 1.0), (2.0, 0.3))
+
+
+# Pairs without an order: points around a section, and modes.
+UNORDERED = {"corners", "shaper"}
+
+
+def parts_of(annotation: Any) -> Iterator[Any]:
+    """Yield all parts of a type, also the metadata of annotated types."""
+    yield annotation
+    for part in get_args(annotation):
+        yield from parts_of(part)
+
+
+def test_every_table_of_pairs_is_checked() -> None:
+    """Reference: exhaustive, all keys of the schema whose values are pairs of numbers."""
+    tables = [messages.schema.Case, *dict.fromkeys(messages._TABLES.values())]
+    pairs, checked = set(), set()
+    for schema in tables:
+        for key, name in names_of(schema).items():
+            field = fields_of(schema)[name]
+            found = [*field.metadata, *parts_of(field.annotation)]
+            for part in found:
+                inner = get_args(part)
+                if len(inner) == 2 and inner[1] is ... and len(get_args(inner[0])) == 2:
+                    both = get_args(inner[0])
+                    if all(float in {*parts_of(one)} for one in both):
+                        pairs.add(key)
+            if any(
+                isinstance(one, AfterValidator) and one.func.__qualname__.startswith("rising.")
+                for one in found
+            ):
+                checked.add(key)
+    assert {"curve", "table", "force_table", "yield_by_thickness"} <= pairs
+    assert pairs - checked == UNORDERED

@@ -1,0 +1,256 @@
+# SPDX-License-Identifier: LGPL-3.0-or-later
+"""Places of a drawing: heights of pins, level cages, winches and forces of hands in earth axes."""
+
+import re
+import tomllib
+from collections.abc import Callable
+from dataclasses import asdict
+from math import cos, hypot, radians, sin
+from pathlib import Path
+
+import pytest
+
+import protractile as pt
+from protractile.geometry.cylinder import EarthPoint
+from protractile.geometry.load import Load, Moment, Torque
+from protractile.geometry.place import Level
+from protractile.runs.case import toml
+from protractile.runs.case.build import build_boom
+from protractile.runs.case.combinations import combine
+from protractile.runs.case.reading import convert_to_si
+from protractile.runs.case.schema import Case
+from protractile.runs.live.controls import Draft
+from protractile.runs.pipeline.combinations import combination_rows, combination_states
+from protractile.runs.pipeline.proofs import proofs_of
+from protractile.runs.sweep import points
+from tests.runs.case_texts import (
+    as_toml,
+    read_case,
+    refusal,
+    table,
+)
+from tests.runs.test_combinations import GROUND, LIFT
+from tests.runs.test_drawing_keys import DRAWN, FACTORS, JACK, PEOPLE, G, same
+
+ACROSS, ALONG = sin(radians(50.0)), cos(radians(50.0))
+SIZES = 'shape = "unequal box", height = 0.3, width = 0.22, top = 0.006, bottom = 0.014'
+UNEQUAL = DRAWN.replace("height = 0.3, width = 0.22, flange = 0.006", SIZES)
+# First moments of the outer and the inner rectangle of the box about its bottom.
+_OUTER, _INNER = 0.226 * 0.31, 0.214 * 0.29
+AXIS = (_OUTER * 0.155 - _INNER * (0.014 + 0.145)) / (_OUTER - _INNER)
+HEAD = table("[head]", ahead=0.8, below=0.5)
+AT_TIP = {"segment": "fly", "x": "head", "group": "payload"}
+HAND = table("[[load]]", magnitude=400.0, direction="behind", group="payload")
+HAND_BY_HAND = (
+    table("[[load]]", **AT_TIP, magnitude=-400.0 * ACROSS)
+    + table("[[axial]]", force=-400.0 * ALONG, group="payload")
+    + table("[[load]]", **AT_TIP, moment=True, magnitude=400.0 * (0.5 * ALONG - 0.8 * ACROSS))
+)
+
+
+def foot(depth: object) -> str:
+    """Return the boom with the pin of its foot at a depth."""
+    return UNEQUAL.replace('kind = "hinged"', f'kind = "hinged", depth = {as_toml(depth)}')
+
+
+def at_angle(angle: float) -> str:
+    """Return a head by hand, 0.2 m along and 0.1 m below, with a cage at (0.8, 0.5) m in front."""
+    up, along = sin(radians(angle)), cos(radians(angle))
+    ahead, below = 0.8 * along - 0.5 * up, 0.8 * up + 0.5 * along
+    return table("[head]", ahead=0.2 + ahead, below=0.1 + below, mass=60.0)
+
+
+WIND = {"speed": 20.0, "shape_factor": 1.4}
+CAGE = table("[head]", ahead=0.2, below=0.1, mass=60.0, level={"front": 0.8, "below": 0.5})
+LOW = table("[[load_case]]", name="low", angle=10.0, payload=230.0)
+LEADS = {"front": -1.5 * ALONG, "below": 1.5 * ACROSS}
+
+
+@pytest.mark.parametrize(
+    ("drawn", "by_hand"),
+    [
+        (foot({"bottom": 0.1}) + JACK + LOW, foot(AXIS - 0.1) + JACK + LOW),
+        (foot({"top": 0.08}) + JACK, foot(0.08 - (0.31 - AXIS)) + JACK),
+        (UNEQUAL + JACK.replace("0.25", "{ bottom = -0.12 }"),
+         UNEQUAL + JACK.replace("0.25", f"{AXIS + 0.12}")),
+        (DRAWN + JACK + table("[head]", ahead=0.2, below={"bottom": 0.03}),
+         DRAWN + JACK + table("[head]", ahead=0.2, below=0.128 - 0.03)),
+        (DRAWN + JACK + table("[wind]", **WIND, load_area=0.8, load_shape_factor=1.2),
+         DRAWN + JACK + table("[wind]", **WIND, load_area=0.96)),
+        (DRAWN + JACK + HEAD + HAND, DRAWN + JACK + HEAD + HAND_BY_HAND),
+        (DRAWN + JACK + HEAD + table("[[load]]", magnitude=-90.0, direction="z", group="payload"),
+         DRAWN + JACK + HEAD + table("[[load]]", **AT_TIP, magnitude=-90.0)
+         + table("[[load]]", **AT_TIP, moment=True, magnitude=-72.0)),
+        (DRAWN + JACK + CAGE, DRAWN + JACK + at_angle(50.0)),
+        (DRAWN + JACK + CAGE + LOW, DRAWN + JACK + at_angle(10.0) + LOW),
+        (DRAWN + JACK + table("[rope]", falls=2, ground=LEADS),
+         DRAWN + JACK + table("[rope]", falls=2, winch=1.5)),
+    ],
+)  # fmt: skip
+def test_a_drawing_says_what_was_computed_by_hand(tmp_path: Path, drawn: str, by_hand: str) -> None:
+    """Reference: other input, the same boom with the numbers that were computed by hand."""
+    more = ("" if LOW in drawn else PEOPLE) + FACTORS
+    case = read_case(tmp_path, drawn + more)
+    assert read_case(tmp_path, toml.dumps(case)) == case
+    same(combination_rows(case), combination_rows(read_case(tmp_path, by_hand + more)))
+
+
+def test_a_hand_force_tips_at_the_height_of_the_head(tmp_path: Path) -> None:
+    """Reference: analytic, force times height above the ground, but for the deflection of 2 ‰; the
+    moment about the end of the boom is 3 % of it."""
+    chassis = table(
+        "[chassis]", mass=6e3, centre=0.0, front=1.5, rear=1.5, side=1.5, foot_ahead=0.5,
+        foot_above=1.0,
+    )  # fmt: skip
+    factors = table("[[combination]]", name="A", factors={"dead": 1.0, "payload": 1.0})
+    overturning = []
+    for load in ("", HAND):
+        case = read_case(tmp_path, DRAWN + JACK + HEAD + chassis + load + factors)
+        (state,) = combination_states(case)
+        overturning.append(next(iter(proofs_of(state, case, ["tipping"]))).value)
+    height = 1.0 + 10.8 * ACROSS - 0.5 * ALONG
+    assert overturning[1] - overturning[0] == pytest.approx(400.0 * height, rel=4e-3)
+
+
+def test_a_hand_force_in_space_bends_and_twists(tmp_path: Path) -> None:
+    """Reference: analytic, moment and torque of a force towards +y about the end of the boom."""
+    text = DRAWN.replace("play = 0.003", "play = 0.003\nlateral_play = 0.003") + JACK + HEAD
+    force = table("[[load]]", magnitude=400.0, direction="side", ramp=0.5)
+    loads = build_boom(read_case(tmp_path, text + force)).loads[:3]
+    assert [load.magnitude for load in loads] == pytest.approx([400.0, 320.0, 200.0], rel=1e-12)
+    assert [type(load) for load in loads] == [Load, Moment, Torque]
+
+
+def test_depths_need_a_section_in_the_units_of_the_case(tmp_path: Path) -> None:
+    """Reference: by hand, a box 260 mm high; exact words."""
+    bare = "mass_per_length = 60.0\nsecond_moment_of_area = 1e-4"
+    text = re.sub("section = .*", bare, DRAWN).replace('theory = "timoshenko"', "")
+    message = "cylinder[1].depth: the segment has no section to measure it from; give it, or a"
+    low = JACK.replace("0.25", "{ bottom = -0.12 }")
+    assert refusal(tmp_path, text + low) == f"{message} depth in m"
+    in_mm = Case.model_validate(
+        tomllib.loads(DRAWN.replace("title", 'units = "mm-t-s"\ntitle', 1) + low)
+    )
+    level = convert_to_si(in_mm).cylinders[0].depth
+    assert level == Level(bottom=-0.12e-3)
+
+
+@pytest.mark.parametrize(("angle", "mass"), [(50.0, 150.0), (10.0, 380.0)])
+def test_the_lead_to_a_winch_that_does_not_luff(tmp_path: Path, angle: float, mass: float) -> None:
+    """Reference: analytic, the force towards a fixed point at each angle, and its change with the
+    deflection of the head by central differences."""
+    rope = table("[rope]", falls=2, ground={"front": -1.2, "below": 0.3})
+    case = read_case(tmp_path, DRAWN + JACK + rope + LOW)
+    up, along = sin(radians(angle)), cos(radians(angle))
+    behind, high, step = 10.0 + 1.2 * along + 0.3 * up, 1.2 * up - 0.3 * along, 1e-4
+
+    def pull(y: float, z: float) -> list[float]:
+        line = -behind, -y, high - z
+        return [0.5 * mass * G * part / hypot(*line) for part in line]
+
+    boom = build_boom(case if angle == 50.0 else combine(case, case.load_cases[0]))
+    (lead,), force = boom.leads, pull(0.0, 0.0)
+    assert lead.components == pytest.approx((force[0], force[2]), rel=1e-12)
+    assert boom.loads[0].magnitude == pytest.approx(force[2], rel=1e-12)
+    weight = mass * G * up
+    assert boom.segments[-1].compression.ends[-1][1] == pytest.approx(weight - force[0], rel=1e-12)
+    slope = (pull(0.0, -step)[2] - pull(0.0, step)[2]) / (2.0 * step)
+    assert lead.stiffness("z") == pytest.approx(slope, rel=1e-8)
+    assert lead.stiffness("y") == pytest.approx(-pull(step, 0.0)[1] / step, rel=1e-8)
+
+
+LEVEL = table("[[load_case]]", name="level", angle=10.0)
+# The ground of the lift in earth axes: the pin is at x = 0, on the axis.
+TURN = radians(45.0)
+FRONT = GROUND[0] * cos(TURN) - GROUND[1] * sin(TURN)
+BELOW = -GROUND[0] * sin(TURN) - GROUND[1] * cos(TURN)
+EARTH = LIFT.replace(f"ground = {list(GROUND)}", f"ground = {{ front = {FRONT}, below = {BELOW} }}")
+
+
+def by_load_case(case: Case, _: Path) -> Case:
+    return combine(case, case.load_cases[0])
+
+
+def by_change(case: Case, _: Path) -> Case:
+    return pt.change(case, **{"gravity.angle": 10.0})
+
+
+def by_sweep(case: Case, path: Path) -> Case:
+    vary = ["gravity.angle=10,20", "cylinder.stiffness=3e7,4e7"]
+    return points.plan(str(path / "case.toml"), vary, None, None).points[0].case
+
+
+def by_slider(case: Case, path: Path) -> Case:
+    return Draft.load(str(path / "case.toml")).changed({"gravity.angle": 10.0})
+
+
+@pytest.mark.parametrize("text", [LIFT, EARTH])
+@pytest.mark.parametrize("way", [by_load_case, by_change, by_sweep, by_slider])
+def test_the_ground_stays_at_another_angle(
+    tmp_path: Path, way: Callable[[Case, Path], Case], text: str
+) -> None:
+    """Reference: analytic, the coordinates of a fixed point in turned axes; before, only load cases
+    kept the point, and other changes turned it with the boom."""
+    case = read_case(tmp_path, text + LEVEL)
+    (before,) = build_boom(case).cylinders
+    assert before.ground == pytest.approx(GROUND)
+    (after,) = build_boom(way(case, tmp_path)).cylinders
+    turn = radians(10.0)
+    right = FRONT * cos(turn) - BELOW * sin(turn), -FRONT * sin(turn) - BELOW * cos(turn)
+    assert after.ground == pytest.approx(right, rel=1e-12)
+
+
+def test_the_force_follows_the_angle(tmp_path: Path) -> None:
+    """Reference: another path, a case of its own at 10 degrees with the ground in its axes."""
+    turn = radians(10.0)
+    there = [FRONT * cos(turn) - BELOW * sin(turn), -FRONT * sin(turn) - BELOW * cos(turn)]
+    own = LIFT.replace("angle = 45.0", "angle = 10.0").replace(f"{list(GROUND)}", f"{there}")
+
+    def force(case: Case) -> float:
+        frame = next(one for name, one in pt.check(case).frames.items() if "Cylinder" in name)
+        return float(frame.iloc[0, -1])
+
+    right = force(read_case(tmp_path, own))
+    assert force(by_change(read_case(tmp_path, LIFT), tmp_path)) == pytest.approx(right, rel=1e-9)
+
+
+def test_earth_axes_in_other_units_and_in_the_saved_case(tmp_path: Path) -> None:
+    """Reference: analytic, thousandths, and the case that its own text gives."""
+    case = read_case(tmp_path, EARTH)
+    assert read_case(tmp_path, toml.dumps(case)) == case
+    text = EARTH.replace("title", 'units = "mm-t-s"\ntitle', 1)
+    text = text.replace(f"front = {FRONT}", f"front = {1e3 * FRONT}")
+    text = text.replace(f"below = {BELOW}", f"below = {1e3 * BELOW}")
+    (cylinder,) = convert_to_si(Case.model_validate(tomllib.loads(text))).cylinders
+    assert isinstance(cylinder.ground, EarthPoint)
+    assert asdict(cylinder.ground) == pytest.approx({"front": FRONT, "below": BELOW})
+
+
+@pytest.mark.parametrize(
+    ("ground", "message"),
+    [
+        ("{ front = 1.2 }", "{'front': 1.2}"),
+        ("[1.2]", "[1.2]"),
+        ("1.2", "1.2"),
+        ("[1.2, nan]", "[1.2, nan]"),
+    ],
+)
+def test_a_ground_that_is_no_point(tmp_path: Path, ground: str, message: str) -> None:
+    what = "a list of two numbers, or a table of two such as { front = 0.7, below = 1.1 }"
+    text = LIFT.replace(f"ground = {list(GROUND)}", f"ground = {ground}")
+    assert refusal(tmp_path, text) == f"cylinder[1].ground: must be {what}, got {message}"
+
+
+def test_earth_axes_need_a_foot_and_a_luffing_angle(tmp_path: Path) -> None:
+    text = EARTH.replace('supports = [{ x = 0.0, kind = "hinged" }]', "")
+    assert refusal(tmp_path, text) == (
+        "cylinder[1].ground: no segment has a support, from whose pin front and below are "
+        "measured; give one"
+    )
+    boom = build_boom(read_case(tmp_path, EARTH))
+    jack = pt.Cylinder(0, x=2.4, ground=EarthPoint(1.0, 1.0), stiffness=1e7)  # type: ignore[arg-type]
+    with pytest.raises(pt.BoomError) as error:
+        pt.Boom(boom.segments, boom.joints, cylinders=(jack,))
+    assert str(error.value) == (
+        "cylinders[0].ground: a boom has no earth axes; give x and z in m of its own axes"
+    )
