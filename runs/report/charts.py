@@ -13,6 +13,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import chain, pairwise
+from math import ceil
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -26,6 +27,8 @@ from protractile.runs.report import theme
 MOST = 12_000
 # Heights in pixels of a panel, and of axis and legend below all panels.
 PANEL, BELOW = 150, 314
+# Height in pixels of a row of the legend.
+_LEGEND_ROW = 30
 # Distance between panels over the height.
 GAP = 0.14
 # Plotly's names of matplotlib's line styles and markers.
@@ -126,13 +129,16 @@ class Chart:
             along |= {"type": "log"}
         else:
             along |= {"range": self.window or self.time[[0, -1]]}
+        # Two rows of four names fit below the axis.
+        rows = ceil(len({curve.name for curve in self.curves if curve.name}) / 4)
+        more = _LEGEND_ROW * max(0, rows - 2)
         layout: dict[str, Any] = {
             "template": "none",
             "meta": {"x": self.time},
             "font": {"family": "system-ui, sans-serif", "size": 13, "color": theme.INK},
             "hovermode": "x unified" if self.keys is None else "closest",
-            "height": BELOW + PANEL * count,
-            "margin": {"l": 62, "r": 12, "t": 26, "b": 120},
+            "height": BELOW + PANEL * count + more,
+            "margin": {"l": 62, "r": 12, "t": 26, "b": 120 + more},
             "legend": {"orientation": "h", "yref": "container", "y": 0.01, "yanchor": "bottom"},
             "xaxis": along,
             "annotations": [],
