@@ -83,9 +83,10 @@ class Unit:
 SystemName = Literal["SI", "mm-t-s", "N-mm"]
 # The units that replace SI units in the other systems, which are the same.
 _MILLIMETRES = {"m": "mm", "kg": "t", "Pa": "MPa"}
-# An amount in an SI unit that another system replaces.
+_NUMBER = r"(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?)"
+# An amount, or the two ends of a range, in an SI unit that another system replaces.
 _AMOUNT = re.compile(
-    r"(?<![\w.])(-?\d+(?:\.\d+)?(?:e[+-]?\d+)?) "
+    rf"(?<![\w.])(?:{_NUMBER} and )?{_NUMBER} "
     r"(m/s\^2|m/s|m|kg/m\^3|kg/m|kg|Pa|N/m|N m)(?![\w/^])"
 )
 _RAISED = str.maketrans("234", "²³⁴")
@@ -123,7 +124,9 @@ class System:
         """
 
         def converted(match: re.Match[str]) -> str:
-            return f"{self.of(float(match[1]), match[2]):.6g} {self.unit(match[2])}"
+            *numbers, unit = match.groups()
+            sizes = [f"{self.of(float(number), unit):.6g}" for number in numbers if number]
+            return f"{' and '.join(sizes)} {self.unit(unit)}"
 
         return message if self.name == "SI" else _AMOUNT.sub(converted, message)
 
