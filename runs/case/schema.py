@@ -36,6 +36,11 @@ from protractile.geometry.place import Place
 from protractile.geometry.support import Support
 from protractile.geometry.units import System, SystemName
 from protractile.runs import clients
+from protractile.runs.case.combination_tables import (
+    CombinationTable,
+    LoadCaseTable,
+    SpectrumTable,
+)
 from protractile.runs.case.contact import JointTable
 from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.kinds.calibration import CalibratedTable
@@ -54,13 +59,10 @@ from protractile.runs.case.limits import (
 )
 from protractile.runs.case.load_tables import (
     AxialTable,
-    CombinationTable,
     GroundAccelerationTable,
-    LoadCaseTable,
     LoadTable,
     PayloadTable,
     RopeTable,
-    SpectrumTable,
     TelescopingTable,
     WindPressureTable,
 )

@@ -19,18 +19,20 @@ from protractile.geometry.segment import PointMass
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Pin, Support
 from protractile.runs.case.actions import STANDARD_GRAVITY
+from protractile.runs.case.combination_tables import (
+    FactorsTable,
+    LoadCaseTable,
+    ResistanceTable,
+)
 from protractile.runs.case.contact import ContactTable, JointTable, RestitutionTable
 from protractile.runs.case.kinds.model import ModelTable
 from protractile.runs.case.limits import is_table, units_of, walk_tables
 from protractile.runs.case.load_tables import (
     AxialTable,
-    FactorsTable,
     GroundAccelerationTable,
     HistoryTable,
-    LoadCaseTable,
     LoadTable,
     PayloadTable,
-    ResistanceTable,
     RopeTable,
     TelescopingTable,
     WindPressureTable,

@@ -95,6 +95,46 @@ def test_a_drawing_says_what_was_computed_by_hand(tmp_path: Path, drawn: str, by
     same(combination_rows(case), combination_rows(read_case(tmp_path, by_hand + more)))
 
 
+GUST = {
+    "pressure": 125.0,
+    "shape_factor": [1.4, 1.6],
+    "load_area": 0.8,
+    "table": [[0.0, 1.0], [1.0, 1.5]],
+}
+
+
+@pytest.mark.parametrize(
+    ("storm", "whole"),
+    [
+        ({"pressure": 800.0}, {"pressure": 800.0, "direction": "behind"}),
+        (800.0, {"pressure": 800.0}),
+        ({"speed": 30.0, "direction": "front"}, {"speed": 30.0, "direction": "front"}),
+        ({"direction": "front"}, {**GUST, "direction": "front"}),
+        ({"ramp": 0.5}, {"pressure": 125.0, "ramp": 0.5}),
+    ],
+)
+def test_the_wind_of_a_load_case_says_what_differs(
+    tmp_path: Path, storm: object, whole: dict[str, object]
+) -> None:
+    """Reference: other input, the load case with all keys of its wind; a pressure or a speed comes
+    without the gust, a direction with it."""
+    shared = {key: GUST[key] for key in ("shape_factor", "load_area")}
+    whole = shared | whole
+    text, cases = DRAWN + JACK + table("[wind]", **GUST) + FACTORS, []
+    for wind in (storm, whole):
+        case = read_case(tmp_path, text + table("[[load_case]]", name="out", wind=wind))
+        saved = read_case(tmp_path, toml.dumps(case))
+        assert toml.dumps(saved) == toml.dumps(case)
+        cases.append(combine(saved, saved.load_cases[0]))
+    own, other = (case.wind for case in cases)
+    assert own == other
+    assert build_boom(cases[0]).loads == build_boom(cases[1]).loads
+    stronger = pt.change(case, **{"wind.load_area": 1.6, "load_case[1].wind": storm})
+    changed = combine(stronger, stronger.load_cases[0]).wind
+    assert changed is not None
+    assert changed.load_area == 1.6
+
+
 def test_a_hand_force_tips_at_the_height_of_the_head(tmp_path: Path) -> None:
     """Reference: analytic, force times height above the ground, but for the deflection of 2 ‰; the
     moment about the end of the boom is 3 % of it."""
