@@ -67,7 +67,7 @@ from protractile.runs.case.load_tables import (
     WindPressureTable,
 )
 from protractile.runs.case.motion_tables import HoistTable, LuffTable, SlewTable
-from protractile.runs.case.sections import SegmentTable
+from protractile.runs.case.sections import PinnedMassTable, SegmentTable
 
 
 class TimeTable(CaseTable):
@@ -287,8 +287,7 @@ class Case(ClientKeys, CaseHeading):
     ensemble: EnsembleTable | None = None
     """the table of the ensembles; no ensembles unless given"""
     material: Material | None = None
-    """the table of elastic constants and density, for all segments without a material of their
-    own"""
+    """the table of elastic constants and density, of segments without a material of their own"""
     segments: Annotated[tuple[SegmentTable, ...], Field(min_length=1, max_length=MOST_SEGMENTS)] = (
         Field(alias="segment")
     )
@@ -300,6 +299,8 @@ class Case(ClientKeys, CaseHeading):
     telescoping: TelescopingTable | None = None
     """the table of the fraction of the stroke to which the boom is telescoped; the extensions of
     the joints unless given"""
+    pinned_masses: Annotated[tuple[PinnedMassTable, ...], Few] = Field((), alias="pinned_mass")
+    """the masses inside the boom that two segments carry, one [[pinned_mass]] each"""
     stops: Annotated[tuple[StopTable, ...], Field(max_length=MOST_STATIONS)] = Field(
         (), alias="stop"
     )
