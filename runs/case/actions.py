@@ -319,6 +319,9 @@ def wind(
         BoomError: there is not one shape factor, or one for each segment; the boom moves; a segment
             has no section; or the history is invalid.
     """
+    if not table.dynamic_pressure:
+        return
+    table.demand("shape_factor")
     for key, moves in {"drive": case.driven_segments, "slew": case.slew, "luff": case.luff}.items():
         if moves:
             what = f"the wind acts on the boom as it stands at t = 0; leave wind or {key} out"

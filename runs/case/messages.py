@@ -119,8 +119,8 @@ def _explain(
 
 
 def _pair(location: Sequence[int | str]) -> str:
-    names = any(str(step).endswith("columns") for step in location)
-    return f"a list of two {'names' if names else 'numbers'}"
+    kinds = {"columns": "names", "force_columns": "names", "pins": "pins"}
+    return f"a list of two {next((kinds[step] for step in location if step in kinds), 'numbers')}"
 
 
 def _key(location: Sequence[int | str]) -> str:

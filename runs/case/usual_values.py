@@ -19,18 +19,20 @@ from protractile.geometry.segment import PointMass
 from protractile.geometry.stiffeners import Collar, Diaphragm
 from protractile.geometry.support import Pin, Support
 from protractile.runs.case.actions import STANDARD_GRAVITY
+from protractile.runs.case.combination_tables import (
+    FactorsTable,
+    LoadCaseTable,
+    ResistanceTable,
+)
 from protractile.runs.case.contact import ContactTable, JointTable, RestitutionTable
 from protractile.runs.case.kinds.model import ModelTable
 from protractile.runs.case.limits import is_table, units_of, walk_tables
 from protractile.runs.case.load_tables import (
     AxialTable,
-    FactorsTable,
     GroundAccelerationTable,
     HistoryTable,
-    LoadCaseTable,
     LoadTable,
     PayloadTable,
-    ResistanceTable,
     RopeTable,
     TelescopingTable,
     WindPressureTable,
@@ -55,7 +57,7 @@ from protractile.runs.case.schema import (
     TimeTable,
     VelocityTable,
 )
-from protractile.runs.case.sections import SegmentTable
+from protractile.runs.case.sections import PinnedMassTable, SegmentTable
 
 # Larger numbers overflow in other units.
 _MOST = 1.0e300
@@ -240,6 +242,7 @@ def usual_of_tables(case: Case, boom: Boom) -> Ranges:
 def _of_parts(sizes: _Sizes) -> Ranges:
     """Return the usual ranges of the keys of segments, supports and cylinders."""
     bare, weight, length, *_ = sizes
+    carried = Usual("the mass at one place", 0.0, 50.0 * bare, 1.0e4)
     return {
         SegmentTable: {
             "rotary_inertia": Usual("the rotary inertia", 0.0, bare * length / 25.0, 100.0),
@@ -253,7 +256,10 @@ def _of_parts(sizes: _Sizes) -> Ranges:
             ),
             "viscous_damping": Usual("the viscous damping", 0.0, 1.0e3 * bare / length, 1.0e4),
         },
-        PointMass: {"mass": Usual("the mass at one place", 0.0, 50.0 * bare, 1.0e4)},
+        PointMass: {"mass": carried},
+        PinnedMassTable: {
+            "mass": carried, "centre": Usual("the place of the centre", 0.0, length, 50.0),
+        },
         Support: {
             "stiffness": sizes.spring("support"),
             "rotation_stiffness": Usual(

@@ -25,8 +25,13 @@ from protractile.geometry.boom import Boom, BoomError, Segment
 from protractile.geometry.ground import force_name
 from protractile.geometry.typography import percent
 from protractile.runs.case.build import build_boom, telescoped_joints
+from protractile.runs.case.combination_tables import (
+    LoadCaseTable,
+)
 from protractile.runs.case.combinations import combine
-from protractile.runs.case.load_tables import LoadCaseTable, TelescopingTable
+from protractile.runs.case.load_tables import (
+    TelescopingTable,
+)
 from protractile.runs.case.schema import Case
 from protractile.runs.chart.keys import ChartTable, Keys
 from protractile.runs.pipeline.beam_states import static_states

@@ -24,6 +24,7 @@ from protractile.geometry.typography import number
 from protractile.runs.case import actions
 from protractile.runs.case.load_tables import LoadTable
 from protractile.runs.case.schema import Case
+from protractile.runs.case.segments import pinned_masses
 from protractile.runs.report import theme
 
 # Displayed height of a segment without plates, over the length of the boom.
@@ -160,6 +161,8 @@ def boom_symbols(case: Case, boom: Boom) -> Iterator[Symbol]:
                 yield _spread(boom, index, segment.ends, load, direction, "")
         for mass in segment_table.masses:
             yield _mass(index, at(mass.x, *segment.ends), f"mass, {number(mass.mass, 4)} kg")
+    for index, mass in pinned_masses(case, boom.segments):
+        yield _mass(index, mass.x, f"mass between two pins, {number(mass.mass, 4)} kg")
     hung: Callable[..., Symbol] = replace
     if case.head is not None:
         angle = 0.0 if case.gravity is None else radians(case.gravity.angle)

@@ -284,6 +284,9 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
         (table("[wind]", shape_factor=1.2),
          "wind.pressure: missing; it is the dynamic pressure in Pa; a factor, 1 unless given, if "
          "the heading of its file has such a unit"),
+        (table("[[load_case]]", name="storm", wind={"pressure": 800.0}),
+         "load_case[1].wind.shape_factor: missing; it is the shape factor (force coefficient) of "
+         "all segments, or one for each segment"),
         (table("[wind]", pressure=100.0, shape_factor=1.2) + table("[luff]", travel=5.0, time=9.0),
          "wind: the wind acts on the boom as it stands at t = 0; leave wind or luff out"),
         (table("[head]", beside=0.2),

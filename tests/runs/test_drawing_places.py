@@ -61,6 +61,10 @@ def at_angle(angle: float) -> str:
 
 
 WIND = {"speed": 20.0, "shape_factor": 1.4}
+RAM = table(
+    "[[pinned_mass]]", mass=90.0, centre=1.5,
+    pins=[{"segment": "base", "x": 1.0}, {"segment": "fly", "x": {"tail": 0.5}}],
+)  # fmt: skip
 CAGE = table("[head]", ahead=0.2, below=0.1, mass=60.0, level={"front": 0.8, "below": 0.5})
 LOW = table("[[load_case]]", name="low", angle=10.0, payload=230.0)
 LEADS = {"front": -1.5 * ALONG, "below": 1.5 * ACROSS}
@@ -81,6 +85,9 @@ LEADS = {"front": -1.5 * ALONG, "below": 1.5 * ACROSS}
         (DRAWN + JACK + HEAD + table("[[load]]", magnitude=-90.0, direction="z", group="payload"),
          DRAWN + JACK + HEAD + table("[[load]]", **AT_TIP, magnitude=-90.0)
          + table("[[load]]", **AT_TIP, moment=True, magnitude=-72.0)),
+        (DRAWN + JACK + RAM,
+         DRAWN.replace('name = "base"', 'name = "base"\nmasses = [{ x = 1.0, mass = 60.0 }]')
+         .replace('name = "fly"', 'name = "fly"\nmasses = [{ x = 5.5, mass = 30.0 }]') + JACK),
         (DRAWN + JACK + CAGE, DRAWN + JACK + at_angle(50.0)),
         (DRAWN + JACK + CAGE + LOW, DRAWN + JACK + at_angle(10.0) + LOW),
         (DRAWN + JACK + table("[rope]", falls=2, ground=LEADS),
@@ -93,6 +100,85 @@ def test_a_drawing_says_what_was_computed_by_hand(tmp_path: Path, drawn: str, by
     case = read_case(tmp_path, drawn + more)
     assert read_case(tmp_path, toml.dumps(case)) == case
     same(combination_rows(case), combination_rows(read_case(tmp_path, by_hand + more)))
+
+
+@pytest.mark.parametrize(
+    ("extension", "shares"),
+    [(4.0, (60.0, 30.0)), (2.5, (45.0, 45.0)), (1.0, (0.0, 90.0)), (3.0, None)],
+)
+def test_a_mass_between_two_pins_follows_the_extension(
+    tmp_path: Path, extension: float, shares: tuple[float, float] | None
+) -> None:
+    """Reference: analytic, the lever rule: its centre is 1.5 m from the first of two pins that are
+    0.5 m further apart than the extension; half and half without its centre."""
+    ram = RAM if shares else RAM.replace("centre = 1.5\n", "")
+    out = table("[[load_case]]", name="out", extension={"fly": extension})
+    case = read_case(tmp_path, DRAWN + JACK + ram + out)
+    assert read_case(tmp_path, toml.dumps(case)) == case
+    boom = build_boom(combine(case, case.load_cases[0]))
+    found = [(one.x, one.mass) for segment in boom.segments for one in segment.masses]
+    by_hand = zip((1.0, 1.5 + extension), shares or (45.0, 45.0), strict=True)
+    places = [pair for pair in by_hand if pair[1]]
+    assert [pair for pair in found if pair[1] != 150.0] == [
+        pytest.approx(pair, rel=1e-12) for pair in places
+    ]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "line"),
+    [
+        ("1.5", "4.6", "centre: must not be above 4.5 m, the distance of the pins, got 4.6 m"),
+        ('"fly"', '"tip"', "pins[2].segment: 'tip' is no segment; give 'base' or 'fly'"),
+        ("x = 1.0", "x = 7.0",
+         "pins[1].x: 7 m lies outside 'base'; it must be between 0 and 6 m"),
+        (', { segment = "fly", x = { tail = 0.5 } }', "",
+         "pins: must be a list of two pins, got [{'segment': 'base', 'x': 1.0}]"),
+    ],
+)  # fmt: skip
+def test_a_mass_that_two_pins_do_not_carry(tmp_path: Path, old: str, new: str, line: str) -> None:
+    assert old in RAM
+    text = DRAWN + JACK + RAM.replace(old, new)
+    assert refusal(tmp_path, text) == f"pinned_mass[1].{line}"
+
+
+GUST = {
+    "pressure": 125.0,
+    "shape_factor": [1.4, 1.6],
+    "load_area": 0.8,
+    "table": [[0.0, 1.0], [1.0, 1.5]],
+}
+
+
+@pytest.mark.parametrize(
+    ("storm", "whole"),
+    [
+        ({"pressure": 800.0}, {"pressure": 800.0, "direction": "behind"}),
+        (800.0, {"pressure": 800.0}),
+        ({"speed": 30.0, "direction": "front"}, {"speed": 30.0, "direction": "front"}),
+        ({"direction": "front"}, {**GUST, "direction": "front"}),
+        ({"ramp": 0.5}, {"pressure": 125.0, "ramp": 0.5}),
+    ],
+)
+def test_the_wind_of_a_load_case_says_what_differs(
+    tmp_path: Path, storm: object, whole: dict[str, object]
+) -> None:
+    """Reference: other input, the load case with all keys of its wind; a pressure or a speed comes
+    without the gust, a direction with it."""
+    shared = {key: GUST[key] for key in ("shape_factor", "load_area")}
+    whole = shared | whole
+    text, cases = DRAWN + JACK + table("[wind]", **GUST) + FACTORS, []
+    for wind in (storm, whole):
+        case = read_case(tmp_path, text + table("[[load_case]]", name="out", wind=wind))
+        saved = read_case(tmp_path, toml.dumps(case))
+        assert toml.dumps(saved) == toml.dumps(case)
+        cases.append(combine(saved, saved.load_cases[0]))
+    own, other = (case.wind for case in cases)
+    assert own == other
+    assert build_boom(cases[0]).loads == build_boom(cases[1]).loads
+    stronger = pt.change(case, **{"wind.load_area": 1.6, "load_case[1].wind": storm})
+    changed = combine(stronger, stronger.load_cases[0]).wind
+    assert changed is not None
+    assert changed.load_area == 1.6
 
 
 def test_a_hand_force_tips_at_the_height_of_the_head(tmp_path: Path) -> None:
