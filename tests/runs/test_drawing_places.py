@@ -15,9 +15,9 @@ from protractile.geometry.cylinder import EarthPoint
 from protractile.geometry.load import Load, Moment, Torque
 from protractile.geometry.place import Level
 from protractile.runs.case import toml
+from protractile.runs.case.amounts import convert_to_si
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
-from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_rows, combination_states
