@@ -54,14 +54,15 @@ def read_amounts(tables: Mapping[str, Any], file: str) -> tuple[dict[str, Any], 
         if (match := re.fullmatch(AMOUNT, text)) is None:
             return text
         try:
-            value, unit = Fraction(match[1]), Unit.of(match[2].replace("°", "deg"))
-        except (ValueError, OverflowError):
+            unit = Unit.of(match[2].replace("°", "deg"))
+            length, mass, _ = unit.dimension
+            size = Fraction(repr(unit.factor)) / system.size(f"m^{length:g} kg^{mass:g}")
+            value = Fraction(match[1]) * size
+        except (ValueError, ArithmeticError):
             what = f"must have a known unit such as mm, kg, kN or MPa, got {format_value(text)}"
             raise BadInput(file, key_of(steps), what) from None
         amounts.append(Amount(steps, text, unit))
-        length, mass, _ = unit.dimension
-        size = system.size(f"m^{length:g} kg^{mass:g}")
-        return float(value * Fraction(repr(unit.factor)) / size)
+        return float(value)
 
     def read(item: Any, steps: Steps, inside: Sequence[type], has_unit: bool) -> Any:
         """Return a value with numbers; ``inside`` are the classes that its table may have."""

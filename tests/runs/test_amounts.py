@@ -73,6 +73,7 @@ def test_every_number_may_have_its_unit(text: str, units: str) -> None:
     [
         ("150 kg", 0.15), ("0.28t", 0.28), ("200 bar", 20.0), ("800 Pa", 8e-4), ("5 %", 0.05),
         ("7850 kg/m³", 7.85e-9), ("2.1e5 N/mm²", 2.1e5), ("3 kN/mm", 3e3), ("30°", 30.0),
+        ("72 km/h", 20000.0),
         ("7.2 m", 7200.0), ("-1.5 kNm", -1.5e6), ("9.81 m/s^2", 9810.0), (" 40 kN ", 4e4),
     ],
 )  # fmt: skip
@@ -105,6 +106,11 @@ def test_names_stay_as_they_are() -> None:
          "damping.modal: must be in % or another unit of the kind, got '0.5 deg'"),
         (table("[head]", ahead="300 furlong"),
          "head.ahead: must have a known unit such as mm, kg, kN or MPa, got '300 furlong'"),
+        *(
+            (table("[head]", ahead=text),
+             f"head.ahead: must have a known unit such as mm, kg, kN or MPa, got '{text}'")
+            for text in ("1.2.3 m", "3 m^60 m^60", "3 GPa^30.5 GPa^30.5", "3 m/")
+        ),
         (table("[head]", ahead="0,3 m"), "head.ahead: must be a number, got '0,3 m'"),
         (table("[head]", mass="-3 kg"), "head.mass: must be a number not less than 0, got -3.0"),
         (table("[[stop]]", segment="fly", x=9.0, play=0.2, stiffness="3e9 N/m^2"),
