@@ -47,7 +47,7 @@ class LoadCaseTable(CaseTable):
             WindPressureTable,
             BeforeValidator(
                 lambda value: {"pressure": float(value)} if is_number(value) else value,
-                json_schema_input_type=NotNegative | WindPressureTable,
+                json_schema_input_type=Annotated[NotNegative, In("Pa")] | WindPressureTable,
             ),
         ]
         | None

@@ -28,6 +28,7 @@ from protractile.geometry.fields import (
     names_of,
     rising,
 )
+from protractile.geometry.head import Sheave
 from protractile.geometry.place import Place
 from protractile.geometry.typography import choices
 from protractile.geometry.wind import AIR_DENSITY
@@ -283,6 +284,10 @@ class RopeTable(CaseTable):
     ground: EarthPoint | None = None
     """the place { front, below } of a winch that does not luff, from the foot pin in earth axes;
     then leave winch out"""
+
+    sheave: Sheave | None = None
+    """the place { ahead, below } of the sheave at the head, where the lead begins, and the falls
+    without a table head; the end of the axis unless given"""
 
     @model_validator(mode="after")
     def _one_winch(self) -> Self:

@@ -157,13 +157,13 @@ Velocity = Annotated[
     VelocityTable,
     BeforeValidator(
         lambda value: {"z": float(value)} if is_number(value) else value,
-        json_schema_input_type=Number | VelocityTable,
+        json_schema_input_type=Annotated[Number, In("m/s")] | VelocityTable,
     ),
 ]
 
 
 # Key that a plain number sets if it stands in place of the table.
-PLAIN_NUMBER_KEYS = {Support: "x", VelocityTable: "z"}
+PLAIN_NUMBER_KEYS = {Support: "x", VelocityTable: "z", WindPressureTable: "pressure"}
 
 
 class StartTable(CaseTable):

@@ -37,7 +37,7 @@ _Support = Annotated[
     Support,
     BeforeValidator(
         lambda value: {"x": value} if isinstance(value, str) or is_number(value) else value,
-        json_schema_input_type=Number | End | Support,
+        json_schema_input_type=Annotated[Number, In("m")] | End | Support,
     ),
 ]
 

@@ -11,7 +11,7 @@ from protractile.geometry.boom import Boom
 from protractile.geometry.chassis import Chassis
 from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.fields import names_of
-from protractile.geometry.head import Head
+from protractile.geometry.head import Head, Sheave
 from protractile.geometry.joint import BareStop, Pad, SlidePad
 from protractile.geometry.material import Material
 from protractile.geometry.place import Level
@@ -348,6 +348,7 @@ def _of_actions(sizes: _Sizes) -> Ranges:
     # The overlap refuses long ones, and a length of almost 0 is a constant extension.
     travel = Usual("the length of telescoping", 1.0e-3 * length, length, inf)
     hoisting = Usual("the length of hoisting", 2.0e-3 * length, 200.0, 1.0e3)
+    offset = Usual("the distance of the load", 0.0, 10.0, 100.0)
     deflection = Usual("the limit of deflections", 1.0e-5 * length, length, 1.0e3)
     return {
         # Smaller loads are compared with the boom as a whole.
@@ -369,10 +370,9 @@ def _of_actions(sizes: _Sizes) -> Ranges:
         },
         RopeTable: {"winch": Usual("the distance of the winch behind the foot", 0.0, 20.0, 50.0)},
         Level: dict.fromkeys(("bottom", "top"), Usual("the distance", 0.0, 0.3 * length, 20.0)),
+        Sheave: dict.fromkeys(("ahead", "below"), offset),
         Head: {
-            **dict.fromkeys(
-                ("ahead", "below", "beside"), Usual("the distance of the load", 0.0, 10.0, 100.0)
-            ),
+            **dict.fromkeys(("ahead", "below", "beside"), offset),
             "mass": Usual("the mass of the head", 0.0, 10.0 * bare, 1.0e4),
         },
         PayloadTable: {

@@ -73,6 +73,11 @@ stiffness = <1e7 1e8>
 capacity = <1e5 1e6>
 pin = { diameter = <0.03 0.1>, strength = 8e8 }
 ---
+[[pinned_mass]]
+mass = "<10 300> kg"
+pins = [{ segment = "BASE", x = <0.3 1> }, { segment = "FLY", x = "tail" }]
+centre = <0 0.3>
+---
 [gravity]
 acceleration = 9.81
 angle = <0 70>

@@ -32,12 +32,12 @@ FORMS = [
         "section = { shape = 'unequal box', height = 0.5, width = 0.3, top = 0.01, web = 0.01 }":
             "segment[1].section.bottom: missing; it is the thickness of the lower flange in m",
     }),
-    ("supports = [0.0, 2.0]", 'supports = [0.0, "2 m"]',
+    ("supports = [0.0, 2.0]", 'supports = [0.0, "near"]',
      "segment[1].supports[2].x: must be a number of m, 'tail', 'head' or a distance in m from "
-     "one of them such as { tail = 0.2 }, got '2 m'"),
+     "one of them such as { tail = 0.2 }, got 'near'"),
     ("[material]\nyoungs_modulus = 2.1e11\npoissons_ratio = 0.3\ndensity = 7850.0\n", "",
      "material: missing, and 'outer' has none of its own; it is the table of elastic constants and "
-     "density, for all segments without a material of their own"),
+     "density, of segments without a material of their own"),
     ("mass_per_length = 55.07\n", "",
      "segment[2].mass_per_length: missing; it is the mass per length in kg/m; follows from the "
      "section unless given"),

@@ -28,8 +28,9 @@ from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.lines import lines
 from protractile.beam_model.segment_model import gap_system
 from protractile.beam_model.statics import static_state
+from protractile.runs.case.amounts import convert_to_si
 from protractile.runs.case.build import build_boom
-from protractile.runs.case.reading import CheckedCase, convert_to_si
+from protractile.runs.case.reading import CheckedCase
 from protractile.runs.cautions.context import Context
 from protractile.runs.cautions.response import deflections, utilisations
 from protractile.runs.check import check_case

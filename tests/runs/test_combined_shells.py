@@ -21,11 +21,11 @@ from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
 from protractile.geometry.joint import Pad
 from protractile.runs.case import reading as case_file
+from protractile.runs.case.amounts import convert_to_si
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.kinds import KINDS
 from protractile.runs.case.kinds.model import BuildContext
 from protractile.runs.case.load_tables import LoadTable
-from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case
 from protractile.runs.case.sections import SectionTable
 from protractile.runs.folder.cache import Cache

@@ -317,6 +317,11 @@ def test_cylinder_by_its_drawing(tmp_path: Path) -> None:
         (table("[rope]", falls=2, ground={"front": -1.0, "below": 0.0})
          + table("[luff]", travel=5.0, time=9.0),
          "rope.ground: the rope's lead across the boom is that at t = 0; leave luff or hoist out"),
+        (table("[rope]", falls=2, sheave={"below": -0.3})
+         + table("[hoist]", mass=200.0, stiffness=1e6, hanging=True),
+         "rope.sheave: the load of hoist hangs at the end of the boom; leave it out"),
+        (table("[rope]", falls=2, sheave={"beside": 0.3}),
+         "rope.sheave.beside: unknown key; known ones are ahead, below"),
         (table("[head]", below={"left": 0.1}),
          "head.below: must be a number of m below the axis, or a distance in m from an outer "
          "surface such as { bottom = 0.2 }, got {'left': 0.1}"),

@@ -15,9 +15,9 @@ from protractile.geometry.cylinder import EarthPoint
 from protractile.geometry.load import Load, Moment, Torque
 from protractile.geometry.place import Level
 from protractile.runs.case import toml
+from protractile.runs.case.amounts import convert_to_si
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.combinations import combine
-from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case
 from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_rows, combination_states
@@ -221,14 +221,20 @@ def test_depths_need_a_section_in_the_units_of_the_case(tmp_path: Path) -> None:
     assert level == Level(bottom=-0.12e-3)
 
 
+@pytest.mark.parametrize(("ahead", "above"), [(0.0, 0.0), (0.3, 0.4)])
 @pytest.mark.parametrize(("angle", "mass"), [(50.0, 150.0), (10.0, 380.0)])
-def test_the_lead_to_a_winch_that_does_not_luff(tmp_path: Path, angle: float, mass: float) -> None:
-    """Reference: analytic, the force towards a fixed point at each angle, and its change with the
-    deflection of the head by central differences."""
-    rope = table("[rope]", falls=2, ground={"front": -1.2, "below": 0.3})
+def test_the_lead_to_a_winch_that_does_not_luff(
+    tmp_path: Path, angle: float, mass: float, ahead: float, above: float
+) -> None:
+    """Reference: analytic, the force from the sheave towards a fixed point at each angle, and its
+    change with the deflection of the head by central differences."""
+    sheave = {"ahead": ahead, "below": -above}
+    rope = table("[rope]", falls=2, ground={"front": -1.2, "below": 0.3}, sheave=sheave)
     case = read_case(tmp_path, DRAWN + JACK + rope + LOW)
+    assert read_case(tmp_path, toml.dumps(case)) == case
     up, along = sin(radians(angle)), cos(radians(angle))
-    behind, high, step = 10.0 + 1.2 * along + 0.3 * up, 1.2 * up - 0.3 * along, 1e-4
+    behind, high = 10.0 + ahead + 1.2 * along + 0.3 * up, 1.2 * up - 0.3 * along - above
+    step = 1e-4
 
     def pull(y: float, z: float) -> list[float]:
         line = -behind, -y, high - z
@@ -243,6 +249,44 @@ def test_the_lead_to_a_winch_that_does_not_luff(tmp_path: Path, angle: float, ma
     slope = (pull(0.0, -step)[2] - pull(0.0, step)[2]) / (2.0 * step)
     assert lead.stiffness("z") == pytest.approx(slope, rel=1e-8)
     assert lead.stiffness("y") == pytest.approx(-pull(step, 0.0)[1] / step, rel=1e-8)
+
+
+WINCHES = {
+    "on the boom": ({"winch": 1.5}, (-1.5, 0.0)),
+    "on the ground": (
+        {"ground": {"front": -1.2, "below": 0.3}},
+        (-1.2 * ALONG - 0.3 * ACROSS, 1.2 * ACROSS - 0.3 * ALONG),
+    ),
+}
+
+
+@pytest.mark.parametrize("head", ["", HEAD])
+@pytest.mark.parametrize("place", [{"below": -0.4}, {"ahead": 0.3, "below": {"top": -0.272}}])
+@pytest.mark.parametrize("winch", WINCHES)
+def test_rope_forces_turn_the_boom_about_its_foot(
+    tmp_path: Path, winch: str, place: dict[str, object], head: str
+) -> None:
+    """Reference: analytic, moments about the foot of the lead at the sheave, 0.4 m above the axis,
+    and of the weight of the payload, which hangs there without a head of its own."""
+    keys, (x, z) = WINCHES[winch]
+    texts = "", table("[rope]", falls=2, sheave=place, **keys)
+
+    def moment(text: str) -> float:
+        loads = build_boom(read_case(tmp_path, DRAWN + JACK + head + text)).loads
+        return sum(
+            load.magnitude if isinstance(load, Moment) else load.magnitude * load.x
+            for load in loads
+            if load.x is not None
+        )
+
+    sheave = 10.0 + float("ahead" in place) * 0.3, 0.4
+    weight, line = 150.0 * G, (x - sheave[0], z - sheave[1])
+    along, up = (0.5 * weight * part / hypot(*line) for part in line)
+    expected = sheave[0] * up - sheave[1] * along
+    if not head:
+        # The boom is at 50 degrees: the weight has the parts g sin 50° along and g cos 50° across.
+        expected += weight * (sheave[1] * ACROSS - (sheave[0] - 10.0) * ALONG)
+    assert moment(texts[1]) - moment(texts[0]) == pytest.approx(expected, rel=1e-9)
 
 
 LEVEL = table("[[load_case]]", name="level", angle=10.0)

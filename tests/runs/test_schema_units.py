@@ -15,10 +15,10 @@ from protractile.cases import change
 from protractile.geometry.fields import declared_units, describe, fields_of
 from protractile.geometry.units import System, Unit
 from protractile.runs.case import toml
+from protractile.runs.case.amounts import convert_to_si
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.contact import ContactTable, JointTable
 from protractile.runs.case.messages import _tables as tables_of
-from protractile.runs.case.reading import convert_to_si
 from protractile.runs.case.schema import Case, case_schema
 from protractile.runs.sweep.points import plan
 from tests.runs.case_texts import STEEL, edited, elements, read_case, refused
