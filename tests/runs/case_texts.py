@@ -15,8 +15,6 @@ from protractile.runs.process.bad_input import BadInput
 
 COARSE = (CASES / "coarse.toml").read_text(encoding="utf-8")
 CONTACT = next(line for line in COARSE.splitlines() if line.startswith("contact = "))
-# From the law of its joint on, for slips in several lines of it.
-FROM_EXPONENT = COARSE[COARSE.index("exponent = 2.0") :]
 STEEL = """
 [material]
 youngs_modulus = 2.1e11
