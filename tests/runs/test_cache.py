@@ -20,6 +20,7 @@ from protractile.dynamics.gap_system import Observer
 from protractile.geometry.boom import Boom
 from protractile.runs.folder.cache import Cache, key, read_record, write_record
 from protractile.runs.process.terminal import shorten
+from tests.system.run_folder import python
 
 # The file of the entry "a".
 ENTRY = "a.record"
@@ -46,6 +47,18 @@ def test_the_cache_keeps_what_was_used_last(tmp_path: Path) -> None:
     for room, left in ((350, [ENTRY, "c.record", "mine"]), (10, ["c.record", "mine"])):
         cache.make_room(room)
         assert sorted(path.name for path in cache.folder.iterdir()) == left
+
+
+def test_cache_removes_files_of_a_killed_process(tmp_path: Path) -> None:
+    program = (
+        "import os; from pathlib import Path; from protractile.runs.folder.cache import Cache; "
+        f"os.replace = lambda *_: os._exit(9); Cache(Path({str(tmp_path)!r})).store('a', 'first')"
+    )
+    assert python("-c", program).returncode == 9
+    (left,) = tmp_path.iterdir()
+    Cache(tmp_path).store("a", "second")
+    assert Cache(tmp_path).load("a", str) == "second"
+    assert not left.exists()
 
 
 def test_every_flipped_bit_is_found(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
