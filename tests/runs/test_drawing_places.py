@@ -30,14 +30,9 @@ from tests.runs.case_texts import (
     table,
 )
 from tests.runs.test_combinations import GROUND, LIFT
-from tests.runs.test_drawing_keys import DRAWN, FACTORS, JACK, PEOPLE, G, same
+from tests.runs.test_drawing_keys import AXIS, DRAWN, FACTORS, JACK, PEOPLE, UNEQUAL, G, same
 
 ACROSS, ALONG = sin(radians(50.0)), cos(radians(50.0))
-SIZES = 'shape = "unequal box", height = 0.3, width = 0.22, top = 0.006, bottom = 0.014'
-UNEQUAL = DRAWN.replace("height = 0.3, width = 0.22, flange = 0.006", SIZES)
-# First moments of the outer and the inner rectangle of the box about its bottom.
-_OUTER, _INNER = 0.226 * 0.31, 0.214 * 0.29
-AXIS = (_OUTER * 0.155 - _INNER * (0.014 + 0.145)) / (_OUTER - _INNER)
 HEAD = table("[head]", ahead=0.8, below=0.5)
 AT_TIP = {"segment": "fly", "x": "head", "group": "payload"}
 HAND = table("[[load]]", magnitude=400.0, direction="behind", group="payload")
