@@ -22,12 +22,7 @@ from protractile.runs.live.controls import Draft
 from protractile.runs.pipeline.combinations import combination_rows, combination_states
 from protractile.runs.pipeline.proofs import proofs_of
 from protractile.runs.sweep import points
-from tests.runs.case_texts import (
-    as_toml,
-    read_case,
-    refusal,
-    table,
-)
+from tests.runs.case_texts import as_toml, read_case, refusal, table
 from tests.runs.test_combinations import GROUND, LIFT
 from tests.runs.test_drawing_keys import AXIS, DRAWN, FACTORS, JACK, PEOPLE, UNEQUAL, G, same
 
