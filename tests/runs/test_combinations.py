@@ -19,6 +19,8 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.beam_model.statics import static_state
 from protractile.runs.case.build import build_boom
 from protractile.runs.case.reading import CheckedCase, convert_to_si
+from protractile.runs.cautions.context import Context
+from protractile.runs.cautions.response import utilisations
 from protractile.runs.check import check_case
 from protractile.runs.pipeline.beam_states import static_states
 from protractile.runs.pipeline.combinations import combination_rows
@@ -248,6 +250,20 @@ def test_largest_values_of_a_sine_and_a_ramp(tmp_path: Path) -> None:
         "Limit local plate stress ≤ 200 MPa: a run decides.",
         f"Limit pad pressure ≤ 2 MPa: the static pad pressure (maximum load) is {pressure}, and "
         "the motion adds to it; a run decides.",
+    ]
+
+
+def test_overloads_are_cautions(tmp_path: Path) -> None:
+    """Reference: exact messages, with pressures above 0.1 MPa by the lever rule."""
+    case = read_case(tmp_path, boom_of(STEP, OF_PADS.replace("1e6", "1e5")))
+    rows = Rows(static_rows(states_of(case), "beam"))
+    start, end = (
+        "static utilisation under the loads at t = 0 s: ",
+        ": exceeds the allowable pressure",
+    )
+    assert [*utilisations(Context(case, build_boom(case), rows=rows))] == [
+        f"{start}339 % by pad pressure (fly, x = 6 m){end}",
+        f"{start}439 % by pad pressure (fly, x = 8 m){end}",
     ]
 
 
