@@ -195,7 +195,7 @@ title = "A boom on a table"
 time = {{ duration = 2.0 }}
 gravity = {{ angle = 10.0 }}
 payload = {{ mass = 0.2 }}
-material = {{ youngs_modulus = 7e10, poissons_ratio = 0.33, density = 2700.0, yield_strength = 2e8 }}
+{table("[material]", youngs_modulus=7e10, poissons_ratio=0.33, density=2700.0, yield_strength=2e8)}
 {box("outer", (0.0, 0.6), (0.020, 0.015, 0.0012, 0.001), CLAMPED)}
 {box("inner", (0.5, 1.0), (0.017, 0.0125, 0.001, 0.001))}
 {table("[[joint]]", outer="outer", inner="inner", stations=[0.5, 0.6], play=0.0002, pad=SMALL)}
