@@ -69,18 +69,14 @@ def test_drive_moves_all_outboard_masses() -> None:
 
 
 def test_drive_holds_the_axial_weight(tmp_path: Path) -> None:
-    """Reference: analytic, m g sin θ of 550.7 kg, which the drive carries before it moves."""
+    """Reference: analytic, m g sin θ of 550.7 kg."""
     along = {
         "[[joint]]": "[gravity]\nangle = 30.0\n\n[[joint]]",
-        "duration = 7.0": "duration = 0.02",
         "least_overlap = 1.0 }": ROPE + "\nlocked_at = 'tail'",
     }
     case = read_case(tmp_path, edited(DRAWN, *along.items()))
     (pulled,) = elastic_drives(case, build_boom(case)).values()
     assert pulled.thrust == pytest.approx(0.5 * 550.7 * 9.80665)
-    later = change(case, **{"joint.drive.start": 0.01})
-    data = run_case(later, models=["kantorovich-5"]).trajectories.isel(model=0)
-    assert data["drive_force"].values[:10] == pytest.approx(pulled.thrust)
 
 
 @pytest.mark.parametrize(
@@ -115,7 +111,14 @@ def test_run_reports_stick_slip(tmp_path: Path) -> None:
     data = results.trajectories.sel(model="kantorovich-5")
     own = results.summary.models["kantorovich-5"].stick_slip["drive_force"]
     speed, force = data["extension_speed"].values, np.abs(data["drive_force"])
-    assert 300 < _checked_slips(data) < 1250
+    # In slip, drive force less friction accelerates 550.7 kg.
+    friction = 0.2 * np.abs(data["contact_force"].values).sum(axis=1)
+    slips = np.minimum(speed[1:], speed[:-1]) > 0.0
+    left = (data["drive_force"].values - friction)[1:] - 550.7 * np.diff(speed) / np.diff(
+        data["time"]
+    )
+    assert np.abs(left[slips]).max() < 1e-9 * friction.max()
+    assert 300 < slips.sum() < 1250
     come = (data["extension"] - data["drive_lag"]).values
     assert come == pytest.approx(cumulative_trapezoid(speed, data["time"], initial=0.0), abs=1e-4)
     assert own.energy_residual < 1e-12
@@ -140,40 +143,6 @@ def test_run_reports_stick_slip(tmp_path: Path) -> None:
     assert line.startswith(
         "'inner' lags up to 100 mm behind its drive, more than 1 % of the 1000 mm of "
     )
-
-
-@pytest.mark.slow
-def test_a_coarse_shell_sticks_and_slips(tmp_path: Path) -> None:
-    """Reference: analytic, the shell's own friction; other code, beam elements, by 1e-3."""
-    pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-    beam = '[[model]]\nname = "timoshenko"'
-    coarse = 'kind = "shell"\nmesh_size = 1.0\ncontact_tolerance = "any"'
-    changes = {
-        "travel = 4.0, time = 5.0": "travel = 0.015, time = 0.2",
-        "duration = 7.0": "duration = 0.225",
-        beam: f'[[model]]\nname = "shell"\n{coarse}\n\n{beam}',
-    }
-    case = drawn_by(tmp_path, ROPE.replace("2e5", "2e6"), **changes)
-    results = run_case(case, models=["shell", "timoshenko"])
-    shell, beams = (
-        results.summary.models[name].stick_slip["drive_force"] for name in ("shell", "timoshenko")
-    )
-    slips = _checked_slips(results.trajectories.sel(model="shell"))
-    assert 50 < slips < 200
-    assert shell.sticks == beams.sticks >= 1
-    assert shell.energy_residual < 1e-12
-    for name in ("mean", "peak", "slip", "speed"):
-        assert getattr(shell, name) == pytest.approx(getattr(beams, name), rel=1e-3)
-
-
-def _checked_slips(data: xr.Dataset) -> int:
-    """Return the outputs with slip; drive force less friction accelerates 550.7 kg."""
-    time, speed = data["time"].values, data["extension_speed"].values
-    friction = 0.2 * np.abs(data["contact_force"].values).sum(axis=1)
-    slips = np.minimum(speed[1:], speed[:-1]) > 0.0
-    left = (data["drive_force"].values - friction)[1:] - 550.7 * np.diff(speed) / np.diff(time)
-    assert np.abs(left[slips]).max() < 1e-9 * friction.max()
-    return int(slips.sum())
 
 
 LOAD = '[[load]]\nsegment = "inner"\nx = "head"\nmagnitude = 1000.0\nramp = 0.2\n\n[[model]]'
@@ -265,16 +234,6 @@ def test_levels_are_those_of_booms_without_a_drive(tmp_path: Path) -> None:
         first, last = (curve.values["deflection"][-1] for curve in curves)
         rest = first + ramp * (last - first)
         assert level == pytest.approx(np.abs(data["tip"].values - rest).max(), rel=1e-3)
-
-
-@pytest.mark.slow
-def test_boom_at_rest_has_no_residual_vibration(tmp_path: Path) -> None:
-    """Reference: the boom at rest under constant loads. Fast telescoping causes vibration."""
-    drawn = case(tmp_path, "drive = { travel = 4.0, time = 0.4 }")
-    start = drawn.start.model_copy(update={"state": "equilibrium"})
-    swing = swing_of(drawn.model_copy(update={"start": start, "loads": ()}))
-    assert (swing.initial, swing.final) == (0.0, 0.0)
-    assert swing.tip > 1.0e-3
-    # Nor has one whose drive does not end, or that has none.
-    assert swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.7 }")) is None
+    # There is none without a drive, or if it does not end.
     assert swing_of(case(tmp_path, "")) is None
+    assert swing_of(case(tmp_path, "drive = { travel = 4.0, time = 0.7 }")) is None
