@@ -18,14 +18,7 @@ from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Step
 from protractile.dynamics.second_order import buckling_factor
 from protractile.geometry.axial import Thrust, with_compression
-from protractile.geometry.boom import (
-    Boom,
-    Joint,
-    Pad,
-    PointMass,
-    Segment,
-    Support,
-)
+from protractile.geometry.boom import Boom, Joint, Pad, PointMass, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from protractile.geometry.profiles import octagon

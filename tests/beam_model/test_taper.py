@@ -11,10 +11,7 @@ from protractile.beam_model.boom_modes import critical_factor
 from protractile.beam_model.component import SegmentModel
 from protractile.beam_model.elements import Theory
 from protractile.beam_model.finite_element import finite_element_segments
-from protractile.beam_model.kantorovich import (
-    kantorovich_segments,
-    rigid_segment,
-)
+from protractile.beam_model.kantorovich import kantorovich_segments, rigid_segment
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.excitation import Step
 from protractile.geometry.axial import with_compression
@@ -24,9 +21,7 @@ from protractile.geometry.load import Load
 from protractile.runs.case.kinds.finite_element import BeamElements
 from studies import taper
 from studies.reference_models.statics import static_response
-from tests.beam_model.exact import (
-    STEEL,
-)
+from tests.beam_model.exact import STEEL
 from tests.beam_model.test_beams import THEORIES
 
 ROOT = BoxSection(height=0.8, width=0.5, flange=0.02, web=0.012)
