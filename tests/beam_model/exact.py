@@ -5,7 +5,6 @@ Statics follows from Macaulay's brackets, frequencies follow from determinants.
 """
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -98,31 +97,6 @@ class OverhangingBeam:
             ramps += force * arm
         constant, slope = self.line
         return cubes / self.bending_stiffness - ramps / self.shear_stiffness - constant - slope * x
-
-
-def bonded_deflections(boom: Boom, shear_stiffness: Sequence[float]) -> dict[str, float]:
-    """Return the static deflections of a boom of two segments, hinged to each other at both
-    stations.
-
-    Equilibrium of the inner segment gives the forces at the joint, which is statically determinate.
-    """
-    outer, inner = boom.segments
-    (tail, head), q = boom.joints[0].stations, inner.load * inner.length
-    at_head = q * (0.5 * (inner.start + inner.end) - tail) / (head - tail)
-    at_tail = q - at_head
-    below = OverhangingBeam(
-        outer, [(tail, at_tail), (head, at_head)], outer.load, shear_stiffness[0]
-    )
-    # Held at rest at its stations, the inner segment bends; the outer one tilts and lifts it.
-    above = OverhangingBeam(
-        replace(inner, supports=(Support(tail), Support(head))), [], inner.load, shear_stiffness[1]
-    )
-    slope = (below.deflection(head) - below.deflection(tail)) / (head - tail)
-
-    def lifted(x: float) -> float:
-        return above.deflection(x) + below.deflection(tail) + slope * (x - tail)
-
-    return {"tip": lifted(boom.tip), "head": below.deflection(head), "tail": lifted(tail)}
 
 
 class Span:
