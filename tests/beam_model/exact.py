@@ -10,6 +10,7 @@ from itertools import pairwise
 from typing import Any
 
 import numpy as np
+import pytest
 from scipy.optimize import brentq
 
 from protractile.beam_model.component import Component, SegmentModel, natural_modes
@@ -35,9 +36,7 @@ def beam(*, supports: Sequence[float | Support] = (), **changes: Any) -> Segment
     return Segment(**numbers | changes)
 
 
-def beam_series(
-    boom: Boom, terms: tuple[int, int], base: Base = "as printed"
-) -> list[SegmentModel]:
+def beam_series(boom: Boom, terms: Sequence[int], base: Base = "as printed") -> list[SegmentModel]:
     return kantorovich_segments(boom, terms, base, False)
 
 
@@ -46,6 +45,15 @@ def beam_elements(
 ) -> list[SegmentModel]:
     return finite_element_segments(boom, length, theory, False)
 
+
+Build = Callable[[Boom], Sequence[SegmentModel]]
+# Elements and series without rotary inertia, as the parameter ``build``.
+MODELS: dict[str, Build] = {
+    "euler-bernoulli": lambda boom: beam_elements(boom, 0.25),
+    "timoshenko": lambda boom: beam_elements(boom, 0.25, "timoshenko"),
+    "series": lambda boom: beam_series(boom, [14] * len(boom.segments), "complete"),
+}
+BUILDS = pytest.mark.parametrize("build", MODELS.values(), ids=MODELS)
 
 # βL of a beam of length L with a free, a clamped or a pinned end on either side (Blevins 1979).
 FREE_FREE = (4.730040744862704, 7.853204624095838, 10.995607838001671)

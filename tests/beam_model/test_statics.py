@@ -26,12 +26,11 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.stability import closing_loads
 from protractile.geometry.arrays import Array
 from protractile.geometry.axial import Lead, Thrust, with_compression
-from protractile.geometry.boom import Boom, Cylinder, Joint, Load, Pad, PointMass, Segment, Support
-from protractile.geometry.box import BoxSection
+from protractile.geometry.boom import Boom, Cylinder, Joint, Load, PointMass, Segment, Support
 from protractile.geometry.compression import NO_COMPRESSION
 from studies.reference_models.statics import static_response
-from tests.beam_model.exact import STEEL, beam
-from tests.booms import ARM, FLY
+from tests.beam_model.exact import BUILDS, STEEL, Build, beam
+from tests.booms import ARM, FLY, PAD
 from tests.touching import in_space, level, raised, touching
 
 LAW = PowerContact(1.0e9, 1.0).with_clearance(7.0e-3)
@@ -97,15 +96,8 @@ def test_the_tip_turns_by_the_play(paper_boom: Boom) -> None:
     assert found.tip == pytest.approx(0.007 + 0.014 * 9.0, rel=1e-3)
 
 
-MODELS: dict[str, Callable[[Boom], Models]] = {
-    "euler": lambda boom: elements(boom)[1],
-    "timoshenko": lambda boom: elements(boom, "timoshenko")[1],
-    "series": lambda boom: kantorovich_segments(boom, [12], "complete", False),
-}
-
-
-@pytest.mark.parametrize("kind", MODELS)
-def test_section_forces_of_a_column_refer_to_the_straight_axis(kind: str) -> None:
+@BUILDS
+def test_section_forces_of_a_column_refer_to_the_straight_axis(build: Build) -> None:
     """Reference: by hand. A column of 5 m has −500 N/m, −44,049 N and half of Euler's force P,
     which adds P w to M. The mean slope of M is 5 to 9 % above V at the clamp, and twice the load at
     the tip.
@@ -114,7 +106,7 @@ def test_section_forces_of_a_column_refer_to_the_straight_axis(kind: str) -> Non
     force = 0.5 * np.pi**2 * free.bending_stiffness / (4.0 * 5.0**2)
     pressed = with_compression([free], [], [Thrust(0, 8.0, force)])
     boom = Boom(pressed, (), (Load(0, "z", -44049.0, 8.0, Step()),))
-    models = MODELS[kind](boom)
+    models = build(boom)
     system = gap_system(boom.bonded, models).gather_loads()
     (line,) = lines(boom, models)
     found = line.read(static_response(system, system.load))
@@ -148,22 +140,15 @@ def crane(
     angle: float, mass: float = 300.0, thrust: float = 2.0e4, lateral: float | None = None
 ) -> Boom:
     """Return a luffed boom of two boxes on a cylinder, under its weight and a payload."""
-    outer, inner = BoxSection(0.50, 0.40, 0.010, 0.008), BoxSection(0.45, 0.35, 0.008, 0.006)
     along, across = 9.81 * np.sin(radians(angle)), 9.81 * np.cos(radians(angle))
+    own = {"load": -50.0 * across, "masses": (PointMass(14.0, mass),)}
     segments = (
-        Segment.of_section("base", 0.0, 8.0, STEEL, outer, supports=(FOOT,), load=-800.0 * across),
-        Segment.of_section(
-            "fly", 6.0, 14.0, STEEL, inner, load=-50.0 * across, masses=(PointMass(14.0, mass),)
-        ),
+        Segment.of_section("base", 0.0, 8.0, STEEL, ARM, supports=(FOOT,), load=-800.0 * across),
+        Segment.of_section("fly", 6.0, 14.0, STEEL, FLY, **own),
     )
-    if lateral is None:
-        segments = tuple(replace(one, lateral=None) for one in segments)
-    pad = Pad(length=0.1, width=0.08, thickness=0.02, modulus=2e9)
-    joint = Joint(0, 1, (6.0, 8.0), 0.010, pad=pad, lateral_play=lateral)
-    jack = Cylinder(0, 3.0, 0.4, ground=(1.0, -2.0), stiffness=5e7)
+    joint = Joint(0, 1, (6.0, 8.0), 0.010, pad=PAD, lateral_play=lateral)
+    jack = Cylinder(0, 3.0, 0.4, ground=(1.0, -2.0), stiffness=5e7, spread=0.5 if lateral else 0.0)
     jack = jack.on_earth(0.0, FOOT).in_boom_axes(radians(angle), FOOT)
-    if lateral is not None:
-        jack = replace(jack, spread=0.5)
     compressed = with_compression(segments, (joint,), [Thrust(1, 14.0, thrust)], along)
     loads = [Load(1, "z", -mass * across, 14.0, Step())]
     return Boom(compressed, (joint,), loads, cylinders=(jack,))
