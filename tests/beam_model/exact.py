@@ -51,7 +51,7 @@ Build = Callable[[Boom], Sequence[SegmentModel]]
 MODELS: dict[str, Build] = {
     "euler-bernoulli": lambda boom: beam_elements(boom, 0.25),
     "timoshenko": lambda boom: beam_elements(boom, 0.25, "timoshenko"),
-    "series": lambda boom: beam_series(boom, [14] * len(boom.segments), "complete"),
+    "series": lambda boom: beam_series(boom, [12] * len(boom.segments), "complete"),
 }
 BUILDS = pytest.mark.parametrize("build", MODELS.values(), ids=MODELS)
 
