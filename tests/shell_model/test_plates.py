@@ -19,11 +19,7 @@ from protractile.geometry.boom import Boom, Support
 from protractile.geometry.mesh import mesh_segment
 from protractile.geometry.plating import plain_thickness
 from protractile.shell_model.boom_shell import ShellOptions
-from protractile.shell_model.buckling import (
-    ShellState,
-    buckle_segments,
-    buckling_modes,
-)
+from protractile.shell_model.buckling import ShellState, buckle_segments, buckling_modes
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.shell import ON_LINE
 from protractile.shell_model.stress.stresses import triangle_areas
@@ -32,16 +28,7 @@ from studies.reference_models.finite_strip import Strips
 from studies.reference_models.plates import STEEL, Field, SupportedPlate, rectangle, rigidities
 from studies.reference_models.single_segment import natural_frequencies, shell_alone
 from studies.reference_models.static_shell import StaticShell, hold
-from studies.wall_buckling import (
-    BOXES,
-    COLUMN,
-    PLATES,
-    PRESSED,
-    TUBE,
-    UNIT,
-    LoadedBox,
-    LoadedPlate,
-)
+from studies.wall_buckling import BOXES, COLUMN, PLATES, PRESSED, TUBE, UNIT, LoadedBox, LoadedPlate
 from tests.shell_model.booms import HELD, box_segment
 from tests.shell_model.conftest import BOX, box_shell
 

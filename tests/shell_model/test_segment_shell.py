@@ -10,14 +10,7 @@ from protractile.beam_model.finite_element import finite_element_segment
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import (
-    Collar,
-    Diaphragm,
-    Pad,
-    PointMass,
-    Stop,
-    Support,
-)
+from protractile.geometry.boom import Collar, Diaphragm, Pad, PointMass, Stop, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.contact_places import ContactInterval
 from protractile.geometry.polygon import PolygonSection

@@ -21,11 +21,7 @@ from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.segment_shell import assemble_segment
 from protractile.shell_model.stress.fields import gather_stress_modes
 from protractile.shell_model.stress.history import stress_near_places, summarise
-from protractile.shell_model.stress.stresses import (
-    Modes,
-    ShellStress,
-    Stress,
-)
+from protractile.shell_model.stress.stresses import Modes, ShellStress, Stress
 from studies.reference_models.shell_readings import wall_forces
 from studies.second_order import BOX as COLUMN_BOX
 from studies.second_order import CLAMP, CRITICAL, LENGTH, column

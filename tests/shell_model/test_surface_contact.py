@@ -10,7 +10,7 @@ from mpi4py import MPI
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, BoomError, Pad, SlidePad
+from protractile.geometry.boom import Boom, Pad, SlidePad
 from protractile.geometry.contact_places import ContactLine
 from protractile.geometry.contact_places import pads as places_of_pads
 from protractile.geometry.joint import POLYAMIDE, PadSide
@@ -168,15 +168,6 @@ def test_pads_take_the_place_of_points_one_by_one() -> None:
     assert set(np.abs(turned[along_z])) == {0.05, 0.95}
     assert set(np.abs(lifted[along_z])) == {1.0}
     assert not turned[~along_z].any()
-
-
-def test_pads_are_for_stations_near_webs() -> None:
-    message = (
-        "contact_line: 'surface' leaves no place to the joints' pads; give 'near webs', or leave "
-        "pad out"
-    )
-    with pytest.raises(BoomError, match=f"^{message}$"):
-        _system(_with_pads(flat_boom()))
 
 
 def test_several_pads_are_rows_of_their_own() -> None:

@@ -10,7 +10,7 @@ from mpi4py import MPI
 from protractile.beam_model.finite_element import finite_element_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.excitation import Step
-from protractile.geometry.boom import Boom, BoomError, Diaphragm, Joint, Pad, Segment, Support
+from protractile.geometry.boom import Boom, Diaphragm, Joint, Pad, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.load import Load
 from protractile.geometry.polygon import bent
@@ -147,11 +147,3 @@ def test_pads_lie_on_tapered_walls(pad: Pad | None, lateral: float | None) -> No
         row = inner.row(contact.operator[1])
         assert row @ moved == pytest.approx(1.0, rel=1e-9)
         assert row @ turned == pytest.approx(place + (reach if place == 5.0 else -reach), rel=1e-9)
-
-
-def test_surfaces_are_parallel() -> None:
-    """Reference: exact message."""
-    boom = tapered_boom(None, None)
-    options = ShellOptions(mesh_size=0.4, contact_line="surface")
-    with pytest.raises(BoomError, match="'surface' lets parallel walls touch, and 'outer' tapers"):
-        reduce_boom(touching(boom, LAW), options, MPI.COMM_SELF)
