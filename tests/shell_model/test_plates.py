@@ -22,13 +22,12 @@ from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.buckling import ShellState, buckle_segments, buckling_modes
 from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.shell import ON_LINE
-from protractile.shell_model.stress.stresses import triangle_areas
 from studies.reference_models.benchmarks import PUBLISHED, X, Y, Z, grid, twisted_beam
 from studies.reference_models.finite_strip import Strips
 from studies.reference_models.plates import STEEL, Field, SupportedPlate, rectangle, rigidities
 from studies.reference_models.single_segment import natural_frequencies, shell_alone
 from studies.reference_models.static_shell import StaticShell, hold
-from studies.wall_buckling import BOXES, COLUMN, PLATES, PRESSED, TUBE, UNIT, LoadedBox, LoadedPlate
+from studies.wall_buckling import BOXES, COLUMN, PLATES, PRESSED, TUBE, LoadedBox, LoadedPlate
 from tests.shell_model.booms import HELD, box_segment
 from tests.shell_model.conftest import BOX, box_shell
 
@@ -188,10 +187,6 @@ def constant_strains() -> list[ConstantStrain]:
     ]
 
 
-# A Z of three walls.
-FOLDED = Member([(-0.2, 0.3), (0.0, 0.3), (0.0, -0.3), (0.2, -0.3)], False, 0.01)
-
-
 @pytest.mark.parametrize("state", constant_strains(), ids=lambda state: state.name)
 def test_constant_strains_are_exact(state: ConstantStrain) -> None:
     """Reference: analytic, displacements and rotations of all nodes for prescribed edges, on a
@@ -220,23 +215,6 @@ def test_constant_strains_are_exact(state: ConstantStrain) -> None:
     found = shell.solve(held, shell.surface_load(np.zeros(3), couple))
     for dofs in (shell.node_dofs, shell.rotation_dofs):
         assert np.abs(found[dofs] - exact[dofs]).max() < 1.0e-11 * np.abs(exact[dofs]).max()
-
-
-def test_rigid_motions_have_no_strain() -> None:
-    """Reference: analytic, no forces on the nodes of a folded, oblique shell. Forces due to a
-    motion of every second node are the scale.
-    """
-    points, triangles = FOLDED.mesh(3, 5)
-    turn = np.asarray(Rotation.from_rotvec([-0.8, 0.5, 1.9]).as_matrix())
-    shell = StaticShell(points @ turn.T, triangles, FOLDED.thickness, STEEL)
-    motions = shell.held({}).rigid_motions()
-    assert motions.shape == (shell.num_dofs, 6)
-    for motion in motions.T:
-        force = np.abs(shell.forces(motion))
-        strained = motion.copy()
-        strained[shell.node_dofs[::2]] = 0.0
-        strained[shell.rotation_dofs[::2]] = 0.0
-        assert force.max() < 1.0e-10 * np.abs(shell.forces(strained)).max()
 
 
 def test_a_turned_box_vibrates_alike() -> None:
@@ -317,23 +295,6 @@ def test_tension_has_no_factor() -> None:
     assert pulled.shell(4, 2).size == 0
 
 
-def test_finite_strips_know_walls_and_columns() -> None:
-    """Reference: analytic, k = 4 of a square tube, 5.33 in bending, and Euler's column."""
-    strips, width = Strips.of(TUBE, STEEL), 0.4
-    stress = UNIT * (0.004 / width) ** 2
-    found = strips.lowest(3.0 * width, range(1, 7), lambda y, z: np.full_like(z, -stress))
-    assert found == pytest.approx(4.0, rel=1.0e-3)
-    found = min(
-        strips.factor(part * width, 1, lambda y, z: -stress * z / 0.2)
-        for part in np.linspace(0.7, 1.0, 13)
-    )
-    assert found == pytest.approx(5.33, rel=2.0e-3)
-    length = 200.0 * width
-    found = strips.factor(length, 1, lambda y, z: np.full_like(z, -1.0))
-    radius2 = TUBE.second_moment_of_area / TUBE.area
-    assert found == pytest.approx(np.pi**2 * STEEL.youngs_modulus * radius2 / length**2, rel=1e-3)
-
-
 @pytest.mark.slow
 def test_a_box_buckles_as_finite_strips() -> None:
     """Reference: other code, finite strips, within 1 % of the limit of two meshes."""
@@ -387,17 +348,3 @@ def test_beam_buckles_at_its_largest_moment() -> None:
     size = np.linalg.norm(found.shapes[0], axis=1)
     most = found.mesh.points[size.argmax()]
     assert most[[0, 2]] == pytest.approx([2.0, 0.2], abs=0.3)
-
-
-def test_halved_meshes_have_the_same_walls() -> None:
-    """Reference: analytic, areas and places."""
-    shell = shell_alone(box_segment("box", 0.0, 2.0, TUBE), 0.2)
-    mesh = shell.mesh
-    finer = mesh.refined
-    assert np.array_equal(finer.points[: len(mesh.points)], mesh.points)
-    areas = triangle_areas(mesh.points, mesh.triangles)
-    own = triangle_areas(finer.points, finer.triangles)
-    assert own == pytest.approx(np.repeat(0.25 * areas, 4))
-    midpoints = finer.points[finer.triangles].mean(axis=1).reshape(-1, 4, 3).mean(axis=1)
-    assert midpoints == pytest.approx(mesh.points[mesh.triangles].mean(axis=1))
-    assert len(np.unique(finer.points.round(9), axis=0)) == len(finer.points)

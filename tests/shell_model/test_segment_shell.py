@@ -34,34 +34,6 @@ from tests.shell_model.booms import (
 )
 from tests.shell_model.conftest import BOX, UNEQUAL, box_shell, compliance
 
-
-def test_rigid_motions_carry_the_mass_of_the_box() -> None:
-    """Reference: analytic, ρ A L and ρ (J_y + J_z) L, except for the effect (t/h)² of corners."""
-    shell = box_shell(0.25)
-    motions = shell.rigid_motions()
-    masses = (motions.T @ times(shell.mass, motions)).diagonal()
-    mass = STEEL.density * BOX.area * 10.0
-    polar = BOX.second_moment_of_area + BOX.lateral_second_moment_of_area
-    assert masses[:3] == pytest.approx([mass] * 3, rel=1.0e-12)
-    assert masses[3] == pytest.approx(STEEL.density * polar * 10.0, rel=5.0e-4)
-
-
-def test_corners_read_rigid_motions() -> None:
-    """Reference: analytic, lateral translation, yaw and roll: (y, z) moves by φ (−z, y)."""
-    shell = box_shell(0.25)
-    outline, corners = shell.outline(10.0), CornerLines(shell)
-    at_end, within = (ContactInterval.from_station(shell.segment, x, 0.1) for x in (10.0, 7.3))
-    sideways = np.array([0.0, 0.01, 0.0, 0.004, 0.0, 0.003])
-    rows = (
-        outline.wall_deflection("y"), corners.deflection(at_end, "z", 0.1, -0.3),
-        corners.deflection(at_end, "y", -0.1, 0.3), corners.deflection(within, "y", 0.1, 0.1),
-    )  # fmt: skip
-    readings = [shell.row(row) @ shell.rigid_motions() @ sideways for row in rows]
-    shifted, within_shifted = 0.01 + 0.003 * 5.0, 0.01 + 0.003 * 2.3
-    expected = [shifted, 4.0e-4, shifted - 1.2e-3, within_shifted - 4.0e-4]
-    assert readings == pytest.approx(expected, abs=1.0e-12)
-
-
 YOUNG, SHEAR = STEEL.youngs_modulus, STEEL.shear_modulus
 
 
