@@ -21,7 +21,7 @@ from protractile.dynamics.gap_system import GapSystem
 from protractile.dynamics.integrator import AdaptiveStep, FixedStep
 from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Cylinder, Joint, PointMass, Support
+from protractile.geometry.boom import Boom, Cylinder, Joint, Support
 from tests.beam_model.exact import beam, beam_elements, beam_series
 from tests.modal import damping_matrix, modal_system
 from tests.touching import touching
@@ -53,18 +53,6 @@ def test_a_segment_falls_on_its_contacts_and_bounces(paper_boom: Boom) -> None:
     assert tip[::40] == pytest.approx(np.zeros(5), abs=1e-6 * LAW.above)
     assert found.data["tail"].values == pytest.approx(tip, abs=1e-12)
     assert found.data.attrs["energy_residual"] < 1e-7
-
-
-def test_a_body_swings_on_springs(paper_boom: Boom) -> None:
-    """Reference: analytic, bounce and pitch of a symmetric bar with a mass in its middle."""
-    stiffness = 3.0e5
-    springs = tuple(Support(x, stiffness=stiffness) for x in (1.0, 9.0))
-    bar = replace(paper_boom.segments[0], supports=springs, masses=(PointMass(5.0, 400.0),))
-    mass = bar.mass_per_length * bar.length + 400.0
-    inertia = bar.mass_per_length * bar.length**3 / 12.0 + bar.rotary_inertia * bar.length
-    expected = np.sqrt([2.0 * stiffness / mass, 2.0 * stiffness * 4.0**2 / inertia])
-    modes = BoomModes(Boom((bar,), ()), [rigid_segment(bar)])
-    assert np.sqrt(np.sort(modes.omega2)) == pytest.approx(np.sort(expected), rel=1e-12)
 
 
 def rubs(boom: Boom) -> Boom:

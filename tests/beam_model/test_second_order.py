@@ -11,7 +11,6 @@ from protractile.beam_model.static_model import estimate_critical_factor
 from protractile.beam_model.statics import static_state
 from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.excitation import Step
-from protractile.dynamics.second_order import buckling_factor
 from protractile.geometry.axial import Thrust, with_compression
 from protractile.geometry.boom import Boom, Joint, Pad, PointMass, Segment, Support
 from protractile.geometry.load import Load
@@ -109,22 +108,6 @@ def test_a_square_column_without_loads_across_it_buckles_as_in_a_plane() -> None
         estimate_critical_factor(mast(1.0e5, lateral_play=play)) for play in (None, 0.003)
     )
     assert spatial == pytest.approx(flat, rel=1e-6)
-
-
-@BUILDS
-def test_both_planes_buckle_each_by_its_own_stiffness(
-    build: Build, request: pytest.FixtureRequest
-) -> None:
-    """Reference: analytic, Euler's π² E J/4L² in each plane, with shear by Engesser."""
-    boom = column(1.0e5)
-    (segment,), (model,) = boom.segments, build(boom)
-    for component, bent in (("z", segment), ("y", segment.turned())):
-        found = model.components[component]
-        euler = 0.25 * np.pi**2 * bent.bending_stiffness / 10.0**2
-        if request.node.callspec.id == "timoshenko":
-            euler /= 1.0 + euler / (STEEL.shear_modulus * bent.section.shear_area)
-        factor = buckling_factor(found.stiffness, found.geometric_stiffness)
-        assert factor == pytest.approx(euler / 1.0e5, rel=1e-4)
 
 
 @BUILDS

@@ -14,8 +14,6 @@ from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.integrator import FixedStep
-from protractile.dynamics.motion import Motion
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
 from protractile.geometry.load import Load
@@ -217,20 +215,6 @@ def test_twisting_frequencies(supports: tuple[Support, ...], numbers: tuple[floa
     np.testing.assert_allclose(np.log2(errors[0] / errors[1]), 2.0, atol=0.03)
 
 
-def test_pads_press_as_one_without_roll(spatial_boom: Boom) -> None:
-    """Reference: analytic. Under rigid translations of the inner segment along z and y, each
-    station has the force of its contact law.
-    """
-    system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
-    up, aside = rigid_motion(system, ""), rigid_motion(system, "_lateral")
-    for height, shift in ((8.0e-3, 0.0), (-9.0e-3, 5.5e-3), (7.5e-3, -6.0e-3)):
-        gaps = system.rows @ (height * up + shift * aside)
-        forces = np.array([law.force(y) for law, y in zip(system.laws, gaps, strict=True)])
-        summed = np.bincount(system.station_of_row, forces)
-        expected = [LAW.force(np.array(height))] * 2 + [LATERAL_LAW.force(np.array(shift))] * 2
-        assert summed == pytest.approx(np.array(expected, dtype=float), rel=1e-9, abs=1e-3)
-
-
 def rigid_motion(system: GapSystem, suffix: str) -> Array:
     """Return the translation (num_modes,) of the inner segment by 1 m."""
     rigid = system.omega2 == 0.0
@@ -270,21 +254,6 @@ def test_pads_resist_roll(spatial_boom: Boom) -> None:
         assert more == pytest.approx(2.0 * law.law.stiffness * arm**2 * theta**2 / 8.0, rel=1e-6)
         # As much to the other side.
         assert stored(pressed - theta * roll) - stored(pressed) == pytest.approx(more, rel=1e-6)
-
-
-def test_the_vertical_plane_is_the_flat_boom(spatial_boom: Boom) -> None:
-    """Reference: the flat model, to round-off, which contacts amplify to 3e-8 in 0.5 s."""
-    (joint,) = spatial_boom.joints
-    flat = replace(spatial_boom, joints=(replace(joint, lateral_play=None),))
-    plane, space = (
-        FixedStep(1.0e-4)(Motion(gap_system(touching(boom, LAW, lateral), beams(boom)), 0.4))
-        for boom, lateral in ((flat, ()), (spatial_boom, (LATERAL_LAW,)))
-    )
-    assert plane.data.attrs["contact_changes"] > 10
-    for name in ("tip", "head", "tail"):
-        expected = plane.data[name].values
-        assert np.abs(space.data[name].values - expected).max() < 1e-9 * np.ptp(expected)
-        assert np.abs(space.data[f"{name}_lateral"].values).max() < 1e-15
 
 
 def test_friction_rubs_in_the_plane_of_contact(paper_boom: Boom) -> None:

@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 
 from protractile.beam_model.finite_element import finite_element_segment
-from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Collar, Diaphragm, Pad, PointMass, Stop, Support
+from protractile.geometry.boom import PointMass, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.contact_places import ContactInterval
 from protractile.geometry.polygon import PolygonSection
@@ -19,7 +18,6 @@ from protractile.shell_model.contact.wall_rows import CornerLines, Wall, WallPoi
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
 from protractile.shell_model.segment.cross_section import Row
-from protractile.shell_model.segment.solver import times
 from studies import sections
 from tests.beam_model.exact import frequencies
 from tests.shell_model.booms import (
@@ -79,21 +77,6 @@ def test_supports_leave_unheld_rigid_motions_free() -> None:
     }  # fmt: skip
     for supports, count in left.items():
         assert box_shell(0.5, supports=supports).rigid_motions().shape[1] == count
-
-
-def test_point_masses_have_mass_and_no_rotary_inertia() -> None:
-    """Reference: analytic: 100 kg translated, 70·3² + 30·5² kg·m² pitch, yaw; no roll."""
-    masses = (PointMass(2.0, 70.0), PointMass(10.0, 30.0))
-    bare, loaded = (
-        np.array([motion @ times(shell.mass, motion[:, None])[:, 0] for motion in motions.T])
-        for shell, motions in (
-            (shell, shell.rigid_motions())
-            for shell in (box_shell(0.5), box_shell(0.5, masses=masses))
-        )
-    )
-    turned = 70.0 * 9.0 + 30.0 * 25.0
-    expected = [100.0, 100.0, 100.0, 0.0, turned, turned]
-    assert loaded - bare == pytest.approx(expected, rel=1.0e-9, abs=1.0e-9)
 
 
 @pytest.mark.slow
@@ -197,30 +180,3 @@ def test_a_pressed_boom_rests_as_its_beams_do(pair: tuple[Section, Section], rel
     """Reference: other code, bonded Timoshenko elements; boxes are 0.25 % apart without collars."""
     plain = sections.boom_of(*pair)
     assert_rests_as_beams(reduced(plain, 0.25, law=LINEAR).system, plain, rel)
-
-
-@pytest.mark.slow
-def test_polygon_segment_with_attachments() -> None:
-    """Reference: analytic, the masses of a rigid motion along z."""
-    boom = sections.boom_of(OCTAGON, INNER_OCTAGON)
-    outer, inner = boom.segments
-    outer = replace(outer, supports=(Support(0.0), Support(2.0, stiffness=1.0e8)))
-    inner = replace(
-        inner,
-        collars=(Collar((9.0, 9.5), 0.004),),
-        masses=(PointMass(19.0, 50.0),),
-        diaphragms=(Diaphragm(18.5, 0.005),),
-    )
-    joints = (replace(boom.joints[0], pad=Pad(0.1, 0.03, 0.01)),)
-    stops = (Stop(1, 18.0, 0.02, PowerContact(1.0e8, 1.0, stiffness_below=1.0e8)),)
-    boom = replace(boom, segments=(outer, inner), joints=joints, stops=stops)
-    found = reduced(boom, 0.5, law=LINEAR, contact_tolerance=1.0)
-    assert np.isfinite(found.local_compliance[:-2]).all()
-    section = inner.section
-    mass = STEEL.density * (
-        section.area * 10.0 + section.perimeter * 0.004 * 0.5 + section.enclosed_area * 0.005
-    )
-    rigid = np.flatnonzero(found.system.omega2 == 0.0)
-    rows = [found.system.observers[name].row[rigid] for name in ("tip", "tail")]
-    motion = np.linalg.solve(rows, [1.0, 1.0])
-    assert motion @ motion == pytest.approx(mass + 50.0, rel=1e-6)

@@ -80,15 +80,16 @@ def test_a_row_reads_a_quadratic_field_anywhere_on_a_wall(wall: Wall) -> None:
 @pytest.mark.slow
 def test_a_uniform_approach_presses_as_the_stations_do() -> None:
     """Reference: analytic, (4) at both stations. The resultant is at the centre of the overlap."""
-    system = _system(flat_boom())
+    law = replace(LAW.law, stiffness_below=0.5e13).with_clearance(LAW.above)
+    system = _system(flat_boom(), law=law)
     depth = 2.0e-3
     # A turn about the middle of the overlap, whose ends are at 9, 10 and 19 m.
     turn = _rigid(system, {"tip": 9.5, "tail": -0.5})
-    for side in (1.0, -1.0):
+    for side, stiffness in ((1.0, 2.0e13), (-1.0, 1.0e13)):
         heave = side * (LAW.above + depth)
         force = _forces(system, _rigid(system, {"tip": heave, "tail": heave}))
-        assert np.count_nonzero(force) == 8
-        assert force.sum() == pytest.approx(side * 2.0 * LAW.law.stiffness * depth**2, rel=1.0e-6)
+        assert np.bincount(system.station_of_row, force != 0.0).tolist() == [4, 4]
+        assert force.sum() == pytest.approx(side * stiffness * depth**2, rel=1.0e-6)
         assert abs(force @ (system.rows @ turn)) < 1.0e-6 * abs(force.sum())
 
 
@@ -102,33 +103,6 @@ def test_a_tilted_approach_presses_as_its_integral() -> None:
     section = flat_boom().segments[1].section
     expected = given * section.width * tilt**2 / 3.0
     assert _forces(system, state).sum() == pytest.approx(expected, rel=1.0e-6)
-
-
-@pytest.mark.slow
-def test_every_point_has_its_share_of_the_penalty() -> None:
-    """Reference: analytic. Weights are positive and add up, by the nearest station."""
-    law = replace(LAW.law, stiffness_below=0.5e13).with_clearance(LAW.above)
-    system = _system(flat_boom(), law=law)
-    sides, stiffnesses = np.array([one.terms[0][:2] for one in system.laws]).T
-    assert all(len(one.terms) == 1 for one in system.laws)
-    assert stiffnesses.min() > 2.0e4
-    assert stiffnesses[sides > 0.0].sum() == pytest.approx(2.0e13)
-    assert stiffnesses[sides < 0.0].sum() == pytest.approx(1.0e13)
-    assert [int(n) for n in np.bincount(system.station_of_row)] == [8, 8]
-
-
-@pytest.mark.slow
-def test_friction_stays_at_the_stations() -> None:
-    """Reference: the shell with contact at its stations, within 1e-4 by truncated modes."""
-    lines, surface = (
-        _system(flat_boom(friction=0.2), line=line) for line in ("near webs", "surface")
-    )
-    assert surface.frictions == lines.frictions
-    slow = (2.0 * np.pi * 10.0) ** 2
-    found, expected = (
-        one.friction_rows @ (one.friction_rows / (one.omega2 + slow)).T for one in (surface, lines)
-    )
-    assert found == pytest.approx(expected, rel=2.0e-4)
 
 
 @pytest.mark.slow

@@ -24,7 +24,7 @@ from protractile.geometry.joint import Drive
 from protractile.shell_model.boom_shell import ShellOptions
 from protractile.shell_model.contact.local_compliance import compliance, local_compliance
 from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
-from protractile.shell_model.telescoping import SLOW, springs, squared
+from protractile.shell_model.telescoping import squared
 from tests.dynamics.reference import table_slope
 from tests.shell_model.booms import LATERAL_LAW, boom_in_space, flat_boom
 from tests.touching import touching
@@ -69,33 +69,6 @@ def standing(system: GapSystem, way: float) -> GapSystem:
     (travel,) = system.travels
     times = np.linspace(0.0, 1.0, 20001)
     return system.at_time(float(np.interp(way, travel.history(times), times)))
-
-
-def test_springs_keep_stiffness_and_mass_of_the_residual_modes() -> None:
-    """Reference: analytic, two masses on springs, with two rows that rotate with the extension; a
-    mass of 900 Hz, of which the difference of both rows has round-off alone.
-    """
-    omega2 = np.array([squared(900.0), squared(2500.0)])
-    shifted = omega2 + squared(SLOW)
-    angles = np.linspace(0.0, 0.3, 5)
-    turned = [[[np.cos(a), np.sin(a)], [-np.sin(a), np.cos(a)]] for a in angles]
-    rows = np.array(turned) @ np.array([[1.0, 0.2], [0.2, 1.5]])
-    residual, inertia = (
-        np.einsum("wij,j,wkj->wik", rows, shifted**-power, rows) for power in (1.0, 2.0)
-    )
-    found, pulls = springs(residual, inertia)
-    assert np.einsum("wij,j,wkj->wik", pulls, 1.0 / (found + squared(SLOW)), pulls) == (
-        pytest.approx(residual, rel=1e-9)
-    )
-    found, pulls = springs(residual[:1], inertia[:1])
-    assert np.sort(found) == pytest.approx(omega2, rel=1e-9)
-
-    (shifted,) = omega2 = np.array([squared(900.0) + squared(SLOW)])
-    same, other = np.ones((2, 2)), np.array([[1.0, -1.0], [-1.0, 1.0]])
-    residual, inertia = same + 2e-4 * other, same / shifted + 2e-8 * other
-    found, pulls = springs(residual[None], inertia[None])
-    assert np.sort(found) == pytest.approx([squared(100.0), *(omega2 - squared(SLOW))], rel=1e-9)
-    assert pulls[0] / (found + squared(SLOW)) @ pulls[0].T == pytest.approx(residual, rel=1e-9)
 
 
 @pytest.mark.slow
