@@ -19,7 +19,7 @@ from protractile.beam_model.finite_element import finite_element_segment
 from protractile.beam_model.wall_compliance import PressedArea
 from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.gap_system import GapSystem
-from protractile.dynamics.reduction import condense, restrict
+from protractile.dynamics.reduction import condense
 from protractile.geometry.boom import Collar, Diaphragm, Material, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.polygon import PolygonSection
@@ -86,18 +86,6 @@ def test_rigid_motions_remain_in_small_condensed_systems() -> None:
     few, _ = condense(whole, 24)
     assert few.omega2.min() == 0.0
     np.testing.assert_allclose(elastic_compliance(few), elastic_compliance(whole), rtol=1e-8)
-
-
-def test_a_restricted_system_moves_in_its_basis() -> None:
-    """Reference: analytic, the eigenvalues of Φᵀ Ω² Φ, and rows in these coordinates."""
-    whole = system()
-    drawn = np.random.default_rng(5).normal(size=(MODES, 8))
-    basis, _ = np.linalg.qr(np.column_stack([np.eye(MODES)[0], drawn]))
-    few = restrict(whole, basis)
-    expected = np.linalg.eigvalsh(basis.T @ np.diag(whole.omega2) @ basis)
-    np.testing.assert_allclose(few.omega2, expected, rtol=1e-9, atol=1e-6)
-    within = (whole.rows @ basis) @ (whole.rows @ basis).T
-    np.testing.assert_allclose(few.rows @ few.rows.T, within, rtol=1e-9)
 
 
 PLACES = (0.0, 1.0, 10.0)

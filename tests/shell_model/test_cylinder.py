@@ -137,7 +137,6 @@ def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
 # Walls so thick that they do not buckle by themselves.
 OUTER = BoxSection(height=0.40, width=0.30, flange=0.016, web=0.012)
 INNER = BoxSection(height=0.33, width=0.23, flange=0.012, web=0.010)
-HELD = (Support(4.5), Support(10.5))
 LAW = PowerContact(1e9, 1.0).with_clearance(5e-3)
 OPTIONS = ShellOptions(mesh_size=0.4)
 THRUST = 1.0e5

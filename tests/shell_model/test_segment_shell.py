@@ -95,7 +95,7 @@ def test_frequencies_with_a_tip_mass_are_the_beams_in_each_plane() -> None:
 
 
 LINEAR = sections.LAW
-(HEXAGON, INNER_HEXAGON), (OCTAGON, INNER_OCTAGON), (U, INNER_U) = sections.SHAPES.values()
+(HEXAGON, _), (OCTAGON, _), (U, INNER_U) = sections.SHAPES.values()
 SECTIONS = {"hexagon": HEXAGON, "octagon": OCTAGON, "u": U}
 UNEQUAL_BOXES = UNEQUAL, BoxSection(0.46, 0.28, flange=0.008, web=0.005, bottom_flange=0.005)
 
