@@ -120,20 +120,16 @@ def test_constant_strains_are_exact() -> None:
         return np.asarray(np.stack([x, y, np.zeros_like(x)], axis=1) @ OBLIQUE.T)
 
     spin, tilt, shear = 6.0e-4, np.array([3.0e-4, -5.0e-4]), np.array([8.0e-4, -2.0e-4])
-    gradient = np.array(
-        [[1.0e-3, 0.4e-3 - spin, 0], [0.4e-3 + spin, -0.7e-3, 0], [*tilt + shear, 0]]
-    )
+    slope = tilt + shear
+    gradient = np.array([[1e-3, 4e-4 - spin, 0.0], [4e-4 + spin, -7e-4, 0.0], [*slope, 0.0]])
     curvature = 1.0e-3 * np.array([[1.2, 0.5, 0.0], [0.5, -0.6, 0.0], [0.0, 0.0, 0.0]])
 
     def displacement(p: Array) -> Array:
-        return np.asarray(
-            p @ gradient.T - 0.5 * np.outer(((p @ curvature) * p).sum(axis=1), [0, 0, 1])
-        )
+        bent = np.einsum("ni,ij,nj->n", p, curvature, p)
+        return np.asarray(p @ gradient.T - 0.5 * np.outer(bent, [0.0, 0.0, 1.0]))
 
     def rotation(p: Array) -> Array:
-        return np.asarray(
-            np.array([tilt[1], -tilt[0], spin]) + np.cross([0, 0, 1.0], p @ curvature)
-        )
+        return np.asarray([tilt[1], -tilt[0], spin] + np.cross([0.0, 0.0, 1.0], p @ curvature))
 
     thickness = 0.05
     shell = StaticShell(*grid(surface, 4, 4), thickness, STEEL)
