@@ -129,7 +129,8 @@ def test_constant_strains_are_exact() -> None:
         return np.asarray(p @ gradient.T - 0.5 * np.outer(bent, [0.0, 0.0, 1.0]))
 
     def rotation(p: Array) -> Array:
-        return np.asarray([tilt[1], -tilt[0], spin] + np.cross([0.0, 0.0, 1.0], p @ curvature))
+        turned = np.cross([0.0, 0.0, 1.0], p @ curvature)
+        return np.asarray(turned + np.array([tilt[1], -tilt[0], spin]))
 
     thickness = 0.05
     shell = StaticShell(*grid(surface, 4, 4), thickness, STEEL)
