@@ -28,6 +28,7 @@ from tests.shell_model.booms import (
     box_segment,
     flat_boom,
     reduced,
+    rigid_state,
 )
 
 # σ in rad²/s² of the compliances that are compared: below and above the lowest ω².
@@ -95,11 +96,8 @@ def test_segments_rolling_together_keep_their_gaps() -> None:
     each pad's contact row gives N for its friction.
     """
     system = reduced(boom_in_space(friction=0.2), 0.5).system
-    rigid = np.flatnonzero(system.omega2 == 0.0)
-    names = ("tip", "tail", "tip_lateral", "tail_lateral", "tip_twist")
-    rows = np.array([system.observers[name].row[rigid] for name in names])
-    state = np.zeros(system.num_modes)
-    state[rigid] = np.linalg.solve(rows, [0.0, 0.0, 0.0, 0.0, 1.0e-3])
+    still = dict.fromkeys(("tip", "tail", "tip_lateral", "tail_lateral"), 0.0)
+    state = rigid_state(system, still | {"tip_twist": 1.0e-3})
     outer, section = (segment.section for segment in flat_boom().segments)
     along_z = np.array(system.station_directions)[system.station_of_row] == "z"
     gaps = system.rows @ state

@@ -40,9 +40,11 @@ from tests.shell_model.booms import (
     bonded_beams,
     boom_in_space,
     box_segment,
+    contact_forces,
     flat_boom,
     pressed_rest,
     reduced,
+    rigid_state,
     three_segments,
 )
 from tests.shell_model.test_cylinder import column
@@ -61,8 +63,7 @@ def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> 
     assert system.num_modes == reduced(flat_boom(), 0.5, line).system.num_modes
     dashpots = np.sqrt(2.0e3) * system.friction_rows
     np.testing.assert_allclose(system.dashpots, dashpots, atol=1e-9 * np.abs(dashpots).max())
-    assert [(f.station, f.normal_force) for f in system.frictions] == [(0, 4500.0), (1, 5000.0)]
-    assert all(f == DryFriction(0.2, f.station, f.normal_force) for f in system.frictions)
+    assert system.frictions == [DryFriction(0.2, 0, 4500.0), DryFriction(0.2, 1, 5000.0)]
     for station, row in enumerate(system.friction_rows):
         mine = system.station_of_row == station
         stiffness = [w.terms[0].stiffness for w, at in zip(system.laws, mine, strict=True) if at]
@@ -74,14 +75,11 @@ def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> 
 def test_loads_act_at_their_positions_and_times() -> None:
     """Reference: analytic, force over mass of a free segment; uniform is constant load."""
     boom = flat_boom()
-    ramp = Ramp(0.1)
-    loads = (Load(1, "z", 55.07, None, Step()), Load(1, "z", 100.0, 14.0, ramp))
+    loads = (Load(1, "z", 55.07, None, Step()), Load(1, "z", 100.0, 14.0, Ramp(0.1)))
     system = reduced(replace(boom, loads=loads), 0.5).system
     uniform, point = (excitation.load for excitation in system.excitations)
-    assert system.excitations[1].history is ramp
     free = system.omega2 == 0.0
-    inner = system.load.copy()
-    inner[: np.flatnonzero(free)[0]] = 0.0
+    inner = system.load * (np.arange(free.size) >= free.argmax())
     assert uniform == pytest.approx(inner, rel=1.0e-9, abs=1.0e-12 * np.abs(inner).max())
     tip, tail = (system.observers[name].row[free] for name in ("tip", "tail"))
     mass = boom.segments[1].mass_per_length * boom.segments[1].length
@@ -113,8 +111,7 @@ def test_a_bonded_joint_has_no_play() -> None:
     boom = three_segments(bonded=True)
     shell = reduced(boom, 0.5)
     system, beams = shell.system, bonded_beams(boom)
-    assert system.rows.shape == (0, system.num_modes)
-    assert not (system.omega2 == 0.0).any()
+    assert not system.laws
     assert system.frequencies[0] == pytest.approx(beams.frequencies[0], rel=2.0e-3)
     rest, expected = (static_response(one, one.load) for one in (system, beams))
     tip = system.observers["tip"].row @ rest
@@ -130,17 +127,11 @@ def test_a_bonded_joint_has_no_play() -> None:
 def test_a_uniform_approach_gives_the_law_of_the_paper_exactly(line: ContactLine) -> None:
     """Reference: analytic. Under a rigid translation each station has F(y) of (4) once."""
     system = reduced(flat_boom(), 0.5, line).system
-    rigid = np.flatnonzero(system.omega2 == 0.0)
-    tip, tail = (system.observers[name].row for name in ("tip", "tail"))
     for lift in (7.3e-3, -7.3e-3):
-        state = np.zeros(system.num_modes)
-        state[rigid] = np.linalg.solve(np.array([tip[rigid], tail[rigid]]), [lift, lift])
-        gaps = system.rows @ state
-        assert gaps == pytest.approx(np.full(gaps.size, lift), rel=1.0e-9)
-        forces = np.array([float(w.force(y)) for w, y in zip(system.laws, gaps, strict=True)])
-        for station in (0, 1):
-            total = forces[system.station_of_row == station].sum()
-            assert total == pytest.approx(np.sign(lift) * 1.0e13 * 0.3e-3**2, rel=1.0e-9)
+        state = rigid_state(system, {"tip": lift, "tail": lift})
+        assert system.rows @ state == pytest.approx(np.full(len(system.laws), lift), rel=1.0e-9)
+        forces = np.bincount(system.station_of_row, contact_forces(system, state))
+        assert forces == pytest.approx(2 * [np.sign(lift) * 1.0e13 * 0.3e-3**2], rel=1.0e-9)
 
 
 OUTER, INNER = flat_boom().segments
