@@ -9,9 +9,6 @@ import meshio
 import numpy as np
 import pytest
 import xarray as xr
-
-pytest.importorskip("dolfinx", reason="the shell model needs DOLFINx")
-
 from mpi4py import MPI
 
 from protractile.beam_model.finite_element import finite_element_segments
