@@ -15,11 +15,14 @@ from protractile.geometry.boom import Collar, Diaphragm, Load, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.mesh import collar_breaks, diaphragm_breaks, mesh_segment, strip_lines
 from protractile.geometry.plating import PlatedMesh, add_thickness
+from protractile.shell_model.boom_shell import ShellOptions
+from protractile.shell_model.reduced_shell import reduce_boom
 from protractile.shell_model.segment.segment_shell import SegmentShell, assemble_segment
 from protractile.shell_model.segment.solver import times
 from studies.reference_models.single_segment import natural_frequencies
-from tests.shell_model.booms import HELD, STEEL, box_segment, flat_boom, reduced
+from tests.shell_model.booms import HELD, LAW, STEEL, box_segment, flat_boom
 from tests.shell_model.conftest import BOX, compliance
+from tests.touching import touching
 
 # At both ends, on a support, within a collar, and free.
 PLATES = tuple(Diaphragm(x, 0.008) for x in (0.0, 2.0, 5.0, 8.0, 10.0))
@@ -84,7 +87,7 @@ def test_a_thrown_segment_flies_with_its_stiffeners() -> None:
     own = {"diaphragms": (Diaphragm(9.0, 0.016),), "collars": (Collar((9.0, 9.5), 0.01),)}
     thrown = Load(1, "z", 0.1 * inner.mass_per_length, None, Step(), inertial=True)
     stiff = replace(flat_boom(), segments=(outer, replace(inner, **own)), loads=(thrown,))
-    system = reduced(stiff, 0.5).system
+    system = reduce_boom(touching(stiff, LAW), ShellOptions(0.5), MPI.COMM_WORLD).system
     velocity = system.excitations[0].load
     speeds = [system.observers[name].row @ velocity for name in ("tail", "tip")]
     assert speeds == pytest.approx([0.1, 0.1], rel=1.0e-8)
@@ -93,10 +96,8 @@ def test_a_thrown_segment_flies_with_its_stiffeners() -> None:
 def test_outline_at_a_diaphragm_has_only_nodes_of_walls() -> None:
     """Reference: the box without diaphragm on the same mesh. Supports fix the same nodes."""
     held = (Support(0.0), Support(2.0, "clamped"))
-    shells = (
-        shell_of(supports=held),
-        shell_of(supports=held, collars=COLLARS[:2], diaphragms=PLATES),
-    )
+    stiffeners = {"collars": COLLARS[:2], "diaphragms": PLATES}
+    shells = shell_of(supports=held), shell_of(supports=held, **stiffeners)
     for x in (0.0, 2.0, 5.0, 10.0):
         around = [set(map(tuple, shell.outline(x).places.round(9) + 0.0)) for shell in shells]
         assert around[0] == around[1]
@@ -143,9 +144,9 @@ def test_strips_and_a_collar_at_the_largest_moment_bend_as_by_hand() -> None:
     )
     more = 4.0 * 0.06 * 0.012 * (0.5 * BOX.height) ** 2
     within = np.abs(x - 2.0) < 0.25
-    with_strips = beam(own[0] + more, own[1]) / beam(*own)
-    with_collar = beam(*(np.where(within, *pair) for pair in zip(thick, own, strict=True))) / beam(
-        *own
+    collared = (np.where(within, *pair) for pair in zip(thick, own, strict=True))
+    with_strips, with_collar = (
+        beam(*one) / beam(*own) for one in ((own[0] + more, own[1]), collared)
     )
     assert found[0] / plain == pytest.approx(with_strips, rel=0.01)
     assert 1.0 - found[1] / plain == pytest.approx(1.0 - with_collar, rel=0.03)
