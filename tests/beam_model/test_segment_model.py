@@ -15,13 +15,12 @@ from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
-from protractile.geometry.boom import Boom, Joint, Material, Segment, Support
+from protractile.geometry.boom import Boom, Joint, Support
 from protractile.geometry.load import Load
 from protractile.geometry.observation import Observation
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import (
     STEEL,
-    OverhangingBeam,
     beam,
     beam_elements,
     beam_series,
@@ -64,28 +63,6 @@ def test_bonded_series_converges_to_the_bonded_elements(
     found = gap_system(paper_boom.bonded, beam_series(paper_boom, (12, 12), "complete"))
     np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
     assert rest(found) == pytest.approx(rest(beams), rel=7e-4, abs=0.0)
-
-
-def test_rows_read_the_inner_less_the_outer(paper_boom: Boom, paper_law: PowerContact) -> None:
-    """Reference: analytic, rigid translation of the inner segment and bending of the outer one."""
-    system = gap_system(touching(paper_boom, paper_law), beam_elements(paper_boom, 0.5))
-    assert system.rows.shape == (2, system.num_modes)
-    assert list(system.stations) == [9.0, 10.0]
-    assert list(system.station_of_row) == [0, 1]
-    assert list(system.laws) == [paper_law, paper_law]
-    rigid = system.omega2 == 0.0
-    # Raise and tilt so that the tail goes to 3 mm and the tip to 8 mm.
-    ends = np.array([system.observers[name].row[rigid] for name in ("tail", "tip")])
-    motion = np.zeros(system.num_modes)
-    motion[rigid] = np.linalg.solve(ends, [3.0e-3, 8.0e-3])
-    assert system.rows @ motion == pytest.approx([3.0e-3, 3.5e-3], rel=1e-9)
-    # The outer one alone under 1 kN at its head.
-    head = system.observers["head"].row
-    bent = np.divide(1000.0 * head, system.omega2, out=np.zeros_like(head), where=~rigid)
-    outer = paper_boom.segments[0]
-    exact = OverhangingBeam(outer, [(10.0, 1000.0)], 0.0)
-    expected = [-exact.deflection(9.0), -exact.deflection(10.0)]
-    assert system.rows @ bent == pytest.approx(expected, rel=1e-6, abs=0.0)
 
 
 def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
@@ -133,20 +110,6 @@ def test_bonded_halves_have_the_frequencies_of_the_whole(paper_boom: Boom) -> No
     for found, expected in ((halves, whole), (gap_system(boom.bonded, models), bonded)):
         for frequency in expected.frequencies:
             assert np.abs(found.frequencies - frequency).min() <= 1e-8 * frequency
-
-
-def test_ties_between_free_segments_leave_them_rigid(steel: Material) -> None:
-    """Reference: analytic. Two segments bonded at three places move as one body."""
-    one = Segment("one", 0.0, 6.0, steel, 50.0, 2.0e-4, 1.0)
-    two = replace(one, name="two", start=4.0, end=10.0)
-    three = replace(one, name="three", start=8.0, end=14.0, supports=(Support(12.0), Support(14.0)))
-    bonded = Joint(0, 1, (4.0, 5.0, 6.0), play=0.0, bonded=True)
-    loose = Joint(1, 2, (8.0, 10.0), play=0.002)
-    boom = Boom((one, two, three), (bonded, loose))
-    models = finite_element_segments(boom, 0.5, "euler-bernoulli", False)
-    system = gap_system(touching(boom, LAW), models)
-    assert (system.omega2 == 0.0).sum() == 2
-    assert np.sort(system.omega2)[2] > 1.0
 
 
 SOFT = pt.Material(1.0e9, 0.3, 500.0)
