@@ -46,9 +46,7 @@ def outside_of_span(model: Component, function: Array, x: Array) -> float:
 @pytest.mark.parametrize("base", ["as printed", "pinned", "complete"])
 @pytest.mark.parametrize("terms", [2, 5])
 def test_functions_are_those_of_the_paper(paper_boom: Boom, base: Base, terms: int) -> None:
-    """Reference: external source. The outer functions span (29), x^i (x − x0)(x − x1), alone, the
-    inner ones (30) and (31); the complete ones span all powers of x below the number of terms.
-    """
+    """Reference: external, the paper's (29), (30) and (31); complete ones span all powers of x."""
     first = int(base == "as printed")
     x, y = np.linspace(0.0, 10.0, 61), np.linspace(0.0, 10.0, 61) - 10.0
     outer = [x**i * x * (x - 2.0) for i in range(first, first + terms + 1)]
@@ -79,9 +77,7 @@ def shear_stiffness(segment: Segment, theory: Theory) -> float:
 
 
 def test_frequencies_converge_at_order_four() -> None:
-    """Reference: analytic βL, and another mesh without the node at 1 mm from a mass. Rigid modes
-    have ω = 0.
-    """
+    """Reference: analytic βL, and another mesh without the node at 1 mm from a mass."""
     segment = beam(supports=(3.0,))
     expected = angular_frequencies(segment, PINNED_FREE)
     errors = np.array([
@@ -272,9 +268,7 @@ def test_viscous_damping_acts_as_mass_does(model_of: Build) -> None:
 def test_a_spring_or_a_mass_at_the_end_of_a_cantilever(
     model_of: Build, spring: float, mass: float
 ) -> None:
-    """Reference: analytic, the transcendental equation of a clamped beam on an end spring, of which
-    −ω² M takes the place for a mass.
-    """
+    """Reference: analytic, the transcendental equation of a clamped beam on an end spring."""
     clamp, held = Support(3.0, "clamped"), Support(8.0, stiffness=spring or None)
     masses = (PointMass(8.0, mass),) if mass else ()
     segment = beam(supports=(clamp, held) if spring else (clamp,), masses=masses)

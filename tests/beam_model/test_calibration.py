@@ -62,9 +62,7 @@ def test_condensed_system_has_the_same_slow_response() -> None:
 
 
 def test_excited_modes_are_kept_before_slower_unexcited_modes() -> None:
-    """Reference: analytic. Modes are in the order of b²/ω⁴ for loads of equal size; the slowest
-    eighth of 24 modes is always kept.
-    """
+    """Reference: analytic, the order of b²/ω⁴ after the slowest eighth of 24 modes."""
     whole = system()
     signs = np.sign(np.vstack([whole.rows, whole.friction_rows, whole.load]))
     signs[:, 1::2] = 0.0
@@ -179,9 +177,7 @@ def pad(start: float = 0.0, end: float = 0.1, side: int = 1) -> PressedArea:
 
 
 def test_a_tube_under_pressure_on_two_walls_bends_as_a_frame() -> None:
-    """Reference: analytic, a frame of equal members: θ = p a³/48 D at a joint, and the mean
-    deflection p a⁴/720 D + θ a/6.
-    """
+    """Reference: analytic, a frame: θ = p a³/48 D at a joint, the mean p a⁴/720 D + θ a/6."""
     span = ((-0.5 * SIDE, 0.5 * SIDE),)
     walls = PressedArea(0.0, LENGTH, "z", 1, span), PressedArea(0.0, LENGTH, "z", -1, span)
     compliance = wall_compliance.wall_compliance(tube(Material(2.1e11, 0.0, 7850.0)), walls)
@@ -272,9 +268,7 @@ def test_a_box_racks_as_a_beam_on_an_elastic_foundation() -> None:
 
 
 def test_a_corner_on_a_flat_plate_changes_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Reference: analytic, the hexagon without an additional corner in the middle of its top; and
-    another mesh, with a quarter of the element length.
-    """
+    """Reference: analytic, the hexagon without it; another mesh of a quarter of the length."""
     places = [plate.start for plate in HEXAGON.plates]
     top = next(n for n, plate in enumerate(HEXAGON.plates) if plate.name == "top")
     places.insert(top + 1, HEXAGON.plates[top].midpoint)

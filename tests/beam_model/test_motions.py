@@ -62,9 +62,7 @@ def rubs(boom: Boom) -> Boom:
 
 
 def test_with_friction_the_complete_series_follows_the_elements(paper_boom: Boom) -> None:
-    """Reference: other code, Hermite elements. Friction makes the motion regular. Over 10 s and
-    with elements of 0.25 m, the difference is 0.11 % of the tip's range.
-    """
+    """Reference: other code, Hermite elements. Friction makes the motion regular."""
     boom = rubs(paper_boom)
     beams, complete, printed = (
         FixedStep(4.0e-6)(Motion(gap_system(touching(boom, LINEAR), models), 0.6))
@@ -102,9 +100,7 @@ def test_with_friction_a_small_change_stays_small(
 
 
 def test_pressed_modes_have_the_ratio(paper_boom: Boom) -> None:
-    """Reference: analytic, Φᵀ C Φ = 2ζω with a positive semidefinite C, of a joint that weight
-    closes. Rigid motions lose speed no faster than the first mode.
-    """
+    """Reference: analytic, Φᵀ C Φ = 2ζω of a joint that weight closes; rigid motions lose less."""
     ratio = 0.02
     system = gap_system(touching(paper_boom, LINEAR), beam_series(paper_boom, (6, 6), "complete"))
     heavy = replace(system, load=9.81 * system.load)

@@ -43,9 +43,7 @@ def telescope(thrust: float) -> Boom:
 
 @BUILDS
 def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
-    """Reference: analytic. A free beam that rotates by θ has the energies −P L θ²/2 and
-    m̄ L³ θ̇²/24. Shear and bending change the result by 1e-3.
-    """
+    """Reference: analytic, −P L θ²/2 and m̄ L³ θ̇²/24 of a rotation. Bending changes it by 1e-3."""
     thrust, boom = 5.0e3, telescope(5.0e3)
     fly = boom.segments[1]
     system = gap_system(touching(boom, LAW), build(boom))
@@ -61,9 +59,7 @@ def test_segment_held_by_contacts_only_tips_over(build: Build) -> None:
 
 @BUILDS
 def test_soft_walls_at_pads_lower_the_buckling_load(build: Build) -> None:
-    """Reference: analytic, P = a²/(2 c L) for a rigid fly of length L on two springs of compliance
-    c. Bending reduces it by 0.3 %.
-    """
+    """Reference: analytic, P = a²/(2 c L) of a rigid fly on two springs; bending is 0.3 % less."""
     thrust, compliance = 5.0e3, 1.0e-4
     boom = telescope(thrust)
     models = build(boom)

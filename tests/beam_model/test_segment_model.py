@@ -56,9 +56,7 @@ def test_bonded_boom_has_the_exact_frequencies(paper_boom: Boom) -> None:
 def test_bonded_series_converges_to_the_bonded_elements(
     paper_boom: Boom,
 ) -> None:
-    """Reference: other code, Hermite elements. Measured with twelve terms a segment: frequencies
-    within 6e-4, deflections within 5e-4.
-    """
+    """Reference: other code, Hermite elements, with twelve terms a segment."""
     beams = gap_system(paper_boom.bonded, beam_elements(paper_boom, 0.25))
     found = gap_system(paper_boom.bonded, beam_series(paper_boom, (12, 12), "complete"))
     np.testing.assert_allclose(found.frequencies[:4], beams.frequencies[:4], rtol=8e-4)
@@ -88,9 +86,7 @@ def test_a_boom_of_three_has_the_rows_of_each_joint(paper_boom: Boom) -> None:
 
 
 def test_bonded_halves_have_the_frequencies_of_the_whole(paper_boom: Boom) -> None:
-    """Reference: analytic. Equal motions of two half inner segments side by side, bonded at the
-    stations, are motions of the whole segment. Opposite motions are zero at the bonds.
-    """
+    """Reference: analytic. Equal motions of two halves, bonded at the stations, are the whole's."""
     (outer, inner), (joint,) = paper_boom.segments, paper_boom.joints
     half = replace(
         inner,
@@ -190,9 +186,7 @@ def rigid_motion(system: GapSystem, suffix: str) -> Array:
 
 
 def test_pads_resist_roll(spatial_boom: Boom) -> None:
-    """Reference: analytic. A segment in contact along z that rolls by θ stores k b² θ²/8 at each
-    station, with half the law at ± b/2. In contact along y it stores k h² θ²/8.
-    """
+    """Reference: analytic, k b² θ²/8 at each station with half the law at ± b/2; laterally k h²."""
     system = gap_system(touching(spatial_boom, LAW, LATERAL_LAW), beams(spatial_boom))
     inner = spatial_boom.segments[1]
     roll = np.zeros(system.num_modes)
@@ -220,9 +214,7 @@ def test_pads_resist_roll(spatial_boom: Boom) -> None:
 
 
 def test_friction_rubs_in_the_plane_of_contact(paper_boom: Boom) -> None:
-    """Reference: external source, (28), with N at each station and the sliding u − w; analytic,
-    (10), (11): pads in contact along z rub along y, and conversely.
-    """
+    """Reference: external, (28), and analytic, (10), (11): contact along z rubs along y."""
     (joint,) = paper_boom.joints
     joint = replace(joint, friction=0.2, normal_forces=(4500.0, 5000.0))
     boom = replace(paper_boom, joints=(joint,))

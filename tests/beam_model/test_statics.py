@@ -44,9 +44,7 @@ def elements(boom: Boom, theory: Theory = "euler-bernoulli") -> tuple[GapSystem,
 
 
 def test_reactions_of_supports_and_stations_follow_the_lever_rule(paper_boom: Boom) -> None:
-    """Reference: by hand. The inner segment has 550.7 N upwards at 14 m on stations at 9 and 10 m;
-    the boom also has 831.6 N at 5 m, on supports at 0 and 2 m.
-    """
+    """Reference: by hand, 550.7 N at 14 m on 9 and 10 m; also 831.6 N at 5 m on 0 and 2 m."""
     head = 550.7 * (14.0 - 9.0) / (10.0 - 9.0)
     tail = 550.7 - head
     far = -(831.6 * 5.0 + tail * 9.0 + head * 10.0) / 2.0
@@ -169,9 +167,7 @@ CRANES: dict[str, Boom] = {
 
 @pytest.mark.parametrize("name", CRANES)
 def test_a_kept_model_has_the_states_of_a_new_one(name: str) -> None:
-    """Reference: other code, modes of the boom with its masses and axial forces, which have a
-    round-off of 1e-8; buckling by groups of bonded components in their own unknowns.
-    """
+    """Reference: other code, modes of the boom with its masses and axial forces; 1e-8 round-off."""
     boom = CRANES[name]
     modes = BoomModes(boom, Elements(boom, 20).segments)
     system = loaded_system(boom, modes)
@@ -303,9 +299,7 @@ def rest(system: GapSystem) -> tuple[float, float]:
 
 @pytest.mark.parametrize("stiffness", [3.0e7, 1.0e10], ids=["elastic", "stiff"])
 def test_statics_of_a_luffed_beam(stiffness: float) -> None:
-    """Reference: by hand, as above. Elements are exact at nodes. In every model the force follows
-    from the lever arm.
-    """
+    """Reference: by hand, as above. Elements are exact at nodes."""
     boom = luffed(replace(CYLINDER, stiffness=stiffness))
     (segment,) = boom.segments
     for theory in ("timoshenko", "euler-bernoulli"):

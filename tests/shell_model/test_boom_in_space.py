@@ -92,9 +92,7 @@ def test_a_boom_on_its_side_is_the_same_boom() -> None:
 
 @pytest.mark.slow
 def test_segments_rolling_together_keep_their_gaps() -> None:
-    """Reference: analytic. Under a rotation φ, flange pads move by φ y and web pads by −φ z. (11):
-    each pad's contact row gives N for its friction.
-    """
+    """Reference: analytic. By a roll φ, pads move by φ y, −φ z; (11): N of each pad's own row."""
     system = reduced(boom_in_space(friction=0.2), 0.5).system
     still = dict.fromkeys(("tip", "tail", "tip_lateral", "tail_lateral"), 0.0)
     state = rigid_state(system, still | {"tip_twist": 1.0e-3})
@@ -124,9 +122,7 @@ def test_the_bonded_boom_vibrates_as_beams_in_both_planes() -> None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["beam", "shell"])
 def test_square_boxes_move_alike_in_both_planes(kind: str) -> None:
-    """Reference: analytic, the symmetry of a square. Before, the beam had 7.66 Hz laterally for
-    3.71 Hz, and the lateral frequency of the shell was 27 % lower.
-    """
+    """Reference: analytic, the symmetry of a square. Before, 7.66 Hz laterally for 3.71 Hz."""
     base, fly = (BoxSection(size, size, wall, wall) for size, wall in ((0.3, 65e-4), (0.26, 6e-3)))
     segments = (
         box_segment("base", 0.0, 4.0, base, supports=(Support(0.0, "clamped"),)),

@@ -79,9 +79,7 @@ def test_walls_carry_the_axial_force_of_the_cylinder() -> None:
 
 @pytest.mark.slow
 def test_a_luffed_shell_rests_as_its_beam() -> None:
-    """Reference: other code, Timoshenko elements: force to round-off, tip 0.2 %; frequencies and
-    ratios of its dashpot.
-    """
+    """Reference: other code, Timoshenko elements: force, tip, frequencies and dashpot's ratios."""
     systems = shell(luffed()), beam(luffed())
     found, expected = (at_rest(system) for system in systems)
     assert found["cylinder_force"] == pytest.approx(expected["cylinder_force"], rel=1e-6)
@@ -111,9 +109,7 @@ def test_a_shell_turns_on_a_spring() -> None:
 
 @pytest.mark.slow
 def test_two_cylinders_hold_a_shell_in_space_as_a_beam() -> None:
-    """Reference: other code, Timoshenko and Bredt: statics and two frequencies. Two cylinders
-    resist the slope and the twist of a boom under wind.
-    """
+    """Reference: other code, Timoshenko and Bredt: statics under wind and two frequencies."""
     free = boom_in_space()
     outer, inner = free.segments
     joint = replace(free.joints[0], bonded=True)
@@ -179,9 +175,7 @@ def test_a_reduced_column_bends_as_the_full_one_under_its_axial_force() -> None:
 
 
 def test_shell_held_by_contacts_tips_over_as_a_beam() -> None:
-    """Reference: analytic, ∫P dx over the inertia about the centre; walls bend 1 %. The errors are
-    those of solves of all degrees of freedom.
-    """
+    """Reference: analytic, ∫P dx over the inertia about the centre; walls bend 1 %."""
     boom = telescope(THRUST)
     shell = reduce_boom(touching(boom, LAW), OPTIONS, MPI.COMM_SELF)
     assert shell.errors["contact_compliance"] < 1e-6

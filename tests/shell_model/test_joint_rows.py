@@ -51,9 +51,7 @@ from tests.touching import touching
 @pytest.mark.slow
 @pytest.mark.parametrize("line", ["near webs", "across"])
 def test_a_station_slides_as_the_mean_of_its_contact_rows(line: ContactLine) -> None:
-    """Reference: analytic, one top and one bottom row, points with their weights; a dashpot has √c
-    times this row. Neither adds coordinates.
-    """
+    """Reference: analytic, one top and one bottom row with weights; a dashpot has √c of it."""
     boom = flat_boom(friction=0.2)
     boom = replace(boom, joints=(replace(boom.joints[0], dashpot=2.0e3),))
     system = reduced(boom, 0.5, line).system
@@ -197,9 +195,7 @@ def test_section_forces_of_a_shell_follow_statics() -> None:
 
 @pytest.mark.slow
 def test_a_pressed_shell_bears_its_loads_across() -> None:
-    """Reference: by hand, −500 N/m and −44,049 N on a column under half of Euler's force. Shear
-    forces normal to the deflected axis are up to 2.2 times as large.
-    """
+    """Reference: by hand, −500 N/m and −44,049 N on a column under half of Euler's force."""
     clamp = Support(0.0, "clamped")
     box = BoxSection(height=0.4, width=0.3, flange=0.02, web=0.02)
     free = box_segment("boom", 0.0, 10.0, box, load=-500.0, supports=(clamp,))

@@ -45,9 +45,7 @@ from tests.touching import touching
 
 @pytest.mark.slow
 def test_no_rigid_motion_fills_it_and_its_mesh_error_is_known() -> None:
-    """Reference: analytic, rigid motions do not contribute, so that the shift has no effect; other
-    code, the mesh of twice the edge length.
-    """
+    """Reference: analytic, the shift has no effect; other code, the mesh of twice the edges."""
     coarse, shell = (reduced(flat_boom(), size, moments=2) for size in (0.8, 0.4))
     change = 1.0 - coarse.local_compliance / shell.local_compliance
     assert shell.mesh_error == pytest.approx(change.max(), rel=1.0e-4)
@@ -161,9 +159,7 @@ def test_a_pad_on_the_corners_bends_no_wall() -> None:
 
 @pytest.mark.slow
 def test_an_octagonal_mast_distorts_in_both_planes() -> None:
-    """Reference: other code, a shell: deflections and the lowest frequency. Rigid sections move by
-    a quarter less along z, and twice as far along y: distortion closes the lateral play.
-    """
+    """Reference: other code, a shell. Rigid sections give a quarter less along z."""
     outer = octagon(0.5, 0.5, 0.14, 0.005, 0.005, 0.005)
     case = Case(outer, octagon(0.44, 0.44, 0.125, *3 * [0.004]), CORNER_PAD, 1.1, 6.0)
     law = PowerContact(stiffness=1.9e9 * 0.15 * 0.05 / 0.02, exponent=1.0)

@@ -185,9 +185,7 @@ def pressed_shell(size: float) -> float:
 
 @pytest.mark.slow
 def test_the_shell_gives_way_as_the_plate() -> None:
-    """Reference: analytic, Navier's double sine series (1823), with shear deflection, which adds to
-    the bending deflection on these supports; four edges over the shorter side of the pad.
-    """
+    """Reference: analytic, Navier's double sine series (1823), with shear deflection."""
     plate, shear = rigidities(FLANGE)
     waves = np.pi * np.arange(1, 401)[:, None] / SIDES
     means = (np.cos(waves * START) - np.cos(waves * END)) / (waves * (END - START))

@@ -52,9 +52,7 @@ def test_a_clamped_box_bends_and_twists_as_a_cantilever() -> None:
 
 @pytest.mark.slow
 def test_elastic_supports_give_way_by_their_reactions() -> None:
-    """Reference: analytic, (4² + 5²) / k beyond rigid supports, from −4 and 5 times the force;
-    Bredt's twist from the support at 2 m to the end.
-    """
+    """Reference: analytic, (4² + 5²)/k beyond rigid supports; Bredt's twist from 2 m to the end."""
     springs = tuple(Support(x, stiffness=1.0e6) for x in (0.0, 2.0))
     shells = [box_shell(0.25, supports=one) for one in (HELD, springs)]
     ends = [shell.outline(10.0) for shell in shells]

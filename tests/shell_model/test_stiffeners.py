@@ -108,9 +108,7 @@ def test_outline_at_a_diaphragm_has_only_nodes_of_walls() -> None:
 
 @pytest.mark.slow
 def test_a_collar_all_along_is_a_thicker_box() -> None:
-    """Reference: the box of thicker walls on the same mid-surfaces, to round-off, also of two
-    collars on different walls.
-    """
+    """Reference: the box of thicker walls, to round-off, also of two collars on different walls."""
     thick = BoxSection(BOX.height, BOX.width, BOX.flange + 0.004, BOX.web + 0.004)
     frequencies = natural_frequencies(shell_of(supports=HELD, section=thick), 8)[1:]
     all_walls = ("top", "bottom", "right", "left")
@@ -122,9 +120,7 @@ def test_a_collar_all_along_is_a_thicker_box() -> None:
 
 @pytest.mark.slow
 def test_strips_and_a_collar_at_the_largest_moment_bend_as_by_hand() -> None:
-    """Reference: analytic, Timoshenko's overhang: strips raise its second moment by 2 A z², a
-    collar over half a metre at the support thickens its walls. Beams neglect these 8 %.
-    """
+    """Reference: analytic, Timoshenko's overhang: 2 A z² of strips, 0.5 m of thicker walls."""
     strips = Collar((0.0, 10.0), 0.012, walls=("top", "bottom"), across=(0.02, 0.08))
     shells = (
         shell_of(supports=HELD, collars=collars)
