@@ -99,12 +99,13 @@ def test_a_shorter_motion_is_the_beginning_of_a_longer_one(integrator: Integrato
         np.testing.assert_array_equal(some.data[name], whole.data[name][: some.time.size])
 
 
-# The second deflection has a hundredth of the range of the first one.
-SEEN = replace(LINEAR, observers={**LINEAR.observers, "head": Observer(np.array([0.0, 0.02]))})
+# The way has a range of a thousand times that of the tip.
+ROWS = {"tip": np.array([1.0, 0.7, -0.4, 0.0]), "way": np.eye(4)[3]}
+SEEN = replace(sliding().system, observers={name: Observer(row) for name, row in ROWS.items()})
 REGULAR = {
-    "pressed": pressed(2.0), "losses": lossy_press(), "sliding": sliding(),
+    "pressed": pressed(2.0), "losses": lossy_press(), "sliding": replace(sliding(), system=SEEN),
     "telescoping": telescoping(), "driven": driven(), "one blow": Motion(two_modes(), 0.6, 0.02),
-    "two deflections": Motion(SEEN, 3.0, 0.01),
+    "linear": Motion(LINEAR, 3.0, 0.01),
 }  # fmt: skip
 
 
