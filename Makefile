@@ -117,7 +117,7 @@ torture: $(READY) ## full disks, kills, flipped bits, shared folders: losses, as
 	NUMBA_NUM_THREADS=1 $(BIN)/python -m tests.torture
 
 quick: $(READY) ## the quick tests alone
-	$(BIN)/python -m pytest -m 'not slow'
+	NUMBA_NUM_THREADS=1 $(BIN)/python -m pytest -m 'not slow' -n 2 --dist loadfile
 
 lint: $(READY) ## ruff and mypy
 	$(BIN)/python -m ruff check .

@@ -46,6 +46,7 @@ def names_of(page: str, **names: Any) -> dict[str, Any]:
     return names
 
 
+@pytest.mark.slow
 def test_code_of_the_guides_runs(here: Path) -> None:
     names = names_of("how-to/notebooks.md", pt=pt)
     assert names["loaded"].summary == names["results"].summary
@@ -78,10 +79,6 @@ def test_commands_in_the_pages_have_known_options(page: Path) -> None:
         name, *words = re.sub(r"  #.*", "", line).split()
         options = {option for parameter in commands[name].params for option in parameter.opts}
         assert {word for word in words if word.startswith("--")} <= options, line
-
-
-def test_the_readme_is_short() -> None:
-    assert len((ROOT / "README.md").read_text("utf-8").split()) <= 800
 
 
 @pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
@@ -235,6 +232,7 @@ def test_natural_mistakes_are_noticed(
     path, missed = tmp_path / "boom.toml", set()
     path.write_text(correct, "utf-8")
     known = find_cautions(path)
+    assert correct is not CASE or known == []
     for mistake, (text, replacement) in mistakes.items():
         assert text in correct, mistake
         path.write_text(correct.replace(text, replacement), "utf-8")
@@ -242,9 +240,3 @@ def test_natural_mistakes_are_noticed(
         if found is not None and set(found) <= set(known):
             missed.add(mistake)
     assert missed == unnoticed
-
-
-def test_the_correct_lift_has_no_caution(tmp_path: Path) -> None:
-    path = tmp_path / "lift.toml"
-    path.write_text(CASE, "utf-8")
-    assert find_cautions(path) == []

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 
 from protractile.dynamics.arrays import Array
-from protractile.dynamics.excitation import Excitation, History, PiecewiseLinear, Ramp, Sine, Step
+from protractile.dynamics.excitation import Excitation, PiecewiseLinear, Ramp, Sine, Step
 from protractile.dynamics.gap_system import GapSystem, Observer
-from protractile.dynamics.integrator import AdaptiveStep, FixedStep
+from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import Motion
-from protractile.dynamics.time_step import line_within
 from tests.dynamics.reference import slopes
 from tests.modal import modal_system, one_mass
 
@@ -67,12 +66,6 @@ def masses(history: Ramp | Sine | PiecewiseLinear) -> GapSystem:
     return modal_system(np.square(OMEGAS), np.zeros(n), observers=seen, excitations=pushed)
 
 
-def driven(system: GapSystem, force: float, history: History) -> GapSystem:
-    """Return the system under a force in N at its tip that follows a history."""
-    load = force * system.observers["tip"].row
-    return replace(system, excitations=[*system.excitations, Excitation(load, history)])
-
-
 def test_histories_by_hand() -> None:
     time = np.array([-0.5, 0.0, 0.5, 1.0, 3.0])
     assert Step()(time).tolist() == [0.0, 1.0, 1.0, 1.0, 1.0]
@@ -110,34 +103,6 @@ def test_kinks_within_steps_are_resolved(where: str, step: float) -> None:
             assert error < (1e-8 + allowed) * np.ptp(expected), omega
 
 
-def test_linear_fit_of_a_history_keeps_its_moments() -> None:
-    """Reference: analytic, integral and moment of a sine, and of a jump at a quarter step."""
-    times, w = np.linspace(0.3, 1.1, 5), 2.0 * np.pi * 0.6
-    (before, after), h, middle = (times[:-1], times[1:]), 0.2, 0.5 * (times[1:] + times[:-1])
-    mean, change = line_within(Sine(0.6), times)
-    integral = (np.cos(w * before) - np.cos(w * after)) / w
-    first = (before - middle) * np.cos(w * before) - (after - middle) * np.cos(w * after)
-    first = first / w + (np.sin(w * after) - np.sin(w * before)) / w**2
-    assert mean == pytest.approx(integral / h, rel=2e-7)
-    assert change == pytest.approx(12.0 * first / h**2, rel=2e-5)
-    mean, change = line_within(
-        PiecewiseLinear((0.05, 0.05 + 1e-12), (0.0, 1.0)), np.array([0.0, 0.2, 0.4])
-    )
-    assert mean == pytest.approx([0.75, 1.0])
-    assert change == pytest.approx([12.0 * 0.75 * 0.125, 0.0], abs=1e-9)
-
-
-def test_a_half_sine_leaves_its_swing() -> None:
-    """Reference: analytic, the residual amplitude after a pulse (Clough and Penzien 1975, 5-2)."""
-    natural, duration = 9.0, 0.5
-    pulse = driven(one_mass(1.0, spring=natural**2), 5.0, Sine(0.5 / duration, end=duration))
-    data = AdaptiveStep()(Motion(pulse, 4.0, output_step=0.002)).data
-    ratio = np.pi / duration / natural
-    left = 5.0 / natural**2 * 2.0 * ratio / (1.0 - ratio**2) * np.cos(0.5 * np.pi / ratio)
-    swing = data["tip"].values[data.time.values > duration]
-    assert 0.5 * np.ptp(swing) == pytest.approx(abs(left), rel=1.0e-4)
-
-
 def forced(time: Array, spring: float, dashpot: float, frequency: float, phase: float) -> Array:
     """Return the closed form for 1 kg from rest under 1 N sin(2π f t + φ)."""
     omega = 2.0 * np.pi * frequency
@@ -153,7 +118,8 @@ def forced(time: Array, spring: float, dashpot: float, frequency: float, phase: 
 @pytest.mark.parametrize("dashpot", [0.0, 0.5, 20.0])
 def test_a_sine_against_its_closed_form(dashpot: float) -> None:
     """Reference: analytic. Steps replace the sine by lines with its moments: order 4."""
-    system = driven(one_mass(1.0, spring=30.0, dashpot=dashpot), 1.0, Sine(0.6, 0.4))
+    pushed = [Excitation(np.ones(1), Sine(0.6, 0.4))]
+    system = replace(one_mass(1.0, spring=30.0, dashpot=dashpot), excitations=pushed)
     errors = []
     for step in (0.08, 0.04, 0.02):
         run = FixedStep(step)(Motion(system, 8.0, output_step=0.08))

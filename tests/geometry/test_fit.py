@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from protractile.dynamics.contact import PowerContact
 from protractile.dynamics.motion_laws import SCurve
 from protractile.geometry.boom import (
     Boom,
@@ -18,7 +17,6 @@ from protractile.geometry.boom import (
     Pad,
     Segment,
     SlidePad,
-    Stop,
     Support,
 )
 from protractile.geometry.box import BoxSection
@@ -211,26 +209,6 @@ def test_pads_in_space_are_in_the_corners(spatial_boom: Boom) -> None:
     assert {pad.half for pad in found} == {-1, 1}
     for pad in found:
         assert pad.across == pytest.approx(-0.06 * pad.half, rel=0.1)
-
-
-@pytest.mark.parametrize("bonded", [False, True])
-def test_stations_are_those_of_the_boom(spatial_boom: Boom, bonded: bool) -> None:
-    """The boom has three segments and a stop, and one bonded joint or none."""
-    (joint,) = spatial_boom.joints
-    inner = spatial_boom.segments[1]
-    box = replace(inner.section, height=0.4, width=0.2)
-    last = replace(inner, name="last", start=17.0, end=26.0, section=box)
-    second = replace(joint, outer=1, inner=2, stations=(17.0, 18.0, 19.0))
-    stop = Stop(2, 26.0, 0.02, PowerContact(1.0e8, 1.0, stiffness_below=1.0e8))
-    joints = replace(joint, bonded=bonded), second
-    boom = Boom((*spatial_boom.segments, last), joints, stops=(stop,))
-    found = pads(boom)
-    assert len(boom.stations) == (7 if bonded else 11)
-    assert len(found) == 4 * (len(boom.stations) - 1)
-    for pad in found:
-        assert pad.station is boom.stations[pad.station.index]
-        assert pad.joint is pad.station.joint is boom.joints[pad.station.number]
-        assert pad.station.x == pad.joint.stations[pad.station.place]
 
 
 @pytest.mark.parametrize(
