@@ -18,6 +18,7 @@ from protractile.dynamics.integrator import FixedStep
 from protractile.dynamics.motion import build_motion
 from protractile.dynamics.motion_laws import SCurve, Stroke
 from protractile.geometry.boom import Boom, Material, PointMass, Segment
+from protractile.geometry.cylinder import Cylinder
 from protractile.geometry.joint import Drive
 from protractile.geometry.support import Support
 from protractile.runs import CASES
@@ -185,6 +186,15 @@ def test_moments_of_a_swinging_load() -> None:
     reach, up = 1.0 + 0.5 * boom.tip, np.sqrt(0.75) * boom.tip
     added = weight / length * np.array([-0.3 * reach, 0.2 * up])
     assert swung - still == pytest.approx(added, rel=1e-9)
+
+
+def test_luffing_cylinder() -> None:
+    """Reference: by hand, a right angle at the pin between a lug and a ground 3 m and 4 m away."""
+    jack = Cylinder(0, 3.0, depth=0.5, ground=(0.0, -4.5), stiffness=1.0)
+    foot = Support(0.0, "hinged", depth=0.5)
+    assert (jack.length, jack.arm(foot)) == pytest.approx((5.0, 12.0 / 5.0))
+    raised = jack.luffed(np.deg2rad(90.0), foot)
+    assert (raised.length, raised.arm(foot)) == pytest.approx((7.0, 0.0), abs=1e-12)
 
 
 @pytest.mark.slow
