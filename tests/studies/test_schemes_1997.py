@@ -92,25 +92,12 @@ def rubbing(force: float) -> GapSystem:
 @pytest.mark.parametrize("scheme", ALL, ids=str)
 @pytest.mark.parametrize("phase", [0.1, 0.628, 1.5])
 def test_an_oscillator_turns_as_the_textbook_says(scheme: Scheme, phase: float) -> None:
-    """Reference: analytic, roots of the amplification matrix, Bathe 1996, section 9.4."""
-    assert measured_root(scheme, phase) == pytest.approx(textbook_root(scheme, phase), rel=1e-9)
-
-
-@pytest.mark.parametrize(
-    ("scheme", "phase", "low", "high"),
-    [(NEWMARK, 50.0, 0.9, 1.0 + 1e-9), (WILSON, 50.0, 100.0, 1e6), (CENTRAL, 1.98, 1.0, 10.0),
-     (CENTRAL, 2.02, np.inf, np.inf)],
-)  # fmt: skip
-def test_long_steps_overshoot_or_break_out(
-    scheme: Scheme, phase: float, low: float, high: float
-) -> None:
-    """Reference: analytic. At ω h = 50 Wilson's scheme overshoots 1 m (Goudreau and Taylor 1973),
-    and Newmark's does not; central differences are stable for ω h < 2 only.
+    """Reference: analytic, roots of the amplification matrix, Bathe 1996, section 9.4. Central
+    differences are stable for ω h < 2 only.
     """
-    run = integrate(Motion(oscillator(), 100.0 * phase, phase, position=np.ones(1)), scheme, False)
-    far = np.abs(run.trajectory.states).max()
-    assert low <= np.nan_to_num(far, nan=np.inf) <= high
-    assert (run.finite_steps < 100) == np.isinf(high)
+    assert measured_root(scheme, phase) == pytest.approx(textbook_root(scheme, phase), rel=1e-9)
+    lost = integrate(Motion(oscillator(), 202.0, 2.02, position=np.ones(1)), CENTRAL, False)
+    assert lost.finite_steps < 100
 
 
 @pytest.mark.parametrize("scheme", ALL, ids=str)
@@ -183,17 +170,6 @@ def test_peaks_conform_and_part(others: Array, gained: float, early: float, late
     found = sample(swing(), swing(), others, gained=gained, since=6.5)
     assert found.peaks(CUTOFF) == pytest.approx((early, late), abs=0.04, nan_ok=True)
     assert found.conforms_then_diverges(CUTOFF) == (late > 0.2)
-
-
-def test_the_series_solved_well_take_the_place_of_those_of_then() -> None:
-    """Reference: by construction, series of 1 and 2 m beside the elements of then."""
-    accurate = sample(swing(), 2.0 * swing(), 3.0 * swing())
-    found = sample(swing(), swing(), swing(late=0.4))
-    example = Example(shipped("paper"), {}, CUTOFF, [accurate])
-    (mixed,) = example.with_accurate_series([found])
-    heights = [np.abs(one.tip).max() for one in mixed.models]
-    assert heights == pytest.approx([1.0, 2.0, 1.0], rel=1e-3)
-    assert mixed.elements is found.elements
 
 
 @pytest.mark.parametrize(("head", "stratifies"), [(0.1, False), (1.0, True)])
