@@ -8,7 +8,6 @@ from functools import cache, partial
 from typing import Any
 
 import numpy as np
-import pytest
 from mpi4py import MPI
 
 from protractile.beam_model.finite_element import finite_element_segments
@@ -26,7 +25,6 @@ from protractile.shell_model.reduced_shell import ReducedShell, reduce_boom
 from protractile.shell_model.reduction.krylov import KrylovOptions
 from protractile.shell_model.reduction.segment import ReducedSegment, SegmentInputs, reduce_segments
 from protractile.shell_model.reduction.symmetry import SymmetryReduction
-from studies.reference_models.statics import static_response
 from tests.touching import touching
 
 STEEL = Material(youngs_modulus=2.1e11, poissons_ratio=0.3, density=7850.0)
@@ -136,16 +134,6 @@ def pressed_rest(system: GapSystem, at: Sequence[bool] | slice = slice(None)) ->
     """Return the equilibrium with springs of 1e12 N/m as contact at some or all rows."""
     rows = system.rows[at]
     return np.asarray(np.linalg.solve(np.diag(system.omega2) + 1.0e12 * rows.T @ rows, system.load))
-
-
-def assert_rests_as_beams(system: GapSystem, boom: Boom, rel: float) -> None:
-    """Check all outputs of an equilibrium against bonded Timoshenko elements."""
-    rest, beams = pressed_rest(system), bonded_beams(boom)
-    expected = static_response(beams, beams.load)
-    assert set(beams.observers) <= set(system.observers)
-    for name, observer in beams.observers.items():
-        found = system.observers[name].row @ rest
-        assert found == pytest.approx(observer.row @ expected, rel=rel), name
 
 
 def bonded_beams(boom: Boom, length: float = 0.25) -> GapSystem:
