@@ -18,8 +18,6 @@ from protractile.dynamics.contact import DryFriction, PowerContact
 from protractile.dynamics.equilibrium import equilibrium
 from protractile.dynamics.excitation import Ramp, Step
 from protractile.dynamics.failure import NumericsError
-from protractile.dynamics.line import Line
-from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, BoomError, Load, Pad, Stop
 from protractile.geometry.box import BoxSection
 from protractile.geometry.contact_places import ContactLine
@@ -191,21 +189,16 @@ def test_a_boom_without_a_shell_is_refused(boom: Boom, line: ContactLine, messag
     assert str(caught.value) == message
 
 
-def at_rest(boom: Boom, options: ShellOptions) -> list[tuple[Line, Array]]:
-    """Return the lines along each segment of a shell, and the equilibrium."""
-    lateral = [LATERAL_LAW] if boom.spatial else []
-    shell = reduce_boom(touching(boom, LAW, lateral), options, MPI.COMM_SELF)
-    position = equilibrium(shell.system, shell.system.load)
-    return [(line, position) for line in lines(shell.fields, boom)]
-
-
 @pytest.mark.slow
 def test_section_forces_of_a_shell_follow_statics() -> None:
     """Reference: by hand, V = 55.07 s, M = −55.07 s²/2, s = 19 − x; −5933.9 N at 2 m."""
-    (outer, position), (line, _) = at_rest(flat_boom(), ShellOptions(0.2, contact_tolerance=0.02))
+    boom = touching(flat_boom(), LAW)
+    shell = reduce_boom(boom, ShellOptions(0.2, contact_tolerance=0.02), MPI.COMM_SELF)
+    position = equilibrium(shell.system, shell.system.load)
+    outer, inner = lines(shell.fields, boom)
     before, behind = (outer.one_sided_row("shear", 2.0, side) @ position for side in (-1, 1))
     assert before - behind == pytest.approx(-5933.9, rel=0.02)
-    found, s = line.read(position), 19.0 - line.x
+    found, s = inner.read(position), 19.0 - inner.x
     outside = s < 8.7
     np.testing.assert_allclose(found["shear"][outside], 55.07 * s[outside], atol=3.0)
     np.testing.assert_allclose(found["moment"][outside], -27.535 * s[outside] ** 2, atol=15.0)
@@ -227,23 +220,23 @@ def test_a_pressed_shell_bears_its_loads_across() -> None:
 @pytest.mark.slow
 def test_a_shell_in_space_bends_and_twists_as_beams_do() -> None:
     """Reference: another model, shear-flexible elements: forces 1 %, deflections 2 %."""
-    boom = boom_in_space(sideways=0.4)
+    boom = touching(boom_in_space(sideways=0.4), LAW, LATERAL_LAW)
     models = finite_element_segments(boom, 0.25, "timoshenko", rotary_inertia=True)
-    system = gap_system(touching(boom, LAW, LATERAL_LAW), models)
-    position = equilibrium(system, system.load)
-    beams = lines_of_beams(boom, models)
-    shells = at_rest(boom, ShellOptions(mesh_size=0.25))
-    for beam, (line, state), far in zip(beams, shells, ((2.5, 8.5), (10.5, 19.0)), strict=True):
+    shell = reduce_boom(boom, ShellOptions(mesh_size=0.25), MPI.COMM_SELF)
+    position, state = (
+        equilibrium(system, system.load) for system in (gap_system(boom, models), shell.system)
+    )
+    pairs = zip(lines_of_beams(boom, models), lines(shell.fields, boom), strict=True)
+    for (beam, line), (start, end) in zip(pairs, ((2.5, 8.5), (10.5, 19.0)), strict=True):
         of_beam, found = beam.read(position), line.read(state)
-        outside = (line.x > far[0]) & (line.x < far[1])
+        outside = (line.x > start) & (line.x < end)
         for name, values in found.items():
             expected = np.interp(line.x, beam.x, of_beam[name])
             largest = np.abs(of_beam[name]).max()
-            share = 0.02 if name in ("deflection", "lateral") else 0.01
             if name in ("twist", "torque") and largest < 1e-3:
                 continue
             off = np.abs(values - expected)[outside].max() / largest
-            assert off < share, name
+            assert off < (0.02 if name in ("deflection", "lateral") else 0.01), name
 
 
 @pytest.fixture
