@@ -95,22 +95,6 @@ def test_section_forces_of_a_column_refer_to_the_straight_axis(build: Build) -> 
     np.testing.assert_allclose(found["moment"], expected, rtol=2e-3, atol=100.0)
 
 
-def test_a_boom_in_space_bends_sideways_and_twists(spatial_boom: Boom) -> None:
-    """Reference: by hand. 300 N at 19 m along y cause −300 (19 − x) in the inner segment."""
-    load = Load(1, "y", 300.0, 19.0, Step())
-    boom = replace(spatial_boom.bonded, loads=(load,))
-    models = finite_element_segments(boom, 0.5, "timoshenko", True)
-    system = gap_system(boom, models).gather_loads()
-    inner = lines(boom, models)[1]
-    found = inner.read(equilibrium(system, system.load))
-    outside = inner.x > 10.0
-    np.testing.assert_allclose(
-        found["lateral_moment"][outside], -300.0 * (19.0 - inner.x[outside]), atol=1e-3
-    )
-    np.testing.assert_allclose(found["lateral_shear"][outside], 300.0, rtol=1e-6)
-    np.testing.assert_allclose(found["torque"], 0.0, atol=1e-6)
-
-
 FOOT = Support(0.0, "hinged", depth=0.2)
 
 

@@ -52,17 +52,6 @@ def _differ(found: Array, expected: Array) -> float:
 
 
 @pytest.mark.slow
-def test_without_lateral_load_the_boom_gives_way_as_the_flat_one() -> None:
-    """Reference: the flat shell. Nothing moves sideways."""
-    flat, space = (reduced(one, 0.5, moments=2).system for one in (flat_boom(), boom_in_space()))
-    expected = _compliances(flat, flat.rows)
-    assert _differ(_compliances(space, _walls(space, "z")), expected) < 1.0e-9
-    moved = space.load / (space.omega2 + SHIFTS[0])
-    tip, aside = (space.observers[name].row @ moved for name in ("tip", "tip_lateral"))
-    assert abs(aside) < 1.0e-9 * abs(tip)
-
-
-@pytest.mark.slow
 def test_a_boom_on_its_side_is_the_same_boom() -> None:
     """Reference: symmetry, exchanged directions: frequencies, compliances, loads, round-off."""
     octagons, law = sections.boom_of(*sections.SHAPES["octagon"]), sections.LAW

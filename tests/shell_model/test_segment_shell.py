@@ -11,13 +11,12 @@ from mpi4py import MPI
 from protractile.beam_model.finite_element import finite_element_segment, finite_element_segments
 from protractile.beam_model.segment_model import gap_system
 from protractile.dynamics.excitation import Step
-from protractile.dynamics.gap_system import GapSystem
 from protractile.geometry.arrays import Array
 from protractile.geometry.boom import Boom, Diaphragm, Joint, Pad, PointMass, Segment, Support
 from protractile.geometry.box import BoxSection
 from protractile.geometry.contact_places import ContactInterval
 from protractile.geometry.load import Load
-from protractile.geometry.polygon import PolygonSection, bent
+from protractile.geometry.polygon import bent
 from protractile.geometry.profiles import hexagon, u_section
 from protractile.geometry.section import COMPONENT, Section
 from protractile.geometry.taper import mean_area
@@ -33,15 +32,7 @@ from protractile.shell_model.stress.lines import lines
 from studies import sections
 from studies.reference_models.statics import static_response
 from tests.beam_model.exact import frequencies
-from tests.shell_model.booms import (
-    HELD,
-    STEEL,
-    box_segment,
-    flat_boom,
-    reduce_segment,
-    reduced,
-    two_segments,
-)
+from tests.shell_model.booms import HELD, STEEL, box_segment, reduce_segment
 from tests.shell_model.conftest import BOX, UNEQUAL, box_shell, compliance
 from tests.touching import touching
 
@@ -152,32 +143,6 @@ def test_contacts_read_the_true_faces(section: Section) -> None:
         place = np.array([[5.03, 0.5 * (face.low + face.high) + 0.011]])
         (row,) = walls.rows(Wall(face.direction, face.side), place, face.direction)
         assert _read(row, field) == pytest.approx(face.offset, rel=1.0e-9)
-
-
-@pytest.mark.slow
-def test_a_box_written_as_a_polygon_is_the_box() -> None:
-    """Reference: other code, the box: frequencies and compliances of rows."""
-    boxes = BoxSection(0.50, 0.32, 0.008, 0.006), BoxSection(0.46, 0.28, 0.006, 0.005)
-    polygons = [
-        PolygonSection(
-            tuple(plate.start for plate in box.plates),
-            tuple(plate.thickness for plate in box.plates),
-        )
-        for box in boxes
-    ]
-    assert polygons[0].shear_area != boxes[0].shear_area
-    box, polygon = (
-        replace(flat_boom(), segments=two_segments(*pair)) for pair in (boxes, polygons)
-    )
-    first, second = (reduced(boom, 0.5, law=LINEAR).system for boom in (box, polygon))
-    assert second.omega2 == pytest.approx(first.omega2, rel=1e-9, abs=1e-6)
-    assert _compliance(second) == pytest.approx(_compliance(first), rel=1e-9)
-
-
-def _compliance(system: GapSystem) -> Array:
-    """Return the compliance of rows and tip at σ = 1e4 rad²/s²."""
-    rows = np.vstack([system.rows, system.observers["tip"].row])
-    return np.asarray(rows / (system.omega2 + 1.0e4) @ rows.T)
 
 
 ENDS: Mapping[str, tuple[Section, Section]] = {
