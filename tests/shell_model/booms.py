@@ -40,28 +40,22 @@ def box_segment(
     section: Section,
     load: float = 0.0,
     supports: tuple[Support, ...] = (),
-    lateral_load: float = 0.0,
 ) -> Segment:
     """Return a steel segment whose beam data, in both planes, are those of its box."""
-    segment = Segment.of_section(name, start, end, STEEL, section, load=load, supports=supports)
-    return replace(segment, lateral=replace(segment.lateral, load=lateral_load))
-
-
-def two_segments(outer: Section, inner: Section) -> tuple[Segment, Segment]:
-    """Return two segments with the loads and positions of the paper."""
-    return (
-        box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
-        box_segment("inner", 9.0, 19.0, inner, 55.07),
-    )
+    return Segment.of_section(name, start, end, STEEL, section, load=load, supports=supports)
 
 
 def flat_boom(friction: float = 0.0) -> Boom:
     """Return the paper's flat boom, with normal forces if there is friction."""
     outer = infer_outer_section(83.16 / STEEL.density, 3.7986e-4, 1.5)
     inner = infer_inner_section(55.07 / STEEL.density, 2.1829e-4, outer, LAW.above)
+    segments = (
+        box_segment("outer", 0.0, 10.0, outer, 83.16, HELD),
+        box_segment("inner", 9.0, 19.0, inner, 55.07),
+    )
     pressed = (4500.0, 5000.0) if friction > 0.0 else ()
     joint = Joint(0, 1, (9.0, 10.0), 2.0 * LAW.above, friction=friction, normal_forces=pressed)
-    return Boom(two_segments(outer, inner), (joint,))
+    return Boom(segments, (joint,))
 
 
 def boom_in_space(friction: float = 0.0, sideways: float = 0.0) -> Boom:
