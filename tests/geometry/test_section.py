@@ -206,6 +206,15 @@ def test_a_rectangle_has_the_numbers_of_a_box() -> None:
     assert str(closed_polygon(polygon.corners, polygon.thicknesses)) == str(box)
 
 
+def test_many_plates_are_a_tube() -> None:
+    """Reference: analytic, a thin tube: J = π r³ t, torsion 2 π r³ t, shear area π r t, to 1e-4."""
+    radius, wall = 0.2, 1.0e-4
+    tube = regular(240, 2.0 * radius * np.sin(np.pi / 240), wall)
+    expected = pi * radius * wall * np.array([radius**2, 2.0 * radius**2, 1.0])
+    found = numbers(tube, "second_moment_of_area", "torsion_constant", "shear_area")
+    assert found == pytest.approx(expected.tolist(), rel=5e-4)
+
+
 @pytest.mark.parametrize("name", ["trapezoid", "hexagon", "u"])
 def test_properties_are_those_of_the_outline_less_the_hole(name: str) -> None:
     """Reference: analytic, moments of the polygons of the walls' outer and inner surfaces."""
